@@ -153,6 +153,7 @@ def machine_picture(case: Path, out: Path) -> Path | None:
 def misses(folder: Folder, out: Path) -> Path | None:
     """The machine at the end of the held-out test, its sensors labelled by what the calibrated model misses."""
     from viz import cutaway, sensors, split
+    from viz.data import LATE
 
     test, built = by_interest(folder)[0], folder.built
     assert built is not None, "the demo's case is built from geometry"
@@ -161,8 +162,8 @@ def misses(folder: Folder, out: Path) -> Path | None:
         nodes = split(built.mesh)
         now = fields(folder.case, test, nodes, 1)[1][-1]
         labels, limits = sensors(comparison_of(folder, test), folder.positions), temperature_range(folder, nodes)
-        title = f"{end_of(test)}: temperature; labels: measured minus model"
-        cutaway(nodes, now, sensors=labels, title=title, limits=limits, png=png)
+        title = f"{end_of(test)}: temperature of the model"
+        cutaway(nodes, now, sensors=labels, title=title, limits=limits, note=LATE, png=png)
 
     return _picture(out / "2-misses.png", draw)
 

@@ -13,6 +13,7 @@ from validation.case import Channel, Test
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours
+LATE = "labels: measured minus model, mean of the last fifth"  # of `sensors`
 POINTS = 700  # a line of a page is some 700 pixels wide
 
 

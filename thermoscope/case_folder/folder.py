@@ -61,9 +61,9 @@ class Folder:
     @cached_property
     def budgets(self) -> Mapping[str, ErrorBudget]:
         """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
-        from thermoscope.verification.error_budget import budgets_of_tests
+        from thermoscope.verification.error_budget import budgets_of
 
-        return budgets_of_tests(self)
+        return budgets_of(self, self.case.tests)
 
     @property
     def numeric_K(self) -> dict[str, dict[str, float]]:
@@ -81,11 +81,12 @@ class Folder:
         """Channel -> the largest error that counts as agreement (K); of this test alone unless all are compared."""
         if "compared" in vars(self):
             return self.compared.limits[test.name]
+        from thermoscope.verification.error_budget import budgets_of
         from validation.comparison.compare import judged_error, physical
 
         case = self.case
-        budget = self.numeric_K[test.name]
-        judged = judged_error(working(case)[0], test, physical(case), case.doubt, budget)
+        budget = self.budgets if "budgets" in vars(self) else budgets_of(self, [test])
+        judged = judged_error(working(case)[0], test, physical(case), case.doubt, dict(budget[test.name].total_K))
         return {c.channel: c.limit_K for c in judged.channels if c.limit_K is not None}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -78,13 +78,17 @@ def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
 
-def comparison_of(folder: Folder, test: Test) -> Comparison:
-    """A test against the model, and against the model before its last step."""
+def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None = None) -> Comparison:
+    """A test against the model, and against the model before its last step.
+
+    limits : channel -> the largest error that counts as agreement (K); None to have them worked out
+    """
     from viz.data import Comparison
 
     earlier = before_last(folder)
     before = None if earlier is None else readings(earlier, test)
-    return Comparison(test, readings(folder.case, test), folder.limits(test), before, accepted(folder.case, test))
+    agreement = folder.limits(test) if limits is None else limits
+    return Comparison(test, readings(folder.case, test), agreement, before, accepted(folder.case, test))
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:

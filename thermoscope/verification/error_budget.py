@@ -5,7 +5,7 @@ Mesh and condensation are looked at once, at the machine's rated point, and kept
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -53,9 +53,9 @@ def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progr
     return {name: _of_run(network, values, run, rows, rated) for name, run in records.items()}
 
 
-def budgets_of_tests(folder: Folder, progress: Progress = lambda message: None) -> dict[str, ErrorBudget]:
+def budgets_of(folder: Folder, tests: Sequence[Test]) -> dict[str, ErrorBudget]:
     """Test -> its budget."""
-    return error_budgets(folder, {test.name: _record(test) for test in folder.case.tests}, progress)
+    return error_budgets(folder, {test.name: _record(test) for test in tests}, lambda message: None)
 
 
 def _record(test: Test) -> Record:

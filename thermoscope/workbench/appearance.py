@@ -20,6 +20,11 @@ class Appearance:
     errors: Mapping[str, Any]
     curves: Mapping[str, Comparison]
 
+    @property
+    def limits(self) -> dict[str, dict[str, float]]:
+        """Test -> channel -> the largest error that counts as agreement (K)."""
+        return {name: dict(comparison.limits) for name, comparison in self.curves.items()}
+
     def test(self, name: str) -> Mapping[str, Any]:
         """The errors of one test."""
         return next(t for t in self.errors["tests"] if t["name"] == name)

@@ -11,9 +11,11 @@ from thermoscope.console.terminal import progress, say
 def serve(case: str, host: str, port: int) -> int:
     """The workbench in the browser, until Ctrl-C."""
     from thermoscope.workbench.access_control import AccessControl
+    from thermoscope.workbench.jobs import prepare
     from thermoscope.workbench.serve import application, token_for
     from thermoscope.workbench.serve import serve as run
 
+    prepare()  # loads packages while the case is opened
     access = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
     with progress() as tell:
         app = application(open_case_for_writing(case, tell), access, tell)

@@ -18,7 +18,7 @@ CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
     "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",
-    "viewer": "", "preparing": "",
+    "viewer": "", "viewer_rest": "", "preparing": "",
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
     "effects": [], "revision": 0, "steps": [], "can_undo": False,
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",

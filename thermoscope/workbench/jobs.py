@@ -6,7 +6,7 @@ import asyncio
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -15,7 +15,8 @@ from geom.errors import ThermoscopeError
 Tell = Callable[[str], None]
 PRELOAD = [
     "thermoscope.workbench.steps", "thermoscope.commands.model.revise", "validation.diagnosis.diagnose",
-    "validation.revision.revise",
+    "validation.revision.revise", "thermoscope.case_folder.error_field", "thermoscope.case_folder.network_run",
+    "viz.viewer.page",
 ]  # fmt: skip
 
 
@@ -45,19 +46,29 @@ def prepare() -> None:
 
 
 class Job:
-    """One run of work(*arguments, tell)."""
+    """One run of work(*arguments, tell); a generator gives its parts one by one, and no result."""
 
     def __init__(self, work: Callable[..., Any], *arguments: Any) -> None:
         self._work, self._arguments = work, arguments
         self._process: Any = None
+        self._pipe: Any = None
 
-    async def run(self, tell: Tell) -> Any:
-        """The result; `tell` is called in this thread with every message. FailedError or StoppedError otherwise."""
+    def start(self) -> None:
+        """Begin before there is anyone to hear of it; what it says waits for `run`."""
         context = starter()
-        mine, its = context.Pipe(duplex=False)
+        self._pipe, its = context.Pipe(duplex=False)
         self._process = context.Process(target=_run, args=(its, self._work, self._arguments))
-        await asyncio.to_thread(self._process.start)
+        self._process.start()
         its.close()
+
+    async def run(self, tell: Tell, take: Callable[[Any], None] = lambda part: None) -> Any:
+        """The result; `tell` is called in this thread with every message, `take` with every part.
+
+        FailedError or StoppedError otherwise.
+        """
+        if self._process is None:
+            await asyncio.to_thread(self.start)
+        mine = self._pipe
         try:
             while True:
                 kind, value = await asyncio.to_thread(mine.recv)
@@ -65,7 +76,7 @@ class Job:
                     return value
                 if kind == "failed":
                     raise FailedError(value)
-                tell(value)
+                {"tell": tell, "part": take}[kind](value)
         except EOFError:
             raise StoppedError("the calculation was stopped") from None
         finally:
@@ -86,7 +97,12 @@ def _run(pipe: Connection, work: Callable[..., Any], arguments: tuple) -> None:
     os.setpgrp()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        message = "done", work(*arguments, lambda text: pipe.send(("tell", text)))
+        result = work(*arguments, lambda text: pipe.send(("tell", text)))
+        if isinstance(result, Iterator):
+            for part in result:
+                pipe.send(("part", part))
+            result = None
+        message = "done", result
     except (ThermoscopeError, OSError) as fault:
         message = "failed", str(fault)
     except Exception as fault:  # whatever it is, the page says so and lives on

@@ -120,6 +120,7 @@ def _machine(session: Session) -> None:
             ':data-test="test"',
             ':data-sensor="sensor"',
             ':data-dark="dark"',
+            ':data-rest="viewer_rest"',
             ":title=\"'the machine: ' + test\"",
         ]
         html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer",

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
+from thermoscope.case_folder.runs import at_revision
+
+
+def at(folder: Folder, history: History) -> Folder:
+    """The case with the model that `history` ends with."""
+    return replace(folder, case=at_revision(folder, history.last), history=history)
 
 
 def same(a: Revision, b: Revision) -> bool:

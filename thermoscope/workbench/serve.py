@@ -17,6 +17,7 @@ from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.application import bench
 from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import prepare
+from thermoscope.workbench.machines import drawing_job
 from thermoscope.workbench.tabs import Tabs
 
 SWEEP_S = 30.0  # between looks for idle tabs
@@ -33,9 +34,17 @@ def token_for(token: str | None) -> str:
 def application(folder: Folder, access: AccessControl, tell: Progress, largest_drop: int = LARGEST) -> web.Application:
     """The pages of a case, for those who have access.  largest_drop : of files dropped on a page (bytes)"""
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
-    opened = bench(folder, tell)
-    tabs = Tabs(opened, largest_drop)
     prepare()
+    job = drawing_job(folder) if folder.built is not None else None
+    if job is not None:
+        job.start()  # beside the comparison, so that the machine is there as soon as the page
+    try:
+        opened = bench(folder, tell)
+    except BaseException:
+        if job is not None:
+            job.stop()
+        raise
+    tabs = Tabs(opened, largest_drop)
     app = web.Application(middlewares=[access.middleware])
     app.router.add_get("/", tabs.new)
     app.router.add_get("/tab/{tab}/{name:.+}", tabs.fetch)
@@ -49,8 +58,8 @@ def application(folder: Folder, access: AccessControl, tell: Progress, largest_d
                 await tabs.sweep()
 
         task = asyncio.create_task(sweep())
-        if folder.built is not None:
-            opened.machines.drawing(folder)  # while the first page is loaded
+        if job is not None:
+            opened.machines.drawing(folder, job)
         yield
         task.cancel()
         await tabs.close()

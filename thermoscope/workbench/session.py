@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import re
 import time
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,11 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagno
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import Bench, Drawing, at
+from thermoscope.workbench.application import Bench
 from thermoscope.workbench.display import Display
 from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
+from thermoscope.workbench.machines import Drawing
 
 REMEMBERED = 8  # revisions whose comparison is at hand
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
@@ -35,16 +37,17 @@ class Session:
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
         self.dropped: Dropped | None = None
-        self.viewer_page = ""
+        self.viewer_page = self.viewer_rest = ""
         self._refused: Revision | None = None
         self._job: Job | None = None
         self._drawing: Drawing | None = None
+        self._on_screen: History | None = None
         self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
 
     @property
     def folder(self) -> Folder:
         """The case with this tab's model."""
-        return at(self.bench.folder, self.history)
+        return ledger.at(self.bench.folder, self.history)
 
     @property
     def file(self) -> Path:
@@ -154,24 +157,43 @@ class Session:
         """The model on the machine, for the browser to draw: made beside whatever else is calculated."""
         if self.bench.folder.built is None:
             return
-        history, page = self.history, self.bench.machines.find(self.history)
         self._leave()
-        if page is None:
-            mine = self._drawing = self.bench.machines.drawing(self.folder)
-            try:
-                page = await mine.page(self._preparing)
-            except StoppedError:
-                return  # another model was to be drawn
-            except FailedError as fault:
-                self._complain(str(fault))
-                return
-            finally:
-                if self._drawing is mine:
-                    self._leave()
-        if history == self.history and page is not self.viewer_page:
-            self.viewer_page = page
-            with self.state:
-                self.state.viewer = f"viewer.html?{time.time_ns()}#bench"
+        if self._on_screen == self.history:
+            return
+        document = self.bench.machines.find(self.history)
+        if document is not None:
+            self._draw(document)
+            return
+        mine = self._drawing = self.bench.machines.drawing(self.folder)
+        mine.hear(self._preparing)
+        try:
+            for part, show in zip(mine.parts, (self._draw, self._complete), strict=True):
+                document = await asyncio.shield(part)
+                if self._drawing is not mine:
+                    return  # another model was to be drawn
+                show(document)
+        except StoppedError:
+            return
+        except FailedError as fault:
+            self._complain(str(fault))
+        finally:
+            if self._drawing is mine:
+                self._leave()
+
+    def _draw(self, document: Mapping[str, Any]) -> None:
+        """Another machine in the browser, judged by the errors that are shown."""
+        from viz.viewer.page import render, with_limits
+
+        self._on_screen = self.history
+        self.viewer_page = render(with_limits(document, self.shown.look.limits))
+        with self.state:
+            self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""
+
+    def _complete(self, document: Mapping[str, Any]) -> None:
+        """The rest of the machine that the browser draws already."""
+        self.viewer_rest = json.dumps(document)
+        with self.state:
+            self.state.viewer_rest = f"viewer-rest.json?{time.time_ns()}"
 
     def _leave(self) -> None:
         """Wait for no machine any more."""
@@ -209,7 +231,7 @@ class Session:
         """The model that `history` ends with, from memory where it was shown before."""
         look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
         if look is None:
-            folder = at(self.bench.folder, history)
+            folder = ledger.at(self.bench.folder, history)
             look = await self._calculate("Running the model", steps.appearance, folder)
         if look is not None:
             with self.state:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.appearance import Appearance, appearance_of
-from thermoscope.workbench.application import at
+from thermoscope.workbench.revisions import at
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
@@ -22,6 +22,13 @@ def appearance(folder: Folder, tell: Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
     return appearance_of(folder)
+
+
+def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
+    """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
+    from thermoscope.commands.show.viewer import viewer_documents
+
+    return viewer_documents(folder, tell, agreement=False)
 
 
 def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:

@@ -105,6 +105,8 @@ class Tabs:
                 content_type="text/html",
                 headers={"Content-Security-Policy": viewer_policy()},
             )
+        if name == "viewer-rest.json":
+            return web.Response(text=tab.session.viewer_rest, content_type="application/json")
         if name == "report.html":
             path: Path | None = tab.session.bench.folder.settings.out / "report.html"
         else:

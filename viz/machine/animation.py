@@ -14,6 +14,7 @@ from viz.colours import LIGHT, VERDICT, Theme
 from viz.data import Sensor
 from viz.machine import field
 from viz.machine.pulses import Pulses
+from viz.machine.thermocouples import frame_points
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -62,7 +63,7 @@ def animate(
     surface = cut_away(nodes, wedge)
     data = field.paint(p, surface, T[0], limits or (float(T.min()), float(T.max())), theme)
     scene.colour_bar(p, field.UNIT, theme)
-    scene.look(p, surface.points, view, Room(right=0.12, top=scene.TITLE))
+    scene.look(p, frame_points(surface, sensors[0] if sensors else ()), view, Room(right=0.12, top=scene.TITLE))
     pictures, pulses = [], Pulses(p, surface, sensors[0]) if sensors else None
     words_of = titles or _minutes(times)
     letters = max(map(len, words_of))

@@ -69,17 +69,17 @@ def flux_arrows(
     paint(p, surface, T, limits, theme)
     at, flux = on_faces(nodes, heat_flux(nodes, T, conductivity), wedge)
     scene.colour_bar(p, UNIT, theme)  # of what was added last, so before the arrows
-    _arrows(p, at, flux, float(np.ptp(nodes.points[:, 2])), theme)
+    _arrows(p, at, flux, nodes.length, theme)
     largest = float(np.linalg.norm(flux, axis=1).max(initial=0.0))
-    scene.headline(p, f"{title}  longest arrow {largest / 1000:.1f} kW/m²".strip(), theme)
-    scene.look(p, surface.points, view, Room(0.0, 0.1, TITLE))
+    scene.headline(p, f"{title} longest arrow {largest / 1000:.3g} kW/m²".strip(), theme)
+    scene.look(p, surface.framed, view, Room(0.0, 0.1, TITLE))
     scene.save(p, png)
     return p
 
 
 def on_faces(nodes: SplitMesh, flux: Array, wedge: Wedge) -> tuple[Array, Array]:
     """Points (n, 3) m in both cut faces, one per cell of a grid, and the mean flux there (n, 3) W/m2, in the face."""
-    step = SPACING * float(np.ptp(nodes.points[:, 2]))
+    step = SPACING * nodes.length
     points: list[Array] = []
     arrows: list[Array] = []
     middle = nodes.points[nodes.tets].mean(axis=1)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
-from viz.machine.thermocouples import LABELS, Marked, label_texts, marked
+from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
 from viz.rendering.callouts import beside, on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -42,6 +42,7 @@ def cutaway(
     limits: tuple[float, float] | None = None,
     colours: Colormap | None = None,
     unit: str = UNIT,
+    note: str = "",
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
@@ -51,6 +52,7 @@ def cutaway(
     T : (n_nodes,) per node of every part, or one per point of the conformal mesh
     labels : of so many sensors, those furthest beyond their uncertainty first; the others are dots
     limits : colour scale (degC), from the field itself if not given; widened to round numbers
+    note : what the sensors' labels say
     """
     view = view or View()
     p, surface, seen = cut_open(
@@ -59,20 +61,23 @@ def cutaway(
     paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme, colours)
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
-    seen.draw(p, surface, view, theme)
+    seen.draw(p, surface, view, theme, note)
     scene.save(p, png)
     return p
 
 
 def uncertainty(
-    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", png: str | Path | None = None
-) -> pyvista.Plotter:
+    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", note: str = "",
+    png: str | Path | None = None,
+) -> pyvista.Plotter:  # fmt: skip
     """Half the width of the 95 % band (K), the darker the less sure; the scale begins at zero.
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
     limits = 0.0, float(np.max(half95))
-    return cutaway(nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", png=png)
+    return cutaway(
+        nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", note=note, png=png
+    )
 
 
 def cut_open(
@@ -80,7 +85,7 @@ def cut_open(
 ) -> tuple[pyvista.Plotter, Surface, Marked]:
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
     p, surface = scene.plotter(theme), cut_away(nodes, wedge)
-    scene.look(p, surface.points, view, room)
+    scene.look(p, frame_points(surface, sensors), view, room)
     return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
 
 
@@ -102,7 +107,7 @@ def difference(
     paint(p, surface, change, (-most, most), theme, colours=missing())
     scene.colour_bar(p, "K", theme)
     scene.headline(p, title, theme)
-    scene.look(p, surface.points, view, room_for([], title))
+    scene.look(p, surface.framed, view, room_for([], title))
     scene.save(p, png)
     return p
 
@@ -128,7 +133,7 @@ def pair(
         p.subplot(0, i)
         paint(p, surface, field, limits, theme)
         scene.headline(p, titles[i], theme)
-        scene.look(p, surface.points, view, Room(0.0, 0.16))
+        scene.look(p, surface.framed, view, Room(0.0, 0.16))
     scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.034)
     scene.save(p, png)
     return p

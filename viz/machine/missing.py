@@ -79,12 +79,12 @@ def missing_in_machine(
     words = {n: f"{n}  {signed(q, 0)} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
     wide = width(max(words.values(), key=len), SMALL)
     room = Room(0.02 + wide, 0.12 + wide, TITLE, NOTE)
-    scene.look(p, surface.points, view, room)
-    seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room).items()}
+    scene.look(p, surface.framed, view, room)
+    seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room, surface.framed).items()}
     labels = [
         Label(tuple(seen[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
         for n, text in words.items() if n in seen
     ]  # fmt: skip
-    callouts(p, labels, surface.points, view, theme, size=SMALL)
+    callouts(p, labels, surface.framed, view, theme, size=SMALL)
     scene.save(p, png)
     return p

@@ -65,12 +65,12 @@ def network_in_machine(
     at = places(mesh, nodes)
     front = np.array([surface.points[:, 0].min() - 0.02, 0.0, 0.0])
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
-    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+    low, high = surface.framed.min(axis=0), surface.framed.max(axis=0)
     words = {name: f"{name}  {temperatures[name]:.0f} °C" for name in at}
     wide = beside(list(words.values()), LETTERS, 0.17)
-    room, length = Room(wide, wide + scene.BAR, scene.TITLE), float(np.ptp(nodes.points[:, 2]))
+    room = Room(wide, wide + scene.BAR, scene.TITLE)
     scene.look(p, front + np.array([[0, low[1], low[2]], [0, high[1], high[2]]]), SIDE, room)
-    at = spread_out(at, max(CLOSEST * length, 2 * NODE * pixel(p)))
+    at = spread_out(at, max(CLOSEST * nodes.length, 2 * NODE * pixel(p)))
     z = [xyz[2] for xyz in at.values()]  # pushed apart, some stand beside the machine
     reach = LABEL[1] * pixel(p)
     ends = min([low[2], *(v - reach for v in z)]), max([high[2], *(v + reach for v in z)])
@@ -82,7 +82,7 @@ def network_in_machine(
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
     if "link 0" in p.actors:
         scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
-    scene.headline(p, f"{title}  widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
+    scene.headline(p, f"{title} widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
     callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()  # the camera stood before lines and nodes were there

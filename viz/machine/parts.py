@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LETTERS = 13  # size of the names
 GAP = 0.25  # between assemblies pulled apart, share of the machine's length
+LONG = 1.5  # of the machine's length: with a longer base the machine would be small
 ASIDE = View(direction=(-1.0, 0.3, 0.22))
 
 
@@ -77,15 +78,21 @@ def exploded(
     view, groups = view or ASIDE, groups or assemblies(nodes)
     shift = shifts(nodes, groups)
     surface = exposed(nodes, contacts=True)
+    members = [part for group in groups for part in group]
+    surface = surface.only(np.isin(surface.part, [nodes.parts.index(part) for part in members])).compact()
     field = None if T is None else on_nodes(nodes, T)
     _paint(p, surface, field, theme, shift, limits=limits)
     if T is not None:
         scene.colour_bar(p, "°C", theme)
     moved = nodes.points + shift[nodes.owner]
+    without = [part for part in nodes.parts if part not in members]
+    if without:
+        scene.footnote(p, f"without {', '.join(without)}: longer than the machine", theme)
     for group in groups:
         _title(p, moved[np.concatenate([nodes.of(part) for part in group])], group)
     scene.headline(p, title, theme)
-    scene.look(p, moved, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
+    corners = moved[np.concatenate([nodes.of(part) for part in members])]
+    scene.look(p, corners, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
     scene.save(p, png)
     return p
 
@@ -100,10 +107,11 @@ def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:
 
 
 def assemblies(nodes: SplitMesh) -> list[list[str]]:
-    """Left end, housing, stator, rotor, right end, from what the parts are; empty groups are left out."""
+    """Left end, housing, stator, rotor, right end, from what the parts are; without empty groups and long bases."""
     groups: list[list[str]] = [[] for _ in range(5)]
     for part in nodes.parts:
-        groups[_assembly(nodes, part)].append(part)
+        if part not in nodes.bases or np.ptp(nodes.points[nodes.of(part), 2]) < LONG * nodes.length:
+            groups[_assembly(nodes, part)].append(part)
     return [group for group in groups if group]
 
 
@@ -120,7 +128,7 @@ def _assembly(nodes: SplitMesh, part: str) -> int:
 def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
     """(n_parts, 3) m: how far each part moves along the axis so that the groups stand one after the other."""
     shift = np.zeros((len(nodes.parts), 3))
-    gap, end = GAP * np.ptp(nodes.points[:, 2]), None
+    gap, end = GAP * nodes.length, None
     for group in groups:
         z = np.concatenate([nodes.points[nodes.of(part), 2] for part in group])
         move = 0.0 if end is None else end + gap - z.min()

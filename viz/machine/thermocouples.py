@@ -44,7 +44,7 @@ class Marked:
         sensors = (*self.labelled, *self.others)
         labels = [_label(s, bool(h)) for s, h in zip(sensors, self.hidden, strict=True)]
         n = len(self.labelled)
-        callouts(p, labels[:n], surface.points, view, theme)
+        callouts(p, labels[:n], frame_points(surface, sensors), view, theme)
         for label in labels[n:]:
             dot(p, label, PLAIN)
         says = [note] if note else []
@@ -52,6 +52,11 @@ class Marked:
         says += [f"{len(self.others)} without a label"] if self.others else []
         if says:
             scene.footnote(p, "; ".join(says), theme)
+
+
+def frame_points(surface: Surface, sensors: Sequence[Sensor]) -> NDArray[np.float64]:
+    """(n, 3) m that a picture must hold: the machine, and of a long base what is near it or has a sensor."""
+    return np.concatenate([surface.framed, np.array([s.xyz for s in sensors]).reshape(-1, 3)])
 
 
 def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:

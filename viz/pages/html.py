@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from viz.figures import paper
+from viz.labels import minus
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -98,6 +99,6 @@ def _cell(value: Cell) -> str:
     if isinstance(value, float):
         if not isfinite(value):
             return "–"
-        return f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}"
+        return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
     marked = {"over": "bad", "within": "ok"}.get(str(value))
     return f'<span class="{marked}">{escape(str(value))}</span>' if marked else escape(str(value))

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
 SPEED = 360.0  # times as fast as the test: an hour in ten seconds
-NAME = 0.16, 0.04  # width and height of a sensor's name, share of the machine's diagonal in the first view
+NAME = 0.17, 0.045  # width and height of a sensor's name, share of the machine's diagonal in the first view
 OUT = 0.05  # of the diagonal: as far beyond the machine's outline stand the names of what it hides
-DISTANCE = 1.02  # of the machine's diagonal: fills the view at rerun's own angle of view
+DISTANCE = 1.1  # of the machine's diagonal: fills the view at rerun's own angle of view, a base included
 
 
 def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], with_history: bool) -> rrb.Blueprint:
@@ -48,11 +48,10 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
 
 def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
-    _, right, up = View().axes()
-    size = np.linalg.norm(np.ptp(points, axis=0)) * np.array(NAME)
+    size = np.array(NAME) / DISTANCE
     occupied: list[NDArray[np.float64]] = []
     out = []
-    for at in np.stack([places @ right, places @ up], axis=1):
+    for at in in_view(places, points)[0]:
         out.append(not any((np.abs(at - other) < size).all() for other in occupied))
         occupied += [at] if out[-1] else []
     return out

@@ -12,8 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, repeated
 
@@ -63,9 +61,7 @@ class Surface:
     @cached_property
     def framed(self) -> Array:
         """(n, 3) m that a picture of the machine must hold."""
-        identities = self.nodes.identities
-        parts = [identities.get(part, Identity()) for part in self.nodes.parts]
-        base = np.array([part.role is Role.BASE for part in parts], bool)[self.owner]
+        base = np.array([part in self.nodes.bases for part in self.nodes.parts], bool)[self.owner]
         return framed(self.points[~base], self.points[base])
 
     @cached_property

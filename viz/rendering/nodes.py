@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.description.identity import Identity
+from geom.description.roles import Role
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 
@@ -38,6 +39,17 @@ class SplitMesh:
     @property
     def size(self) -> int:
         return len(self.points)
+
+    @property
+    def bases(self) -> tuple[str, ...]:
+        """What the machine stands on, which may be much longer than the machine."""
+        return tuple(part for part in self.parts if self.identities.get(part, Identity()).role is Role.BASE)
+
+    @property
+    def length(self) -> float:
+        """From end to end of the machine along its axis, without its bases (m)."""
+        others = [self.of(part) for part in self.parts if part not in self.bases]
+        return float(np.ptp(self.points[np.concatenate(others) if others else slice(None), 2]))
 
     def of(self, part: str) -> Index:
         """Numbers of the nodes of one part."""

@@ -119,6 +119,8 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
     low, high = mapper.scalar_range
     unit = f" {unit}" if (unit := options.pop("unit", "")) else ""
     style |= options
+    if style["vertical"]:
+        _strip(p, style["position_x"] - GAP / p.renderer.GetSize()[0], theme)
     bar = p.add_scalar_bar(title=title, n_labels=0, **style)
     bar.SetTitle("")  # VTK's words would leave the bar what room they do not need, and have a hyphen for a minus sign
     bar.SetBarRatio(1.0)
@@ -136,6 +138,21 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
         _line(p, words, at, MARK, theme, f"{title} {words}", anchor)
     if title:
         _line(p, title, (x, y + tall + 2 * gap[1]), MARK, theme, f"title {title}")
+
+
+def _strip(p: pyvista.Plotter, left: float, theme: Theme) -> None:
+    """Paper from there to the right edge, below the headline: a long base would run behind the numbers of a bar."""
+    import pyvista
+    from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D
+
+    corners = np.array([[left, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0 - TITLE, 0.0], [left, 1.0 - TITLE, 0.0]])
+    place, mapper, actor = vtkCoordinate(), vtkPolyDataMapper2D(), vtkActor2D()
+    place.SetCoordinateSystemToNormalizedViewport()
+    mapper.SetTransformCoordinate(place)
+    mapper.SetInputData(pyvista.PolyData.from_regular_faces(corners, np.array([[0, 1, 2], [0, 2, 3]])))
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*pyvista.Color(theme.paper).float_rgb)
+    p.renderer.AddViewProp(actor)
 
 
 def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT, letters: int = 0) -> None:

@@ -5,13 +5,17 @@ Every corner shows a mix of the two nodes of its meshed part that lie nearest.
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.description.machine import Machine
+from geom.disk_cache import atomic_write, recalled
 from viz.appearance.body import Body
 from viz.appearance.cutting import cut_body
 from viz.appearance.dressed import dressed
@@ -32,9 +36,41 @@ STAY = (0.2, 0.35, 0.5, 0.7)  # shares of a body's triangles that may do
 LOST = 0.04  # of its volume by which a body of fewer triangles may differ: a hundredth of its width
 
 
-def packed_looks(machine: Machine, nodes: SplitMesh, wedge: Wedge = QUARTER) -> dict[str, Any]:
+def packed_looks(
+    machine: Machine, nodes: SplitMesh, wedge: Wedge = QUARTER, cache: Path | None = None
+) -> dict[str, Any]:
     """points (m), their two nodes and the second one's share, triangles; per part how many, and how many of them lie
-    in the cut; frame : lowest and highest corner (m) of what a picture must hold"""
+    in the cut; frame : lowest and highest corner (m) of what a picture must hold
+
+    cache : folder of such shapes by content, which other temperatures leave as they are; None for no cache
+    """
+    if cache is None:
+        return _packed(machine, nodes, wedge)
+    file = cache / f"looks-{_key(machine, nodes, wedge)}.json"
+    cached = recalled(file, lambda path: dict(json.loads(path.read_text(encoding="utf-8"))))
+    if cached is None:
+        cached = _packed(machine, nodes, wedge)
+        with atomic_write(file) as partial:
+            partial.write_text(json.dumps(cached), encoding="utf-8")
+    return cached
+
+
+def _key(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> str:
+    """Of all that decides: the machine, its nodes and parts, the cut, and the code that draws."""
+    content = hashlib.sha256(repr((machine, nodes.parts, wedge)).encode())
+    for array in (nodes.points, nodes.owner):
+        content.update(np.ascontiguousarray(array).tobytes())
+    content.update(drawing_code())
+    return content.hexdigest()[:20]
+
+
+def drawing_code() -> bytes:
+    """What decides how a machine looks: the text of this module and of those that shape it."""
+    here = Path(__file__)
+    return b"".join(file.read_bytes() for file in [here, *sorted(here.parents[1].joinpath("appearance").glob("*.py"))])
+
+
+def _packed(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> dict[str, Any]:
     bodies = dressed(machine)
     outer: list[list[pyvista.PolyData]] = [[] for _ in nodes.parts]
     caps: list[list[pyvista.PolyData]] = [[] for _ in nodes.parts]

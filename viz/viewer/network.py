@@ -41,7 +41,7 @@ def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRu
     at = {name: xyz for name, xyz in places(mesh, nodes).items() if all(name in r.T for r in runs)}
     if not at:
         return {}
-    at = spread_out(at, CLOSEST * float(np.ptp(nodes.points[:, 2])))
+    at = spread_out(at, CLOSEST * nodes.length)
     below = sorted((name for name, xyz in at.items() if xyz[1] < 0), key=lambda name: -at[name][1])
     reach = max((float(xyz[1]) for xyz in at.values()), default=1.0)
     at |= {name: np.array([0.0, -OFF_AXIS * reach * k, at[name][2]]) for k, name in enumerate(below, 1)}

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -68,13 +69,30 @@ def document(
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
     mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None, machine: Machine | None = None,
 ) -> dict[str, Any]:  # fmt: skip
-    """All the page draws.
+    """All the page draws: `field_document`, and with the mesh of the tests' networks `analysis_document`."""
+    fields = field_document(title, nodes, tests, positions, conductivity, revisions, limits, machine)
+    return {**fields, **analysis_document(tests, nodes, mesh)}
+
+
+def analysis_document(tests: Sequence[Recorded], nodes: SplitMesh, mesh: NamedMesh | None) -> dict[str, Any]:
+    """What can follow: residuals between the sensors; heat flows of the network, its nodes placed in the mesh."""
+    runs = [t.network for t in tests if t.network is not None]
+    network = _network(mesh, nodes, runs) if len(runs) == len(tests) else None
+    return {"errors": _errors(tests, nodes), "network": network}
+
+
+def field_document(
+    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None, revisions: Sequence[str],
+    limits: tuple[float, float] | None, machine: Machine | None, cache: Path | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """The machine, its temperatures and readings in every test.
 
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
-    mesh : where the nodes of the tests' networks are;  limits : of the colours (degC), wider where a state is beyond
-    machine : is drawn as it looks, too
+    limits : of the colours (degC), wider where a state is beyond;  machine : is drawn as it looks, too
+    cache : folder of machines as they look
     """
-    every, runs = [part for t in tests for part in t.states], [t.network for t in tests if t.network is not None]
+    every = [part for t in tests for part in t.states]
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
     ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
     low, high = rounded(min(ends), max(ends))
@@ -85,11 +103,17 @@ def document(
         "revisions": list(revisions), "tests": _tests(tests, positions), "marks": marks(low, high),
         "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
         "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
-        "flux_marks": conductivity and _flux(nodes, tests, conductivity), "errors": _errors(tests, nodes),
-        "network": _network(mesh, nodes, runs) if len(runs) == len(tests) else None,
-        "looks": machine and packed_looks(machine, nodes),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
+        "looks": machine and packed_looks(machine, nodes, cache=cache),
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
     }  # fmt: skip
+
+
+def with_limits(content: Mapping[str, Any], limits: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
+    """The same with the largest errors that count as agreement (K): test -> channel -> limit."""
+    return {**content, "tests": [{
+        **test, "sensors": [{**s, "limit": limits[test["test"]].get(s["channel"])} for s in test["sensors"]],
+    } for test in content["tests"]]}  # fmt: skip
 
 
 def render(content: Mapping[str, Any]) -> str:
@@ -165,7 +189,8 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     known = zip(comparison.channels, places, strict=True)
     return {
         "sensors": [
-            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limit_K(c)} for c, xyz in known
+            {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)}
+            for c, xyz in known
         ],
         "measured": _columns([c.y for c in comparison.channels], at),
         "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],

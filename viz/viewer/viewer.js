@@ -272,6 +272,14 @@ class Viewer {
     this.recolour();
     this.move(this.time);
   }
+  flows(network) {  // the network and its panel, as soon as they are known
+    $("networked").parentNode.hidden = !network;
+    if (!network) return;
+    data.network = network;
+    this.network = new Network($("network"), network);
+    $("networked").checked = innerWidth >= WIDE;
+    this.beside($("networked").checked);
+  }
   told(errors) {  // what residuals tell between the sensors
     data.errors = errors; $("layer").options[3].disabled = false;
     this.sure();
@@ -638,9 +646,10 @@ class Viewer {
     });
     return out;
   }
-  labels(drawn, scale) {  // at full size, however coarse GL draws: of the six sensors furthest beyond their uncertainty; none covers a dot or another label
+  labels(drawn, scale) {  // at full size, however coarse GL draws: of the six sensors furthest beyond their uncertainty; none covers a dot, the title or another label
     const c = $("over"), x = c.getContext("2d"), d = 9 * scale, by = scale / drawn, place = (s) => this.pixel(s).map((v) => v * by);
-    const taken = this.sensors.map(place).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
+    const head = $("title"), taken = this.sensors.map(place).map((p) => [p[0] - d, p[1] - d, 2 * d, 2 * d]);
+    taken.push([0, 0, ...[head.offsetWidth, head.offsetHeight].map((v) => v * scale)]);
     c.width = Math.round($("gl").width * by); c.height = Math.round($("gl").height * by);
     x.font = `${13 * scale}px "DejaVu Sans", system-ui, sans-serif`; x.textBaseline = "middle";
     this.divided(x, scale);
@@ -650,7 +659,7 @@ class Viewer {
       const room = c.width - 100 * scale - wide;
       const left = Math.max(0, at[0] < c.width * 0.45 ? at[0] - wide - 26 * scale : Math.min(at[0] + 26 * scale, room));
       let top = at[1] - tall / 2;
-      const over = (y) => taken.some((t) => left < t[0] + t[2] && left + wide > t[0] && y < t[1] + t[3] && y + tall > t[1]);
+      const over = (y) => y < 0 || y + tall > c.height || taken.some((t) => left < t[0] + t[2] && left + wide > t[0] && y < t[1] + t[3] && y + tall > t[1]);
       for (let k = 1; over(top) && k < 30; k++) top = at[1] - tall / 2 + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * tall * 1.1;
       if (over(top)) continue;  // no room: its name is under the pointer
       taken.push([left, top, wide, tall]);
@@ -836,14 +845,11 @@ function wired(v) {
     if (k >= 0 && k !== v.number) { $("test").value = k; v.choose(k); }
     if (said.dark !== undefined) document.documentElement.dataset.theme = said.dark ? "dark" : "light";
     if (said.sensor) v.pin(said.sensor);
+    if (said.rest) opened(said.rest).then(({ errors, network }) => { v.flows(network); if (errors) v.told(errors); });
     again();
   };
-  if (data.network) {
-    v.network = new Network($("network"), data.network);
-    $("networked").onchange = (e) => v.beside(e.target.checked);
-    $("networked").checked = innerWidth >= WIDE;
-    v.beside($("networked").checked);
-  } else $("networked").parentNode.hidden = true;
+  $("networked").onchange = (e) => v.beside(e.target.checked);
+  v.flows(data.network);
   onresize = () => { again(); if (v.network && !$("beside").hidden) v.network.place(); };
   matchMedia("(prefers-color-scheme: dark)").onchange = again;
 }

@@ -1,4 +1,4 @@
-"""The page of a model's machine is made once, beside everything else, for all tabs that wait for it."""
+"""A model's machine is drawn once, beside everything else, for all tabs that wait for it; temperatures come first."""
 
 import asyncio
 import time
@@ -8,53 +8,76 @@ from types import SimpleNamespace
 import pytest
 
 from thermoscope.case_folder.history import History
-from thermoscope.workbench import application
-from thermoscope.workbench.application import Machines
-from thermoscope.workbench.jobs import StoppedError
+from thermoscope.workbench import serve
+from thermoscope.workbench.access_control import AccessControl
+from thermoscope.workbench.jobs import FailedError, Job, StoppedError
+from thermoscope.workbench.machines import Machines, drawing_job
+
+FIRST, REST = {"fields": 1}, {"network": 2}
 
 
 def counted(folder, tell):
-    """Stands for the page of a machine; every call leaves a mark."""
+    """Stands for the drawing of a machine; every call leaves a mark."""
     with Path(folder.log).open("a") as log:
         log.write("x")
     tell("half 1/2")
+    yield FIRST
     time.sleep(folder.seconds)
-    return "page"
+    if folder.fault:
+        raise ValueError(folder.fault)
+    yield REST
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(application, "viewer_page", counted)
-    return SimpleNamespace(history=History(), log=str(tmp_path / "log"), seconds=0.5)
+    monkeypatch.setattr("thermoscope.workbench.steps.machine_documents", counted)
+    return SimpleNamespace(history=History(), log=str(tmp_path / "log"), seconds=0.5, fault="", built="a machine")
 
 
 def test_two_tabs_wait_for_one_drawing(folder):
     async def main():
         machines, heard = Machines(), ([], [])
         first, second = machines.drawing(folder), machines.drawing(folder)
-        pages = await asyncio.gather(first.page(heard[0].append), second.page(heard[1].append))
-        await asyncio.sleep(0)
-        return machines, pages, heard
+        first.hear(heard[0].append)
+        second.hear(heard[1].append)
+        early = await first.parts[0], first.parts[1].done()
+        rest = await second.parts[1]
+        await asyncio.sleep(0.1)
+        return machines, early, rest, heard
 
-    machines, pages, heard = asyncio.run(main())
-    assert pages == ["page", "page"]
+    machines, early, rest, heard = asyncio.run(main())
+    assert early == (FIRST, False)
+    assert rest == REST
     assert Path(folder.log).read_text() == "x"
     assert heard == (["starting", "half 1/2"], ["starting", "half 1/2"])
-    assert machines.find(folder.history) == "page"
+    assert machines.find(folder.history) == {**FIRST, **REST}
     assert machines.drawings == []
+
+
+def test_a_machine_without_its_rest_is_shown_and_drawn_anew_when_asked_again(folder):
+    folder.fault = "no covariance"
+
+    async def main():
+        machines = Machines()
+        drawing = machines.drawing(folder)
+        first = await drawing.parts[0]
+        with pytest.raises(FailedError, match="no covariance"):
+            await drawing.parts[1]
+        await asyncio.sleep(0.1)
+        return first, machines.find(folder.history), machines.drawings
+
+    assert asyncio.run(main()) == (FIRST, None, [])
 
 
 def test_a_tab_that_leaves_stops_nobody_else(folder):
     async def main():
         drawing, left, stays = Machines().drawing(folder), [], []
-        waiting = asyncio.create_task(drawing.page(stays.append))
-        other = asyncio.create_task(drawing.page(left.append))
-        await asyncio.sleep(0)
+        drawing.hear(stays.append)
+        drawing.hear(left.append)
         drawing.leave(left.append)
-        other.cancel()
-        return await waiting, left
+        return await drawing.parts[1], left
 
-    assert asyncio.run(main()) == ("page", ["starting"])
+    assert asyncio.run(main()) == (REST, ["starting"])
 
 
 def test_what_no_tab_wants_is_stopped_and_made_anew_when_asked_again(folder):
@@ -63,14 +86,49 @@ def test_what_no_tab_wants_is_stopped_and_made_anew_when_asked_again(folder):
     async def main():
         machines, heard = Machines(), []
         drawing = machines.drawing(folder)
-        waiting = asyncio.create_task(drawing.page(heard.append))
+        drawing.hear(heard.append)
         while "half 1/2" not in heard:
             await asyncio.sleep(0.01)
         drawing.leave(heard.append)
         again = machines.drawing(folder)
         with pytest.raises(StoppedError):
-            await waiting
+            await drawing.parts[1]
         again.stop()
         return drawing is again, machines.find(folder.history)
 
     assert asyncio.run(main()) == (False, None)
+
+
+def test_a_job_may_begin_before_there_is_a_loop(folder):
+    job = drawing_job(folder)
+    job.start()
+
+    async def main():
+        drawing = Machines().drawing(folder, job)
+        return await drawing.parts[0], await drawing.parts[1]
+
+    assert asyncio.run(main()) == (FIRST, REST)
+    assert Path(folder.log).read_text() == "x"
+
+
+def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
+    """By count: a comparison that fails began with one drawing under way, and ends it."""
+    log, jobs = Path(folder.log), []
+
+    class Counted(Job):
+        def start(self):
+            super().start()
+            jobs.append(self)
+
+    def comparing(folder, tell):
+        while not log.exists():
+            time.sleep(0.01)
+        raise ValueError("no readings")
+
+    folder.seconds = 600.0
+    monkeypatch.setattr("thermoscope.workbench.machines.Job", Counted)
+    monkeypatch.setattr(serve, "bench", comparing)
+    with pytest.raises(ValueError, match="no readings"):
+        serve.application(folder, AccessControl("127.0.0.1", "x" * 16), print)
+    jobs[0]._process.join(30)
+    assert (len(jobs), jobs[0]._process.is_alive(), log.read_text()) == (1, False, "x")

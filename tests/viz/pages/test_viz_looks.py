@@ -1,5 +1,7 @@
 """The machine as the viewer draws it: few triangles, as large as the shapes of pictures, cut where they are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_motor import machine, motor
@@ -9,6 +11,7 @@ from geom import build_mesh, load_machine
 from viz import split
 from viz.appearance.dressed import dressed
 from viz.appearance.portrait import framed
+from viz.rendering.cut import HALF
 from viz.viewer.looks import LOST, SHARES, STEP_M, coarse, packed_looks
 from viz.viewer.packing import unpacked
 from viz.viewer.page import document, render
@@ -97,6 +100,25 @@ EXTENT = """() => {  // shares of the picture that the machine's corners reach o
   }
   return [0, 1].map((k) => Math.max(...at.map((a) => a[k])) - Math.min(...at.map((a) => a[k])));
 }"""
+
+
+def test_the_same_machine_is_shaped_once(tmp_path, monkeypatch):
+    """Kept by all that decides: temperatures do not; another section, place, cut or way to draw does."""
+    one, nodes, shaped = machine(), split(motor(24)), []
+    monkeypatch.setattr("viz.viewer.looks.dressed", lambda of: shaped.append(of) or dressed(of))
+    first, again = (packed_looks(one, nodes, cache=tmp_path) for _ in range(2))
+    assert (again, len(shaped)) == (first, 1)
+    assert first == packed_looks(one, nodes)
+    shaped.clear()
+    packed_looks(replace(one, sections={**one.sections, "ratings": {}}), nodes, cache=tmp_path)
+    packed_looks(one, replace(nodes, points=nodes.points * (1 + 1e-9)), cache=tmp_path)
+    packed_looks(one, nodes, HALF, cache=tmp_path)
+    monkeypatch.setattr("viz.viewer.looks.drawing_code", lambda: b"another way to draw")
+    packed_looks(one, nodes, cache=tmp_path)
+    assert len(shaped) == 4
+    for file in tmp_path.glob("looks-*.json"):
+        file.write_text("{")
+    assert packed_looks(one, nodes, cache=tmp_path) == first  # what is damaged is made again
 
 
 def test_a_computer_that_cannot_draw_makes_the_page_all_the_same(monkeypatch):

@@ -145,6 +145,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     if folder.built is None:
         return {}
     from viz import cutaway, pair, require_gl, sensors, split
+    from viz.data import LATE
 
     try:
         require_gl()
@@ -157,7 +158,7 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     seen = sensors(comparison_of(folder, test), folder.positions)
     title = f"{end_of(test)}: temperature of the model"
     limits = temperature_range(folder, nodes)
-    cutaway(nodes, now, sensors=seen, title=title, limits=limits, png=file)
+    cutaway(nodes, now, sensors=seen, title=title, limits=limits, note=LATE, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
@@ -214,12 +215,13 @@ def assumptions(folder: Folder) -> list[str]:
     kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
     roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
     used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
-    sigma = sorted({c.sigma_K for t in case.tests for c in t.channels})
+    sigma = sorted({f"{c.sigma_K:g}" for t in case.tests for c in t.channels}, key=float)
+    spread = " to ".join(sigma[:: max(1, len(sigma) - 1)])
     return [
         f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
         f"Tests by role: {used}.",
         *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
-        f"Sensors are taken to be right within {sigma[0]:g} to {sigma[-1]:g} K (one standard deviation).",
+        f"Sensors are taken to be right within {spread} K (one standard deviation).",
         *folder.notes,
     ]
 

@@ -120,10 +120,11 @@ class Subject:
 
 def _field(s: Subject, png: Path) -> None:
     from viz import cutaway, sensors
+    from viz.data import LATE
 
     seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.when}: temperature of the model"
-    cutaway(s.nodes, s.field(), sensors=seen, title=title, limits=s.limits, png=png).close()
+    cutaway(s.nodes, s.field(), sensors=seen, title=title, limits=s.limits, note=LATE, png=png).close()
 
 
 def _machine(s: Subject, png: Path) -> None:
@@ -163,11 +164,12 @@ def _misses(s: Subject, png: Path) -> None:
 def _uncertainty(s: Subject, png: Path) -> None:
     from thermoscope.bands import field_half95
     from viz import sensors, uncertainty
+    from viz.data import LATE
 
     half95 = field_half95(s.folder, s.test, s.nodes.parts, s.tell)
     seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
-    title = f"{s.when}: 95 % band of the model; dots: sensors, measured minus model"
-    uncertainty(s.nodes, half95, sensors=seen, title=title, png=png).close()
+    title = f"{s.when}: 95 % band of the model"
+    uncertainty(s.nodes, half95, sensors=seen, title=title, note=LATE, png=png).close()
 
 
 def _bands(s: Subject, png: Path) -> None:

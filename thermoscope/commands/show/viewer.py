@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
+from thermoscope.caches import cache_folder
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
@@ -25,12 +26,8 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
-from validation.case import Case, Test
+from validation.case import Test
 from validation.threads import side_by_side
-
-if TYPE_CHECKING:
-    from viz.rendering.nodes import SplitMesh
-    from viz.viewer.page import Recorded
 
 MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while the page is made
 FRAMES = 61  # instants of a test: between them the page draws straight lines
@@ -59,9 +56,19 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
 
 def viewer_page(folder: Folder, tell: Progress) -> str:
     """The page of an open case that has a machine: all its tests."""
+    from viz.viewer.page import render
+
+    return render({key: value for part in viewer_documents(folder, tell) for key, value in part.items()})
+
+
+def viewer_documents(folder: Folder, tell: Progress, agreement: bool = True) -> Iterator[dict[str, Any]]:
+    """What the page draws: first the machine, temperatures and readings, then the rest, which takes longer.
+
+    agreement : with the largest errors that count as agreement, for which the model runs many times more
+    """
     from viz import split
     from viz.viewer.error_map import ErrorMap
-    from viz.viewer.page import document, render
+    from viz.viewer.page import Earlier, Recorded, analysis_document, field_document
 
     if folder.built is None:
         right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
@@ -70,7 +77,13 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     others = [at_revision(folder, r) for r in revisions(folder)[2:]]
 
     def played(test: Test) -> Recorded:
-        run = _recorded(folder, test, nodes, earlier, others)
+        times, now = fields(folder.case, test, nodes, FRAMES)
+        before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
+        rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
+        return Recorded(comparison_of(folder, test, None if agreement else {}), times, now, before, rest)
+
+    def analysis(run: Recorded) -> Recorded:
+        test = run.comparison.test
         channels, gain = error_gain(folder, test, nodes)
         between = ErrorMap(tuple(c.name for c in channels), gain.mean, gain.explained)
         return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
@@ -80,22 +93,16 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
     tests = side_by_side(played, by_interest(folder))
     conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
-    return render(document(
-        folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], folder.built.mesh,
-        limits, folder.built.machine,
-    ))  # fmt: skip
+    tell("drawing the machine")
+    yield field_document(
+        folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], limits, folder.built.machine,
+        cache_folder(),
+    )  # fmt: skip
+    tell("residuals between the sensors, and heat flows")
+    yield analysis_document(side_by_side(analysis, tests), nodes, folder.built.mesh)
 
 
 def revisions(folder: Folder) -> list[Revision]:
     """The last one first, then the one before it, the start, and the others with the newest first, MOST in all."""
     known = [Revision(0, "calibrate"), *folder.history.revisions][::-1]
     return [*known[:2], *known[2:][-1:], *known[2:-1]][:MOST] if len(known) > 1 else []
-
-
-def _recorded(folder: Folder, test: Test, nodes: SplitMesh, earlier: Case | None, others: Sequence[Case]) -> Recorded:
-    from viz.viewer.page import Earlier, Recorded
-
-    times, now = fields(folder.case, test, nodes, FRAMES)
-    before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
-    rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
-    return Recorded(comparison_of(folder, test), times, now, before, rest)

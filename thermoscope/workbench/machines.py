@@ -1,0 +1,106 @@
+"""The machines that tabs show: each is drawn once, in a process of its own, for every tab that waits for it."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, field
+from typing import Any
+
+from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.history import History
+from thermoscope.console.terminal import Progress
+from thermoscope.workbench import steps
+from thermoscope.workbench.jobs import Job, StoppedError
+
+MOST_DOCUMENTS = 8  # of machines, about 1 MB each
+PARTS = 2  # of a machine: its temperatures, then what takes longer
+
+Document = dict[str, Any]
+
+
+def drawing_job(folder: Folder) -> Job:
+    """What draws the machine of a model."""
+    return Job(steps.machine_documents, folder)
+
+
+class Drawing:
+    """A model's machine while it is drawn.  parts : what there is of it so far, FailedError or StoppedError"""
+
+    def __init__(self, folder: Folder, job: Job | None = None) -> None:
+        """job : one that was started already"""
+        loop = asyncio.get_running_loop()
+        self.history, self.stopped = folder.history, False
+        self.parts: list[asyncio.Future[Document]] = [loop.create_future() for _ in range(PARTS)]
+        self._message, self._listeners = "starting", list[Progress]()
+        self._job = job or drawing_job(folder)
+        self.task = loop.create_task(self._job.run(self._tell, self._take))
+        self.task.add_done_callback(self._end)
+
+    def hear(self, tell: Progress) -> None:
+        """`tell` hears how far it is, until it leaves."""
+        self._listeners.append(tell)
+        tell(self._message)
+
+    def leave(self, tell: Progress) -> None:
+        """A tab wants it no more; nobody draws what no tab wants."""
+        if tell in self._listeners:
+            self._listeners.remove(tell)
+            if not self._listeners:
+                self.stop()
+
+    def stop(self) -> None:
+        """End it, whoever waits."""
+        self.stopped = True
+        self._job.stop()
+
+    def document(self) -> Document | None:
+        """All of it, once it is there."""
+        whole = all(part.done() and not part.exception() for part in self.parts)
+        return {k: v for part in self.parts for k, v in part.result().items()} if whole else None
+
+    def _tell(self, message: str) -> None:
+        self._message = message
+        for tell in self._listeners:
+            tell(message)
+
+    def _take(self, part: Document) -> None:
+        next(future for future in self.parts if not future.done()).set_result(part)
+
+    def _end(self, task: asyncio.Task[None]) -> None:
+        fault = StoppedError() if task.cancelled() else task.exception() or StoppedError()
+        for part in self.parts:
+            if not part.done():
+                part.set_exception(fault)
+                part.exception()  # asked for: a part that no tab waits for is no error
+
+
+@dataclass
+class Machines:
+    """The documents of the last MOST_DOCUMENTS machines, and those that are being drawn."""
+
+    documents: list[tuple[History, Document]] = field(default_factory=list)
+    drawings: list[Drawing] = field(default_factory=list)
+
+    def find(self, history: History) -> Document | None:
+        return next((document for model, document in self.documents if model == history), None)
+
+    def drawing(self, folder: Folder, job: Job | None = None) -> Drawing:
+        """The one under way for this model, or a new one; `job` where one was started already."""
+        for drawing in self.drawings:
+            if drawing.history == folder.history and not drawing.stopped:
+                return drawing
+        drawing = Drawing(folder, job)
+        self.drawings.append(drawing)
+        drawing.task.add_done_callback(lambda task: self._end(drawing))
+        return drawing
+
+    def stop(self) -> None:
+        """End what is under way."""
+        for drawing in self.drawings:
+            drawing.stop()
+
+    def _end(self, drawing: Drawing) -> None:
+        self.drawings.remove(drawing)
+        document = drawing.document()
+        if document is not None:
+            self.documents = [*self.documents, (drawing.history, document)][-MOST_DOCUMENTS:]
