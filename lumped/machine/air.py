@@ -13,6 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from geom.constants import M3_H
 from geom.description.geometry import Duct, Features
 from geom.description.machine import Machine
 from lumped.circuits.hydraulics import parallel_shares
@@ -38,7 +39,7 @@ def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
     if not ducts:
         return {gap: 1.0}
     beside = 1.0 - fan.gap_share
-    split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h / 3600.0, air(fan.air_C))
+    split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h * M3_H, air(fan.air_C))
     shares = {gap: fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
     return {name: share for name, share in shares.items() if share > 0.0}
 
@@ -67,7 +68,7 @@ def channel_film(duct: Duct, share: float, usual: float) -> Law:
     """
 
     def film(flow: float, T: float) -> float:
-        return duct_film(share * flow / 3600 / duct.section, duct.diameter, duct.length, air(T))[0]
+        return duct_film(share * flow * M3_H / duct.section, duct.diameter, duct.length, air(T))[0]
 
     return film_over("fan_flow_m3h", np.linspace(0.0, 600.0, 61).tolist(), film, usual, DUCT_C)
 
@@ -82,7 +83,7 @@ def fan_streams(network: Network, features: Features, shares: Mapping[str, float
         right: dict(shares),
     }
     way = "a flow from left to right: what comes in at the right is not known"
-    law = OneWay(InputPower(AIR_HEAT / 3600.0, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", way, usual)
+    law = OneWay(InputPower(AIR_HEAT * M3_H, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", way, usual)
     return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
 
 

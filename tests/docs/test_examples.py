@@ -40,6 +40,11 @@ REFERENCE = {
     "thermal_wave": 0.1,  # K of 30: what is left of the start, and the first cell, a tenth of d, by (1/10)^2 / 12 of 30
     "fan_for_a_while": 10.0,  # s: two samples
     "superposition": 0.01,  # K of 57: steps of the integrator
+    "field_of_a_ring": 0.1,  # K of 110: 144 chords for a circle and twelve linear cells across
+    "gap_laws": 1e-9,  # W/m2/K: conduction, exactly
+    "rotor_friction": 1e-6,  # K: linear
+    "pressed_and_grey": 1e-6,  # K, W/m2, 1: closed forms
+    "duct_shapes": 5e-3,  # of Nu: the polynomial of the table, printed to four digits
 }
 TESTED_ELSEWHERE = {"hust", "tclab"}
 

@@ -1,6 +1,7 @@
 """Folders are short enough to be read at a glance, no modules import each other in a circle, and the pages say so."""
 
 import ast
+import importlib
 import re
 from graphlib import CycleError, TopologicalSorter
 
@@ -147,6 +148,13 @@ def circle(graph):
 @pytest.mark.parametrize("text", ["import b", "from b import x", "def f():\n    from b import x"])
 def test_the_check_sees_a_circle(text):
     assert circle({"a": set(imports(ast.parse(text), {"a", "b"})), "b": {"a"}})
+
+
+@pytest.mark.parametrize("room", ["geom", "fem", "lumped", "validation"])
+def test_every_public_name_is_where_its_room_says(room):
+    """They are loaded by words that no type checker reads; viz and thermoscope have tests of their own."""
+    module = importlib.import_module(room)
+    assert [name for name in module.__all__ if getattr(module, name) is None] == []
 
 
 def test_no_script_hides_a_room(root):

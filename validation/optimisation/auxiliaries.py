@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from geom.constants import L_MIN
+from geom.constants import L_MIN, M3_H
 from geom.description.machine import Machine
 from lumped.circuits.hydraulics import pressure_drop, pumping_power
 from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
@@ -36,7 +36,7 @@ def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
     out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] * L_MIN)
     ducts = machine.features.ducts
     if around.fan is not None and ducts and inputs[FAN] > 0.0:
-        flow, (way, duct) = inputs[FAN] / 3600.0, next(iter(ducts.items()))  # all ways drop the same pressure
+        flow, (way, duct) = inputs[FAN] * M3_H, next(iter(ducts.items()))  # all ways drop the same pressure
         drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
         out += pumping_power(drop, flow, EFFICIENCY)
     return out

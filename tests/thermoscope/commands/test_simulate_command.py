@@ -98,6 +98,7 @@ def cycle_file(folder, text, table=""):
 def closes(run):
     assert run["energy_balance"] < 1e-5
     assert run["loss_mismatch"] < 1e-3
+    assert run["losses"]
     for loss in run["losses"]:
         assert loss["injected_J"] == pytest.approx(loss["declared_J"], rel=5e-3)
 

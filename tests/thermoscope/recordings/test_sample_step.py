@@ -34,7 +34,9 @@ def test_the_same_errors_at_all_steps(switched):
     """The error over all sensors within 1 %: the sample steps themselves leave a hundredth of a kelvin."""
     rms = [compare(folder.case).rmse_K for folder in switched.values()]
     assert rms == pytest.approx([rms[0]] * 3, rel=0.01)
-    assert all(s.error_K < 0.05 for folder in switched.values() for s in folder.steps.values())
+    steps = [list(folder.steps.values()) for folder in switched.values()]
+    assert min(map(len, steps)) > 0
+    assert max(s.error_K for own in steps for s in own) < 0.05
 
 
 def test_the_same_diagnosis_at_all_steps(switched):

@@ -9,6 +9,7 @@ from playground import Truth, wind
 from scipy.integrate import quad
 from scipy.stats import norm
 
+from geom.errors import InputError
 from validation.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
 from validation.effects import effect
 from validation.inference.decision import SURE, decide
@@ -155,7 +156,7 @@ def test_doubt_can_only_be_widened():
     assert set(USUAL) == set(TABLE)
     assert all(line.reason and line.sd > 0 for line in TABLE.values())
     for lines in ({"bridge": 0.01}, {"phlogiston": 1.0}):
-        with pytest.raises(Exception, match=r"bridge|phlogiston"):
+        with pytest.raises(InputError, match=r"bridge|phlogiston"):
             widened(lines)
 
 

@@ -64,6 +64,7 @@ def test_a_further_sensor_never_takes_separation_away():
     more = [gram for _, gram in with_sensors(evidence, places, found.group)]
     with_one = [separation(evidence, found, gram) for gram in more]
     assert len(with_one) == len(places)
+    assert all(with_one)
     assert all(gap >= now * (1 - 1e-9) for gaps in with_one for gap in gaps.values())
 
 
