@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench import steps
 from thermoscope.workbench.jobs import Job, StoppedError
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
@@ -18,21 +18,15 @@ PARTS = 2  # of a machine: its temperatures, then what takes longer
 Document = dict[str, Any]
 
 
-def drawing_job(folder: Folder) -> Job:
-    """What draws the machine of a model."""
-    return Job(steps.machine_documents, folder)
-
-
 class Drawing:
     """A model's machine while it is drawn.  parts : what there is of it so far, FailedError or StoppedError"""
 
-    def __init__(self, folder: Folder, job: Job | None = None) -> None:
-        """job : one that was started already"""
+    def __init__(self, history: History, job: Job) -> None:
         loop = asyncio.get_running_loop()
-        self.history, self.stopped = folder.history, False
+        self.history, self.stopped = history, False
         self.parts: list[asyncio.Future[Document]] = [loop.create_future() for _ in range(PARTS)]
         self._message, self._listeners = "starting", list[Progress]()
-        self._job = job or drawing_job(folder)
+        self._job = job
         self.task = loop.create_task(self._job.run(self._tell, self._take))
         self.task.add_done_callback(self._end)
 
@@ -84,12 +78,12 @@ class Machines:
     def find(self, history: History) -> Document | None:
         return next((document for model, document in self.documents if model == history), None)
 
-    def drawing(self, folder: Folder, job: Job | None = None) -> Drawing:
-        """The one under way for this model, or a new one; `job` where one was started already."""
+    def drawing(self, folder: Folder, job_of: Callable[[Folder], Job]) -> Drawing:
+        """The one under way for this model, or a new one."""
         for drawing in self.drawings:
             if drawing.history == folder.history and not drawing.stopped:
                 return drawing
-        drawing = Drawing(folder, job)
+        drawing = Drawing(folder.history, job_of(folder))
         self.drawings.append(drawing)
         drawing.task.add_done_callback(lambda task: self._end(drawing))
         return drawing

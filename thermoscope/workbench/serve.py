@@ -17,7 +17,7 @@ from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.application import bench
 from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import prepare
-from thermoscope.workbench.machines import drawing_job
+from thermoscope.workbench.steps import drawing_job
 from thermoscope.workbench.tabs import Tabs
 
 SWEEP_S = 30.0  # between looks for idle tabs
@@ -35,14 +35,13 @@ def application(folder: Folder, access: AccessControl, tell: Progress, largest_d
     """The pages of a case, for those who have access.  largest_drop : of files dropped on a page (bytes)"""
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
     prepare()
-    job = drawing_job(folder) if folder.built is not None else None
-    if job is not None:
+    job = drawing_job(folder)
+    if folder.built is not None:
         job.start()  # beside the comparison, so that the machine is there as soon as the page
     try:
         opened = bench(folder, tell)
     except BaseException:
-        if job is not None:
-            job.stop()
+        job.stop()
         raise
     tabs = Tabs(opened, largest_drop)
     app = web.Application(middlewares=[access.middleware])
@@ -58,8 +57,8 @@ def application(folder: Folder, access: AccessControl, tell: Progress, largest_d
                 await tabs.sweep()
 
         task = asyncio.create_task(sweep())
-        if job is not None:
-            opened.machines.drawing(folder, job)
+        if folder.built is not None:
+            opened.machines.drawing(folder, lambda _: job)
         yield
         task.cancel()
         await tabs.close()

@@ -164,7 +164,7 @@ class Session:
         if document is not None:
             self._draw(document)
             return
-        mine = self._drawing = self.bench.machines.drawing(self.folder)
+        mine = self._drawing = self.bench.machines.drawing(self.folder, steps.drawing_job)
         mine.hear(self._preparing)
         try:
             for part, show in zip(mine.parts, (self._draw, self._complete), strict=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,12 +11,16 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.appearance import Appearance, appearance_of
+from thermoscope.workbench.jobs import Job
 from thermoscope.workbench.revisions import at
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
     from thermoscope.case_folder.settings import Settings
     from thermoscope.workbench.dropped import Dropped
+
+
+NICENESS = 5  # how much a process of ours gives way to the browser, which draws what it has meanwhile
 
 
 def appearance(folder: Folder, tell: Progress) -> Appearance:
@@ -28,7 +33,16 @@ def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]
     """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
     from thermoscope.commands.show.viewer import viewer_documents
 
-    return viewer_documents(folder, tell, agreement=False)
+    parts = viewer_documents(folder, tell, agreement=False)
+    yield next(parts)
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    yield from parts
+
+
+def drawing_job(folder: Folder) -> Job:
+    """What draws the machine of a model, in a process of its own."""
+    return Job(machine_documents, folder)
 
 
 def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:

@@ -11,7 +11,8 @@ from thermoscope.case_folder.history import History
 from thermoscope.workbench import serve
 from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
-from thermoscope.workbench.machines import Machines, drawing_job
+from thermoscope.workbench.machines import Machines
+from thermoscope.workbench.steps import drawing_job
 
 FIRST, REST = {"fields": 1}, {"network": 2}
 
@@ -37,7 +38,7 @@ def folder(tmp_path, monkeypatch):
 def test_two_tabs_wait_for_one_drawing(folder):
     async def main():
         machines, heard = Machines(), ([], [])
-        first, second = machines.drawing(folder), machines.drawing(folder)
+        first, second = machines.drawing(folder, drawing_job), machines.drawing(folder, drawing_job)
         first.hear(heard[0].append)
         second.hear(heard[1].append)
         early = await first.parts[0], first.parts[1].done()
@@ -59,7 +60,7 @@ def test_a_machine_without_its_rest_is_shown_and_drawn_anew_when_asked_again(fol
 
     async def main():
         machines = Machines()
-        drawing = machines.drawing(folder)
+        drawing = machines.drawing(folder, drawing_job)
         first = await drawing.parts[0]
         with pytest.raises(FailedError, match="no covariance"):
             await drawing.parts[1]
@@ -71,7 +72,7 @@ def test_a_machine_without_its_rest_is_shown_and_drawn_anew_when_asked_again(fol
 
 def test_a_tab_that_leaves_stops_nobody_else(folder):
     async def main():
-        drawing, left, stays = Machines().drawing(folder), [], []
+        drawing, left, stays = Machines().drawing(folder, drawing_job), [], []
         drawing.hear(stays.append)
         drawing.hear(left.append)
         drawing.leave(left.append)
@@ -85,12 +86,12 @@ def test_what_no_tab_wants_is_stopped_and_made_anew_when_asked_again(folder):
 
     async def main():
         machines, heard = Machines(), []
-        drawing = machines.drawing(folder)
+        drawing = machines.drawing(folder, drawing_job)
         drawing.hear(heard.append)
         while "half 1/2" not in heard:
             await asyncio.sleep(0.01)
         drawing.leave(heard.append)
-        again = machines.drawing(folder)
+        again = machines.drawing(folder, drawing_job)
         with pytest.raises(StoppedError):
             await drawing.parts[1]
         again.stop()
@@ -104,7 +105,7 @@ def test_a_job_may_begin_before_there_is_a_loop(folder):
     job.start()
 
     async def main():
-        drawing = Machines().drawing(folder, job)
+        drawing = Machines().drawing(folder, lambda _: job)
         return await drawing.parts[0], await drawing.parts[1]
 
     assert asyncio.run(main()) == (FIRST, REST)
@@ -126,7 +127,7 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
         raise ValueError("no readings")
 
     folder.seconds = 600.0
-    monkeypatch.setattr("thermoscope.workbench.machines.Job", Counted)
+    monkeypatch.setattr("thermoscope.workbench.steps.Job", Counted)
     monkeypatch.setattr(serve, "bench", comparing)
     with pytest.raises(ValueError, match="no readings"):
         serve.application(folder, AccessControl("127.0.0.1", "x" * 16), print)

@@ -513,6 +513,30 @@ def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(tm
     assert said == []
 
 
+LABELS = """(tilt) => {  // boxes of the labels as they are drawn, in pixels of the page
+  const c = $("over").getContext("2d"), boxes = [], scale = $("over").width / $("over").clientWidth;
+  const fill = CanvasRenderingContext2D.prototype.fillRect;
+  c.fillRect = function (...box) { boxes.push(box.map((v) => v / scale)); fill.apply(this, box); };
+  viewer.tilt = tilt; viewer.zoom = 1.5; viewer.draw(4);
+  delete c.fillRect;
+  return boxes;
+}"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+def test_labels_stand_inside_the_picture_and_clear_of_the_title(tmp_path):
+    """In a low picture, turned so that sensors come near its upper edge."""
+    write_viewer(tmp_path / "v.html", "a motor with a name " * 3, NODES, [recorded()], PLACE)
+    with drawn_by_a_browser(tmp_path / "v.html", 1000, 300) as (page, said):
+        title = page.evaluate("[$('title').offsetWidth, $('title').offsetHeight]")
+        boxes = [box for tilt in np.linspace(-1.4, 1.4, 15) for box in page.evaluate(LABELS, float(tilt))]
+        high = page.evaluate("$('gl').clientHeight")
+    assert len(boxes) > 15
+    assert [box for box in boxes if box[1] < 0 or box[1] + box[3] > high] == []
+    assert [box for box in boxes if box[0] < title[0] and box[1] < title[1]] == []
+    assert said == []
+
+
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node")
 @pytest.mark.parametrize(("left", "right"), [(1, 0), (2, 1), (0, 2)])
 def test_any_two_revisions_stand_left_and_right_of_the_line(tmp_path, left, right):
