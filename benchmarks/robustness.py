@@ -40,7 +40,7 @@ from small_case import small_case  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
-from thermoscope.workbench.application import bench  # noqa: E402
+from thermoscope.workbench.machines import bench  # noqa: E402
 from thermoscope.workbench.tabs import Tabs  # noqa: E402
 
 COMMANDS = {

@@ -8,7 +8,7 @@ from thermoscope.case_folder.history import History
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import tables as rows
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import Bench
+from thermoscope.workbench.machines import Bench
 from viz.colours import DARK, LIGHT, Theme
 from viz.figures.candidates import matrix
 from viz.live.candidates import confusion

@@ -1,4 +1,7 @@
-"""The machines that tabs show: each is drawn once, in a process of its own, for every tab that waits for it."""
+"""What all tabs share: the open case, its first comparison, and the machines that they show.
+
+Each machine is drawn once, in a process of its own, for every tab that waits for it.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,12 @@ from typing import Any
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
 from thermoscope.console.terminal import Progress
+from thermoscope.workbench.appearance import Appearance, appearance_of
 from thermoscope.workbench.jobs import Job, StoppedError
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
 PARTS = 2  # of a machine: its temperatures, then what takes longer
+NO_MACHINE = "This case has a network declared by hand, so there is no machine to show."
 
 Document = dict[str, Any]
 
@@ -98,3 +103,23 @@ class Machines:
         document = drawing.document()
         if document is not None:
             self.documents = [*self.documents, (drawing.history, document)][-MOST_DOCUMENTS:]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """folder : the case as opened;  first : its model when it was opened;  machines : of the models that tabs showed"""
+
+    folder: Folder
+    first: Appearance
+    machines: Machines = field(default_factory=Machines)
+
+    @property
+    def why_flat(self) -> str:
+        """Why there is no machine to show; empty where there is one."""
+        return NO_MACHINE if self.folder.built is None else ""
+
+
+def bench(folder: Folder, tell: Progress) -> Bench:
+    """Run the model once on every test."""
+    tell("running the model on every test")
+    return Bench(folder, appearance_of(folder))

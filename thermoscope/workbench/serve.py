@@ -14,9 +14,9 @@ from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.access_control import AccessControl
-from thermoscope.workbench.application import bench
 from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import prepare
+from thermoscope.workbench.machines import bench
 from thermoscope.workbench.steps import drawing_job
 from thermoscope.workbench.tabs import Tabs
 

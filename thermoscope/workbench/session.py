@@ -17,11 +17,10 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, save_diagno
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import steps
 from thermoscope.workbench.appearance import Appearance
-from thermoscope.workbench.application import Bench
 from thermoscope.workbench.display import Display
 from thermoscope.workbench.dropped import Dropped
 from thermoscope.workbench.jobs import FailedError, Job, StoppedError
-from thermoscope.workbench.machines import Drawing
+from thermoscope.workbench.machines import Bench, Drawing
 
 REMEMBERED = 8  # revisions whose comparison is at hand
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}

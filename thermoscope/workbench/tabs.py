@@ -15,8 +15,8 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from thermoscope.workbench.access_control import served
-from thermoscope.workbench.application import Bench
 from thermoscope.workbench.dropped import stored
+from thermoscope.workbench.machines import Bench
 from thermoscope.workbench.policy import policy, report_policy, viewer_policy
 from thermoscope.workbench.session import Session
 
