@@ -12,6 +12,7 @@ from thermoscope import pipeline
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import by_interest, fields, temperature_range
 from thermoscope.commands.show import pages, viewer
+from thermoscope.workbench import steps
 from viz.rendering.scale import rounded
 
 pytestmark = pytest.mark.heavy
@@ -42,7 +43,9 @@ def test_one_range_for_all(folder, tmp_path, monkeypatch):
     for module in (pages, viewer):  # one test: what costs time is done for each
         monkeypatch.setattr(module, "by_interest", lambda folder: by_interest(folder)[:1])
     pages.rendered(folder, tmp_path, silent)
+    bench = next(steps.machine_documents(folder, silent))
     page = viewer.viewer_page(folder, silent)
     data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
     assert np.array(given) == pytest.approx(np.array([expected] * 2))
     assert (data["marks"][0], data["marks"][-1]) == rounded(*expected)
+    assert bench["marks"] == data["marks"]
