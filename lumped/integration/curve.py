@@ -18,7 +18,7 @@ SMALL = 1e-2  # of the largest factor of a record: less than that counts as that
 FLAT, FAR = 1e-4, 0.02  # a factor that bends less, over inputs that move less, is a parabola without another look
 FINEST = 1e-3  # of an interval
 QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-ROUNDED = 1e-12  # of the largest factor: a smaller bulge comes from rounding
+ROUNDING = 1e-12  # of the largest: what is smaller comes from rounding, not from the record
 
 
 class Curve(NamedTuple):
@@ -66,7 +66,7 @@ def moving(inputs: Iterable[Array], nt: int) -> Moves:
     """From inputs (nt,) that are straight lines between the samples."""
     at_all, far, ends = np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), []
     for x in inputs:
-        moved(x, FAR, at_all, far)
+        moved(np.array(x), FAR, at_all, far)  # a copy: another layout, or one that is read-only, compiles anew
         ends += [float(x.argmin()), float(x.argmax())]
     return Moves(np.flatnonzero(at_all), far, np.unique(ends))
 
@@ -114,7 +114,7 @@ def curve(
     if every.ndim == 0:
         return straight(every)
     nt = moves.far.size + 1
-    bulge, looked, limits = np.zeros(nt), np.empty(nt, np.int64), np.array([ROUNDED, FLAT, SMALL, 0.0])
+    bulge, looked, limits = np.zeros(nt), np.empty(nt, np.int64), np.array([ROUNDING, FLAT, SMALL, 0.0])
     count = halfway(every, moves.left, moves.far, limits, bulge, looked)
     if count < 0:
         return straight(every[0])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.integration.assembly import Pattern
-from lumped.integration.curve import NONE, SMALL, Curve, between, straight
+from lumped.integration.curve import NONE, ROUNDING, SMALL, Curve, between, straight
 from lumped.integration.signals import Signals
 from lumped.model.network import Network
 from lumped.numerics.knots import needed, placed
@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 PARABOLA, PARABOLA_K = 2e-4, 1e-3  # of the largest of an interval, K: a few hundredths of what a step may be wrong by
-ROUNDING = 1e-12  # of the largest: what is smaller comes from rounding, not from the record
 
 
 def checked_time(time: Array) -> Array:
