@@ -1,6 +1,7 @@
 # Each target sets up what it needs by itself; none needs another to have been run.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+unexport PYTHONDONTWRITEBYTECODE  # without bytecode each of some hundred started programs compiles the product again
 BIN := .venv/bin
 
 .PHONY: demo test quick docs benchmark designs setup check lock clean
