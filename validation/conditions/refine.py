@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import floor, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,11 +125,15 @@ def log_bayes(u: Array, V: Array, evidence: Evidence, base: Effect) -> Array:
 
 
 def around(test: Test, at: float, reach_s: float) -> Array:
-    """Samples near an instant, inside the record."""
+    """Instants near an instant, whole steps from the record's begin on and inside of it.
+
+    To a hundredth of a step at least: names of events hold them, and no reading knows more.
+    """
     t, step = test.time, float(np.median(np.diff(test.time)))
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
     count = int(min(GRID_POINTS, round((high - low) / step) + 1))
-    return np.unique(t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step))
+    whole = t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step)
+    return np.unique(np.clip(np.round(whole, 2 - floor(log10(step))), t[0], t[-1]))
 
 
 def between(at: Array, weight: Array) -> Span:

@@ -14,7 +14,7 @@ from validation import diagnose
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import predict
 from validation.conditions.hat_functions import Path, hat_scores
-from validation.conditions.refine import repeats
+from validation.conditions.refine import around, repeats
 from validation.conditions.windows import best_stretch, joined, pulses
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
@@ -53,6 +53,20 @@ def test_a_share_of_each_sample_adds_up_to_the_span():
 def test_an_event_that_cannot_be_is_one_message(spans, says):
     with pytest.raises(InputError, match=says):
         checked(Event.of({"day": spans}), "day", 0.0, 1000.0, "tests/day.events.toml")
+
+
+def test_instants_of_an_uneven_record_are_short_numbers_inside_of_it():
+    """A logger's clock that jitters: no instant beyond the last sample, where adding the event would be refused."""
+    time = 3.0 + np.cumsum(np.random.default_rng(0).uniform(13.0, 17.0, 40))
+    test = replace(measured("day"), time=time)
+    for near in (time[0], 300.0, time[-1]):
+        at = around(test, near, 150.0)
+        assert at.size >= 8
+        assert time[0] <= at[0]
+        assert at[-1] <= time[-1]
+        inside = at[(at > time[0]) & (at < time[-1])]
+        np.testing.assert_array_equal(inside, np.round(inside, 1))  # steps of 15 s
+        assert checked(Event.of({"day": [(at[0], at[-1])]}), "day", time[0], time[-1], "a test") is None
 
 
 def test_a_gate_is_open_in_its_own_test_and_time_alone():
