@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 Places = Sequence[Mapping[str, Any]]
 Steps = Mapping[str, Mapping[str, Any]]
+LEAST_K = 0.001  # below it a number only says that arithmetic is exact; no thermometer shows as much
 KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
 HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
 
@@ -46,7 +47,10 @@ def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
     if not rows:
         return f"Readings and model are {sampling}." if sampling else ""
     most = max(rows, key=_total)
-    good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
+    if _total(most) < LEAST_K:
+        good = f"The model's own numbers are good to less than {LEAST_K:g} K"
+    else:
+        good = f"The model's own numbers are good to {_total(most):.2g} K (worst at {most['place']})"
     return f"{good}, {sampling}." if sampling else f"{good}."
 
 
