@@ -9,8 +9,8 @@ number of its own, and in a fast stream that of a tube within a tenth.
 # %%
 import numpy as np
 
-from lumped.correlations.ducts import duct_film, gnielinski_annulus, hausen_laminar, shah_london
-from lumped.transfer.properties import air
+from thermoscope.lumped.correlations.ducts import duct_film, gnielinski_annulus, hausen_laminar, shah_london
+from thermoscope.lumped.transfer.properties import air
 
 AIR, INNER, OUTER, LENGTH = air(40.0), 0.1, 0.12, 0.5  # m
 WIDE = OUTER - INNER

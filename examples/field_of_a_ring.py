@@ -8,8 +8,8 @@ Uniform heat, an adiabatic bore, a film outside. T(r) follows by integrating -k 
 # %%
 import numpy as np
 
-import fem
-from fem.matrices.grids import ring
+from thermoscope import fem
+from thermoscope.fem.matrices.grids import ring
 
 BORE, OUTSIDE, HEIGHT, K, Q, FILM, AIR = 0.03, 0.06, 0.01, 20.0, 4e5, 100.0, 20.0  # m, W/m/K, W/m3, W/m2/K, degC
 

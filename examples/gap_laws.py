@@ -11,15 +11,15 @@ import warnings
 
 import numpy as np
 
-from lumped.correlations import RangeWarning
-from lumped.correlations.air_gap import (
+from thermoscope.lumped.correlations import RangeWarning
+from thermoscope.lumped.correlations.air_gap import (
     becker_kaye,
     gazley_slotting,
     kosterin_finatev,
     romanazzi_howey,
     taylor_film,
 )
-from lumped.transfer.properties import air
+from thermoscope.lumped.transfer.properties import air
 
 RADIUS, GAP, SLOT = 0.1, 0.001, 0.02  # m
 AIR = air(80.0)

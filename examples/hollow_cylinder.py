@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import quad
 
 import thermoscope as ts
-from lumped.correlations.windings import mellor
+from thermoscope.lumped.correlations.windings import mellor
 
 OUTER, INNER, LENGTH, K, P, FACE = 0.12, 0.08, 0.2, 25.0, 500.0, 60.0  # m, W/m/K, W, degC
 

@@ -24,12 +24,12 @@ from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.case_folder.history import History, load_history, save_history
 from thermoscope.commands.model.revise import recorded
 from thermoscope.files import write_whole
-from validation import diagnose
-from validation.case import Case
-from validation.comparison.compare import Comparison
-from validation.parameters.unknowns import with_model
-from validation.revision import revise
-from validation.revision.improvement import Step, Supervisor, best, improve
+from thermoscope.validation import diagnose
+from thermoscope.validation.case import Case
+from thermoscope.validation.comparison.compare import Comparison
+from thermoscope.validation.parameters.unknowns import with_model
+from thermoscope.validation.revision import revise
+from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = (

@@ -11,7 +11,7 @@ import math
 import sys
 from pathlib import Path
 
-from geom import drawing_of, load_machine, part_table
+from thermoscope.geom import drawing_of, load_machine, part_table
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 

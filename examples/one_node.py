@@ -9,8 +9,8 @@ Prints the largest difference between the run and the formula.
 # %%
 import numpy as np
 
-from lumped import Record, bare_network, node_link, node_source, simulate
-from lumped.transfer.laws import Fixed
+from thermoscope.lumped import Record, bare_network, node_link, node_source, simulate
+from thermoscope.lumped.transfer.laws import Fixed
 
 C, G, P, AIR = 3000.0, 4.0, 120.0, 20.0
 

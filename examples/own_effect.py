@@ -12,13 +12,13 @@ import tempfile
 from pathlib import Path
 
 import thermoscope as ts
-from validation.effects import Scene, extended
+from thermoscope.validation.effects import Scene, extended
 
 PACKAGE = """
 from dataclasses import dataclass
-from lumped.transfer.laws import Fixed
-from validation.effects.base import Effect, with_parameter
-from validation.effects.build import heat
+from thermoscope.lumped.transfer.laws import Fixed
+from thermoscope.validation.effects.base import Effect, with_parameter
+from thermoscope.validation.effects.build import heat
 
 @dataclass(frozen=True)
 class Sun(Effect):

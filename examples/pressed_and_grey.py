@@ -10,14 +10,14 @@ see each other by their view factors.
 import numpy as np
 
 import thermoscope as ts
-from geom.constants import SIGMA, ZERO_C
-from lumped.correlations.contacts import (
+from thermoscope.geom.constants import SIGMA, ZERO_C
+from thermoscope.lumped.correlations.contacts import (
     concentric_cylinders,
     cooper_mikic_yovanovich,
     groove_emissivity,
     radiation_film,
 )
-from lumped.correlations.views import coaxial_discs, parallel_rectangles
+from thermoscope.lumped.correlations.views import coaxial_discs, parallel_rectangles
 
 HEAT, AREA, ROOM = 400.0, 0.01, 20.0  # W, m2, degC
 

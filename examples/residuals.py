@@ -14,8 +14,8 @@ import numpy as np
 
 import thermoscope as ts
 from thermoscope.case_folder.runs import comparison_of
-from viz import measured_and_model, residuals
-from viz.live import against_input, parity, save
+from thermoscope.viz import measured_and_model, residuals
+from thermoscope.viz.live import against_input, parity, save
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 

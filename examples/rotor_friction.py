@@ -9,8 +9,8 @@ The air in the gap, the end faces, bearings and brushes make heat; two bearings 
 import numpy as np
 
 import thermoscope as ts
-from lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
-from lumped.correlations.rotating import disc_windage, saari_windage
+from thermoscope.lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
+from thermoscope.lumped.correlations.rotating import disc_windage, saari_windage
 
 OMEGA, RADIUS, GAP, LENGTH, BORE, AIR = 1500 * np.pi / 30, 0.1, 0.001, 0.2, 0.06, 20.0  # rad/s, m, degC
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.files import write_whole
-from validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
+from thermoscope.validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
 
 
 def ladder(tell: Callable[[str], None], most: int = 8) -> Improvement:

@@ -21,7 +21,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.shadowing import checked_rooms
+from thermoscope.rooms import register_rooms
 
 if TYPE_CHECKING:
     from geom.errors import InputError, MissingDependency, ThermoscopeError
@@ -90,7 +90,7 @@ __all__ = [
     "steady",
 ]
 
-checked_rooms()
+register_rooms()
 
 
 def __getattr__(name: str) -> Any:

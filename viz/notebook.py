@@ -1,4 +1,4 @@
-"""Results that show themselves in Jupyter and marimo: `import viz.notebook` gives them a picture of their own.
+"""Results that show themselves in Jupyter and marimo, each by a picture: `import thermoscope.viz.notebook`.
 
 The rooms below know nothing of HTML, so their classes get their `_repr_html_` here, once, by that import.
 """

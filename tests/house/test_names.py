@@ -23,6 +23,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/console/progress_bar.py": "options on the command line",
     "thermoscope/workbench/dropped.py": "columns that the page names itself, FILE:COLUMN",
     "thermoscope/commands/stored_diagnosis.py": "hidden files",
+    "thermoscope/rooms.py": "names of modules",
     "geom/solids/step.py": "labels of a STEP assembly",
     "validation/effects/time_window.py": "events that the tool names itself, TEST:BEGIN-END",
     "fem/solvers/streams.py": "cells that fem.solvers.streams names itself, FLUID@3",

@@ -59,7 +59,7 @@ def test_generator_takes_only_the_machine_from_geom(root):
 def test_generator_is_not_in_the_wheel(root):
     build = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]["targets"]
     assert "simulated" not in build["wheel"]["only-include"]
-    assert "simulated" not in build["wheel"].get("force-include", {})
+    assert "simulated" not in build["wheel"]["sources"]
 
 
 def test_case_does_not_tell_the_truth(root):

@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from small_case import small_case
 
 import thermoscope as ts
 from thermoscope.case_folder.folder import load_case
-from thermoscope.shadowing import ROOMS, hidden_by
+from thermoscope.rooms import ROOMS, hidden_by
 from validation import compare
 from validation.comparison.compare import errors
 from validation.effects import kinds
@@ -75,6 +76,31 @@ def test_a_folder_of_data_hides_nothing(root, tmp_path):
     code = f"import sys; sys.path.insert(1, {str(root)!r}); import thermoscope as ts; print(ts.InputError.__module__)"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert done.stdout.strip() == "geom.errors", done.stderr
+
+
+def test_a_room_has_one_module_under_both_names(root):
+    """Whichever is imported first, also parts of it; a class caught by one name is raised by the other."""
+    code = """
+import importlib, sys
+import thermoscope
+pairs = ({first!r}, {second!r}), ("thermoscope.lumped", "lumped"), ("lumped.model", "thermoscope.lumped.model")
+for one, other in pairs:
+    a, b = importlib.import_module(one), importlib.import_module(other)
+    assert a is b, one
+    assert a.__spec__.name == a.__name__ == one.removeprefix("thermoscope."), a.__spec__
+from thermoscope import geom
+assert geom is sys.modules["geom"]
+"""
+    names = "thermoscope.geom.errors", "geom.errors"
+    for first, second in (names, names[::-1]):
+        run = [sys.executable, "-c", code.format(first=first, second=second)]
+        done = subprocess.run(run, cwd=root, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def test_no_module_of_a_room_is_one_message():
+    with pytest.raises(ModuleNotFoundError, match=r"geom\.nothing"):
+        import_module("thermoscope.geom.nothing")
 
 
 def test_own_rooms_are_not_hidden():
