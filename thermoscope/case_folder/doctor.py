@@ -41,8 +41,8 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped."""
     columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
-    moves = {n: float(v[seen[-1]] - v[seen[0]]) for n, v in columns.items()
-             if (seen := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
+    moves = {n: float(v[finite[-1]] - v[finite[0]]) for n, v in columns.items()
+             if (finite := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
         if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
@@ -134,9 +134,9 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
     for name in sorted(network.inputs):
-        seen = [p.inputs[name] for p in patients if name in p.inputs]
-        seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
-        levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)
+        samples = [p.inputs[name] for p in patients if name in p.inputs]
+        samples += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
+        levels = np.unique(np.concatenate(samples)) if samples else np.zeros(0)
         levels = levels[np.isfinite(levels)]
         if not any(np.array_equal(levels, pair) for pair in SWITCHES):
             continue

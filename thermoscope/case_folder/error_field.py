@@ -47,10 +47,10 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
     there = grown.on_parts(nodes.parts, D)
     late, width = last_fifth(test), len(grown.states) + len(grown.boundaries)
-    seen = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
-    here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in seen])
-    noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in seen])
-    return seen, interpolated(there, here, np.eye(len(seen)), noise_K)
+    channels = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
+    here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in channels])
+    noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in channels])
+    return channels, interpolated(there, here, np.eye(len(channels)), noise_K)
 
 
 def last_fifth(test: Test) -> slice:

@@ -22,7 +22,7 @@ def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[T
         declared |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
     network = replace(network, quantities={**declared, **network.quantities})
     fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(network, signals={q: own for q in INPUTS if (own := _largest_of(network, fitted, q)) is not None})
+    return replace(network, signals={q: name for q in INPUTS if (name := _largest_of(network, fitted, q)) is not None})
 
 
 def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:

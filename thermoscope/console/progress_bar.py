@@ -121,13 +121,13 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 @contextmanager
 def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
     """Stages that know how long they took the last time; what they take now is kept for the next."""
-    known = _remembered()
-    stages = ProgressBar(known.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
+    durations = _remembered()
+    stages = ProgressBar(durations.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            _remember({**{k: v for k, v in known.items() if k != key}, key: stages.took})
+            _remember({**{k: v for k, v in durations.items() if k != key}, key: stages.took})
     finally:
         stages.leave()
 

@@ -57,8 +57,8 @@ def compiler(target: Platform) -> list[str]:
 
     Raises MissingDependency where none is at hand.
     """
-    own = target == here()
-    for name in ("gcc", "clang") if own else ():
+    native = target == here()
+    for name in ("gcc", "clang") if native else ():
         if shutil.which(name):
             return [name]
     if has_zig():

@@ -84,8 +84,8 @@ def sources(model: Model, version: int) -> dict[str, str]:
         f"static const double START_NODE[] = {{{', '.join([f'{model.initial_degC:.17g}'] * states.size)}}};",
         f"static const int NODE_STATE[] = {{{', '.join(map(str, states))}}};",
     ]  # fmt: skip
-    own = ("fmu.h", f"fmi{version}.c")
-    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in own}
+    runtime_files = ("fmu.h", f"fmi{version}.c")
+    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in runtime_files}
     return {**c_files(model), **fixed, "thermal_network_fmu.h": "\n".join([*lines, ""])}
 
 
@@ -145,14 +145,14 @@ def description(model: Model, version: int) -> bytes:
         description=heading(model)[0], variableNamingConvention="flat", **key,
     )  # fmt: skip
     _co_simulation(root, model, version)
-    own = variables(model)
+    fmi_variables = variables(model)
     units = SubElement(root, "UnitDefinitions")
-    for unit in dict.fromkeys(v.unit for v in own if v.unit):
+    for unit in dict.fromkeys(v.unit for v in fmi_variables if v.unit):
         SubElement(units, "Unit", name=unit)
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="3600", stepSize=f"{STEP_S:g}")
-    _variables(root, own if version == 3 else own[:-1], version)
-    structure, outputs = SubElement(root, "ModelStructure"), range(len(own))
-    results = [i for i in outputs if own[i].causality == "output"]
+    _variables(root, fmi_variables if version == 3 else fmi_variables[:-1], version)
+    structure, outputs = SubElement(root, "ModelStructure"), range(len(fmi_variables))
+    results = [i for i in outputs if fmi_variables[i].causality == "output"]
     if version == 2:
         for group in ("Outputs", "InitialUnknowns"):
             listed = SubElement(structure, group)

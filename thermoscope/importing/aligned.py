@@ -97,8 +97,8 @@ def onset(record: Recording) -> tuple[float, str]:
 
 def column_onset(time: Array, values: Array) -> float | None:
     """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
-    seen = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
-    t, y = time[seen], values[seen]
+    finite = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
+    t, y = time[finite], values[finite]
     if y.size < 4 * STILL:
         return None
     away = np.abs(y - np.median(y[:STILL]))

@@ -62,8 +62,8 @@ def place_of(g: Guess, label: str) -> str:
 def rise(source: Source, g: Guess) -> float:
     """Largest reading less the first (K)."""
     values = in_memory(source, g)
-    seen = values[np.isfinite(values)]
-    return float(np.max(seen) - seen[0])
+    finite = values[np.isfinite(values)]
+    return float(np.max(finite) - finite[0])
 
 
 def _heat(columns: Columns, at: str) -> tuple[str, float]:

@@ -68,11 +68,11 @@ def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
 
 def against_input(comparison: Comparison, channel: str, name: str, *, theme: Theme = LIGHT) -> go.Figure:
     """The residual of one sensor (K) against an input or boundary of the test: a trend names what is missing."""
-    c, known = channel_of(comparison, channel), {**comparison.test.inputs, **comparison.test.boundaries}
-    if name not in known:
-        raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(known)}")
+    c, inputs = channel_of(comparison, channel), {**comparison.test.inputs, **comparison.test.boundaries}
+    if name not in inputs:
+        raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(inputs)}")
     (t, unit), thin = comparison.clock, comparison.thin
-    x = np.broadcast_to(np.asarray(known[name], float), t.shape)[thin]
+    x = np.broadcast_to(np.asarray(inputs[name], float), t.shape)[thin]
     out = figure(theme, title={"text": f"{short(c.name)}: residual against {name}", "x": 0.02})
     dots = {"color": plain(t[thin]), "colorscale": "Viridis", "size": 5, "colorbar": {"title": f"time ({unit})"}}
     out.add_scatter(x=plain(x), y=plain(comparison.residual(c)[thin]), mode="markers", marker=dots, showlegend=False)

@@ -193,10 +193,10 @@ def _hidden(r: Report) -> str:
         return ""
     hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
     blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
-    seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
+    limits = html.table(["effect", "smallest that would be seen", "unit"], blind)
     return html.section(
         "What these tests cannot see, and what would help",
-        seen and html.more("Effects that could be there unseen", seen),
+        limits and html.more("Effects that could be there unseen", limits),
         _next_tests(r.diagnosis),
     )
 

@@ -183,10 +183,10 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
 def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
     import rerun as rr
 
-    seen = np.isfinite(values)
+    finite = np.isfinite(values)
     stream.log(path, rr.SeriesLines(colors=_rgba(colour), widths=2.0, names=name), static=True)
-    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[seen])
-    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[seen]))
+    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[finite])
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[finite]))
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:

@@ -174,8 +174,8 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
-    seen = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
-    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen]
+    identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
+    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in identifiable]
     headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
     return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
 

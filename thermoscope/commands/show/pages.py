@@ -155,10 +155,10 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     into.mkdir(parents=True, exist_ok=True)
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
-    seen = sensors(comparison_of(folder, test), folder.positions)
+    all_sensors = sensors(comparison_of(folder, test), folder.positions)
     title = f"{end_of(test)}: temperature of the model"
     limits = temperature_range(folder, nodes)
-    cutaway(nodes, now, sensors=seen, title=title, limits=limits, note=LATE, png=file)
+    cutaway(nodes, now, sensors=all_sensors, title=title, limits=limits, note=LATE, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
@@ -228,8 +228,8 @@ def assumptions(folder: Folder) -> list[str]:
 
 def commands(folder: Folder, case: str) -> list[str]:
     """What leads from the declared model to this page."""
-    known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
-    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in known]
+    calls = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
+    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in calls]
     return [*done, f"thermoscope show report {case}"]
 
 

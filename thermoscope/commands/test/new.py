@@ -18,6 +18,7 @@ from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.extras import message as missing_extra
 from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, common, grouped, shift
+from thermoscope.importing.case_files import folder_whole, quoted, write_case
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
 from thermoscope.importing.dialogue import Dialogue
@@ -26,7 +27,6 @@ from thermoscope.importing.guess import Guess, guesses
 from thermoscope.importing.source import Source, read_source, signature
 from thermoscope.importing.starter import place_of, starter
 from thermoscope.importing.target import Target, target_of
-from thermoscope.importing.written import folder_whole, quoted, write_case
 from thermoscope.recordings.grid import LONGEST_S
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
         return 'network = "network.toml"'
 
     places = {s.labels[g.column]: place for s, g in columns if (place := place_of(g, s.labels[g.column]))}
-    return Model(network, replace(target_of(network), known=places), put, True)
+    return Model(network, replace(target_of(network), places_by_header=places), put, True)
 
 
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:

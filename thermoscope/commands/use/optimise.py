@@ -39,7 +39,7 @@ def optimise(
     request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as seen_notes, _executor(cluster) as executor:
+    with progress() as tell, once() as messages, _executor(cluster) as executor:
         folder = case_or_machine(name, tell)
         problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
@@ -50,7 +50,7 @@ def optimise(
         where = out or Path("out") / f"{folder.case.name}-designs"
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
-    notes(seen_notes)
+    notes(messages)
     give(document, target, lambda: answer(document, where))
     return 0
 

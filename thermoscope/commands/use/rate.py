@@ -48,11 +48,11 @@ def rate(
         )
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as seen_notes:
+    with progress() as tell, once() as messages:
         folder = case_or_machine(name, tell)
         document = {"case": folder.case.name, "revision": folder.case.model.revision,
                     **document_of(folder, request, sure, tell)}  # fmt: skip
-    notes(seen_notes)
+    notes(messages)
     give(document, target, lambda: answer(document))
     return 0
 
@@ -159,8 +159,8 @@ def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float
     """From rest to the largest speed that was recorded or asked for."""
     if op.speed is None:
         return []
-    seen = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
-    top = request.top_rpm or max([abs(op.inputs[op.speed]), *seen])
+    peaks = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
+    top = request.top_rpm or max([abs(op.inputs[op.speed]), *peaks])
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 

@@ -39,8 +39,8 @@ def simulate(case: str, cycle: str | None, out: Path | None, target: str | None,
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        known = posterior_of(folder, tell) if wanted(network, sure) else None
-        runs = [_ran(network, values, one, folder, into, tell, known) for one in _cycles(folder, network, cycle)]
+        posterior = posterior_of(folder, tell) if wanted(network, sure) else None
+        runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
