@@ -105,11 +105,11 @@ def _family(header: Mapping[str, Any], where: str) -> Family:
     for key, value in header.items():
         if not isinstance(value, str):
             raise InputError(f"{key} = {str(value)[:60]} is no text", f"{where} [machine]", "words in quotes")
-    known = families()
-    if header.get("family") not in known:
+    available = families()
+    if header.get("family") not in available:
         where = f"{where} [machine] family"
-        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(known)}")
-    return known[header["family"]]
+        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(available)}")
+    return available[header["family"]]
 
 
 def _with_materials(parts: tuple[Part, ...], chosen: Mapping[str, Any], where: str) -> tuple[Part, ...]:

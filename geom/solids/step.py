@@ -64,7 +64,7 @@ def import_step(path: str | Path) -> Machine:
     fluids = sidecar.get("fluids", {})
     _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
-    made_of = {
+    material_of = {
         name: _material(name, sidecar.get("materials", {}), str(beside)) for name in prisms if name not in fluids
     }
     header = sidecar.get("machine", {})
@@ -75,7 +75,7 @@ def import_step(path: str | Path) -> Machine:
         parts=tuple(
             Part(
                 name,
-                made_of[name],
+                material_of[name],
                 prisms[name],
                 role=what.get(name, NOTHING).role,
                 turns=what.get(name, NOTHING).turns,
@@ -131,10 +131,10 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
     sidecar = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
-    known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
+    sections = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
     for section, table in sidecar.items():
-        if section not in known or not isinstance(table, Mapping):
-            raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")
+        if section not in sections or not isinstance(table, Mapping):
+            raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(sections)}")
         for key in table:
             if key not in _ALLOWED.get(section, (key,)):
                 raise InputError(
