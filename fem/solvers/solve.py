@@ -183,11 +183,11 @@ def from_fixed(field: FieldModel, films: Mapping[str, float], fixed: Mapping[str
 
 
 def refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
-    known = {*fluids.names, *fluids.fixed}
+    names = {*fluids.names, *fluids.fixed}
     for face, film in field.films.items():
-        if film.fluid not in known:
+        if film.fluid not in names:
             raise InputError(
-                f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(known))}"
+                f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(names))}"
             )
 
 
