@@ -171,8 +171,8 @@ def unit_loads(field: FieldModel, zones: Mapping[str, Zone]) -> dict[str, Array]
 
 def _geometry(field: FieldModel, loads: Mapping[str, Array], recipe: Recipe) -> list[bytes]:
     """What the shapes depend on besides coefficients: points, parts, zones, heat capacities, recipe."""
-    own = replace(recipe, tolerance=0.0, max_states=None, favour=1.0)
-    out = [repr((own, list(field.blocks), list(loads), list(field.films), list(field.contacts))).encode()]
+    neutral = replace(recipe, tolerance=0.0, max_states=None, favour=1.0)
+    out = [repr((neutral, list(field.blocks), list(loads), list(field.films), list(field.contacts))).encode()]
     out.append(np.ascontiguousarray(field.xyz).tobytes())
     out += [block.tets.tobytes() + repr(block.rho_cp).encode() for block in field.blocks.values()]
     return out + [load.tobytes() for load in loads.values()]

@@ -29,7 +29,7 @@ def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) ->
 def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float]]:
     """What a measured total leaves out grows with what the model injects instead."""
     pairs = [(s.name, s.name.partition(":less:")[2]) for s in network.sources if ":less:" in s.name]
-    return [(own, e) for own, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
+    return [(remainder, e) for remainder, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
 
 
 def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
@@ -43,8 +43,8 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
     ):
         for name, table in top.tables(section).items():
             if "prior_sd" in table:
-                own = f"{target}{name}"
-                mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
+                stem = f"{target}{name}"
+                mine = [i.name for i in items if i.name == stem or i.name.startswith(f"{stem}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
                 sd, flow = table.number("prior_sd"), section == "streams"
                 out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))

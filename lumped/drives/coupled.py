@@ -88,10 +88,10 @@ def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array) -> Drive:
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         i_d, i_q = machine.currents(torque, speed_rpm, T["winding"], T["magnet"])
-        given = machine.torque(i_d, i_q, T["magnet"])
+        shaft_torque = machine.torque(i_d, i_q, T["magnet"])
         volts = machine.voltage(i_d, i_q, speed_rpm, T["winding"], T["magnet"])
         return {
-            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": given, "voltage_V": volts,
+            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": shaft_torque, "voltage_V": volts,
             "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
         }  # fmt: skip
 

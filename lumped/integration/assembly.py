@@ -44,11 +44,11 @@ class Pattern:
         """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle."""
         P = np.zeros((self.row.size, int(self.cols.max(initial=0)) + 1))
         np.add.at(P, (self.to, self.cols), self.vals)
-        own = (np.arange(self.row.size), self.row)
+        diagonal = (np.arange(self.row.size), self.row)
         small = 1e-9 * float(np.abs(self.vals).max(initial=0.0))
         if np.any(self.row >= P.shape[1]) or np.any(np.abs(P.sum(axis=1)) > small):
             return False
-        P[own] = np.minimum(P[own], 0.0)
+        P[diagonal] = np.minimum(P[diagonal], 0.0)
         return bool(np.all(small >= P))
 
     @property
@@ -205,5 +205,5 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
 
 def _numbered(keys: Sequence[Hashable]) -> NDArray[np.int64]:
     """Equal keys have equal numbers, in the order in which they appear."""
-    known: dict[Hashable, int] = {}
-    return np.array([known.setdefault(key, len(known)) for key in keys], np.int64)
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], np.int64)

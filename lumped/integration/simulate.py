@@ -202,8 +202,8 @@ class _Course:
             pass
 
     def _rest(self, forcing: Forcing) -> None:
-        core, own = self.core, self.moved[1]
-        scratch = self.scratch._replace(D=own.D, R=own.R)
+        core, sensitivity = self.core, self.moved[1]
+        scratch = self.scratch._replace(D=sensitivity.D, R=sensitivity.R)
         if not solve_steady_start(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
             raise self._failed(forcing)
 

@@ -16,7 +16,7 @@ from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
 from lumped.transfer.laws import Array, Inputs, Wrapped
 
-OWN_BASE = "own"
+THIS_MACHINE = "own"
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def on_every_base(network: Network) -> Network:
 def switches(machine: Machine) -> dict[str, str]:
     """Input -> the foot it couples."""
     table = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in table.items()}
+    return {f"on_{name}": "foot" if machine_ == THIS_MACHINE else f"foot.{name}" for name, machine_ in table.items()}
 
 
 def switched(machine: Machine, network: Network) -> Network:
@@ -75,8 +75,8 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
     bare = [_bare(grown, film, print_, switch) for film in films]
     moved = {film.name: link.name for film, link in zip(films, bare, strict=True)}
-    own = tuple(_also(p, moved) for p in network.parameters)
-    return replace(grown.extended(bare), parameters=own)
+    parameters = tuple(_also(p, moved) for p in network.parameters)
+    return replace(grown.extended(bare), parameters=parameters)
 
 
 def _of_base(network: Network, places: tuple[str, str]) -> bool:
@@ -85,13 +85,13 @@ def _of_base(network: Network, places: tuple[str, str]) -> bool:
 
 def footprint(network: Network, joint: Link, body: str, foot: str) -> Place:
     """The body's side of the joint as a face of its own."""
-    own = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
-    at = {state: k for k, state in enumerate(own)}
-    K = np.zeros((len(own), len(own)))
+    states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
+    at = {state: k for k, state in enumerate(states)}
+    K = np.zeros((len(states), len(states)))
     for row, col, value in zip(joint.rows, joint.cols, joint.vals, strict=True):
         if int(row) in at and int(col) in at:
             K[at[int(row)], at[int(col)]] += value
-    return Place(f"{foot}.print", "surface", body, np.array(own), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
+    return Place(f"{foot}.print", "surface", body, np.array(states), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
 
 
 def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:

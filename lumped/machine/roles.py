@@ -31,10 +31,11 @@ def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dic
 
 def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Identity]:
     """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
-    known = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
-    hung = _hung(known, contacts)
+    identity_of = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
+    hung = _hung(identity_of, contacts)
     return {
-        name: known[name] if known[name].turns is not None else _turned(known[name], name in hung) for name in known
+        name: identity_of[name] if identity_of[name].turns is not None else _turned(identity_of[name], name in hung)
+        for name in identity_of
     }
 
 

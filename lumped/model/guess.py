@@ -22,7 +22,7 @@ def identities(network: Network) -> Mapping[str, Identity]:
     """Name of a part, node, fluid or boundary -> what it is, with the evidence where it is a guess."""
     top = Topology(network)
     names = (*top.bodies, *top.fluids, *network.boundaries)
-    if all((known := network.declared.get(n)) is not None and known.role is not None for n in names):
+    if all((identity := network.declared.get(n)) is not None and identity.role is not None for n in names):
         return {**network.declared}
     return _guessed(top, names)
 

@@ -55,10 +55,10 @@ def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tu
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
-    known = _valid_targets(network)
+    targets = _valid_targets(network)
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
-        for target, exponent in _targets(network, p, known):
+        for target, exponent in _targets(network, p, targets):
             out.setdefault(target, []).append((p.name, exponent))
     return out
 
@@ -86,14 +86,14 @@ def slopes(
         if parameter.name not in declared:
             where = network.title
             raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
-        own = declared[parameter.name]
-        df = factor(own, now[own.name])[1]
-        moved = dict.fromkeys(target for target, _ in own.targets if target in acting)
-        out.append({target: _slope(acting[target], f, own.name) * df for target in moved})
+        declaration = declared[parameter.name]
+        df = factor(declaration, now[declaration.name])[1]
+        moved = dict.fromkeys(target for target, _ in declaration.targets if target in acting)
+        out.append({target: _slope(acting[target], f, declaration.name) * df for target in moved})
     return out
 
 
-def _slope(acting: Sequence[tuple[str, float]], f: Mapping[str, float], own: str) -> float:
+def _slope(acting: Sequence[tuple[str, float]], f: Mapping[str, float], parameter: str) -> float:
     """Derivative of a product of powers by one of its factors."""
-    exponent = sum(e for name, e in acting if name == own)
-    return prod(f[name] ** e for name, e in acting if name != own) * exponent * f[own] ** (exponent - 1.0)
+    exponent = sum(e for name, e in acting if name == parameter)
+    return prod(f[name] ** e for name, e in acting if name != parameter) * exponent * f[parameter] ** (exponent - 1.0)

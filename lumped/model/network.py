@@ -253,8 +253,8 @@ class Network:
             return self.states.index(name)
         if name in self.boundaries:
             return len(self.states) + self.boundaries.index(name)
-        known = ", ".join([*(s for s in self.states if "#" not in s), *self.boundaries])
-        raise InputError(f"unknown node or boundary '{name}'", self.title, f"known: {known}")
+        nodes = ", ".join([*(s for s in self.states if "#" not in s), *self.boundaries])
+        raise InputError(f"unknown node or boundary '{name}'", self.title, f"known: {nodes}")
 
     def place(self, name: str) -> Place:
         if name not in self.places:

@@ -303,7 +303,7 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
     if P.at[FRESH] == 0:
         forced(Q, j, s0, 1.0, a, q)
         flow(T, K0, a.z[0], q.f[0], a.tau[0], a.v[0], q.F[0])
-    known, wanted, last = False, P.clock[NEXT], X.slot[k - 1] if k > 0 else -1
+    has_jacobian, wanted, last = False, P.clock[NEXT], X.slot[k - 1] if k > 0 else -1
     for tries in range(MOST_TRIES + 1):
         rest = (1.0 - s0) * span
         count = max(1.0, -((-rest * (1.0 - 1e-9)) // wanted))
@@ -317,10 +317,10 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
             h = P.clock[FACTORED]
         forced(Q, j, s0, s1, a, q)
         changed = Q.renew[j] == 2 or (Q.renew[j] == 1 and s0 == 0.0)
-        build = (changed and not known) or h != P.clock[FACTORED]
-        if build and kind == ROSENBROCK and not known:
+        build = (changed and not has_jacobian) or h != P.clock[FACTORED]
+        if build and kind == ROSENBROCK and not has_jacobian:
             jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
-            known = True
+            has_jacobian = True
         slot = (last + 1) % len(X.B) if build or kind == EULER or tries > 0 else last
         P.at[STATUS] = 0
         size = _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q)

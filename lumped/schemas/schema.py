@@ -64,9 +64,9 @@ def machine_schema() -> Schema:
     groups: dict[str, dict[str, Schema]] = {}
     for family in families().values():
         for p in family.parameters:
-            known = groups.setdefault(p.group, {})
-            for name, own in _keys(p).items():
-                known[name] = _widest(known[name], own) if name in known else own
+            group = groups.setdefault(p.group, {})
+            for name, key_schema in _keys(p).items():
+                group[name] = _widest(group[name], key_schema) if name in group else key_schema
     geometry = {g: {"type": "object", "properties": keys, "additionalProperties": False} for g, keys in groups.items()}
     tables: dict[str, Schema] = {s: {"type": "object"} for s in SECTIONS}
     header = {"family": {"description": "family of machines", "enum": list(families())}}
