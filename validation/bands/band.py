@@ -66,9 +66,9 @@ def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> D
     now = {**values_of(network, None), **of.values}
     plain = predict(network, virtual, now).y
     moved = {name: predict(network, other, now).y - plain for name, other in moved_inputs(network, virtual, of.doubt)}
-    known = {p.targets[0][0] for p in free if head(p) == "boundary"}
+    boundary_names = {p.targets[0][0] for p in free if head(p) == "boundary"}
     for name, other in moved_boundaries(virtual, of.doubt):
-        if name not in known:
+        if name not in boundary_names:
             moved[name] = predict(network, other, now).y - plain
     sd = np.array([p.prior_sd for p in free]) / size
     names = [*(p.name for p in free), *moved]

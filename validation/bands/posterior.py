@@ -59,8 +59,8 @@ class ParameterPosterior:
 
     def offsets(self, names: Sequence[str]) -> Array:
         """(k,) of some names; those that it does not know have none."""
-        known = dict(zip(self.names, self.offset)) if self.offset.size else {}
-        return np.array([known.get(name, 0.0) for name in names])
+        offset_of = dict(zip(self.names, self.offset)) if self.offset.size else {}
+        return np.array([offset_of.get(name, 0.0) for name in names])
 
     def slow(self, row: Row) -> float:
         """Share of its rise by which a temperature is off for reasons that no parameter has.
@@ -69,16 +69,16 @@ class ParameterPosterior:
         as a thermocouple's has; a mean or point of a field is what it says.
         """
         alike = any(np.array_equal(row.index, r.index) and np.allclose(row.weights, r.weights) for r in self.read)
-        known = alike or self.network.recovery is not None
-        return self.doubt["slow"] if known else float(np.hypot(self.doubt["slow"], self.doubt["gain"]))
+        representative = alike or self.network.recovery is not None
+        return self.doubt["slow"] if representative else float(np.hypot(self.doubt["slow"], self.doubt["gain"]))
 
     def of(self, names: Sequence[str], sd: Array) -> Array:
         """(k, k) covariance of some names; those that it does not know are independent with the given deviations."""
         at = {name: i for i, name in enumerate(self.names)}
-        known = np.array([name in at for name in names], bool)
+        estimated = np.array([name in at for name in names], bool)
         index = [at[name] for name in names if name in at]
-        out = np.diag(np.where(known, 0.0, sd) ** 2)
-        out[np.ix_(known, known)] += self.covariance[np.ix_(index, index)]
+        out = np.diag(np.where(estimated, 0.0, sd) ** 2)
+        out[np.ix_(estimated, estimated)] += self.covariance[np.ix_(index, index)]
         return out
 
 

@@ -29,11 +29,11 @@ def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> On
     """
     from scipy.optimize import minimize_scalar
 
-    known = {p.name: p.value for p in case.model.network.parameters}
-    if parameter not in known:
-        raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(known))}")
+    nominal = {p.name: p.value for p in case.model.network.parameters}
+    if parameter not in nominal:
+        raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(nominal))}")
     now = dict(case.model.values)
-    start = now.get(parameter, known[parameter])
+    start = now.get(parameter, nominal[parameter])
 
     def moved(log_factor: float) -> dict[str, float]:
         return {**now, parameter: start * float(np.exp(log_factor))}

@@ -53,8 +53,8 @@ def thermal(network: Network) -> Network:
 def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, dict[str, float]]:
     """That network, and those of the values that act on it."""
     bare = thermal(network)
-    known = {p.name for p in bare.parameters}
-    return bare, {k: v for k, v in values.items() if k in known}
+    names = {p.name for p in bare.parameters}
+    return bare, {k: v for k, v in values.items() if k in names}
 
 
 def predict(

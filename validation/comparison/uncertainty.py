@@ -62,9 +62,9 @@ class Uncertainty:
         return self.error_K <= self.limit_K
 
     def document(self) -> dict:
-        own = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
+        components = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
         total = {"u_val_K": self.u_val_K, "error_K": self.error_K, "explained": self.explained}
-        return {"test": self.test, "channel": self.channel, **own, **total, "inputs": dict(self.inputs)}
+        return {"test": self.test, "channel": self.channel, **components, **total, "inputs": dict(self.inputs)}
 
 
 def uncertainties(
@@ -85,8 +85,8 @@ def uncertainties(
         if read.any():
             inputs = {name: float(u[j]) for name, u in moved.items()}
             # estimates of discretisation errors are bounds, as Roache's factor of 3 makes them: expanded uncertainties
-            own = numeric.get(c.name, 0.0) / COVERAGE
-            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, own, _rms((c.y - plain[:, j])[read])))
+            numeric_K = numeric.get(c.name, 0.0) / COVERAGE
+            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, numeric_K, _rms((c.y - plain[:, j])[read])))
     return out
 
 

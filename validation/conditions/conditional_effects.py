@@ -53,21 +53,21 @@ def conditions(
     progress: Callable[[str], None] = no_progress,
 ) -> list[During]:  # fmt: skip
     """The conditions that could carry weight, most probable first.  only : kinds, None for all"""
-    known = {**case.model.values, **evidence.fit.values}
+    values = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
     bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
     if not bases:
         return []
     progress("looking for what held in one test or for a while")
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
-    chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
-    intervals = likely_intervals(evidence, looked, heat, known, len(bases))
-    for timed, own in side_by_side(lambda s: explained(evidence, bases, s, looked, known), intervals):
+    chosen, events = best(single_test_conditions(evidence, whole, values), TESTS), []
+    intervals = likely_intervals(evidence, looked, heat, values, len(bases))
+    for timed, candidates in side_by_side(lambda s: explained(evidence, bases, s, looked, values), intervals):
         events.append(timed)
-        chosen += best(own, EACH)
+        chosen += best(candidates, EACH)
     for name, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, name, share / len(bases)) for base in bases]
-        chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
+        chosen += best(scored_in(evidence, effects, values, odds_against_nothing(share / len(bases))), EACH)
     ordered = sorted(chosen, key=lambda c: -c.worth)
     once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
     return list(reversed(once.values()))
@@ -109,14 +109,14 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
     usual = np.array([q.prior_sd for q in parameters])
     every, out = sets_of(len(names)), []
     for chosen in every:
-        own, seen = together(scores, len(bases), chosen)
+        joint, visibility = together(scores, len(bases), chosen)
         one = len(chosen) == 1
         form = FORM["one whole test" if one else "several whole tests"]
         share = form / (len(bases) * (len(names) if one else len(every) - len(names)))
         name = condition_of([evidence.tests[t] for t in chosen])
         out += [
             Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))
-            for base, b, visible in zip(bases, log_bayes_of(own, usual), seen, strict=True) if visible
+            for base, b, visible in zip(bases, log_bayes_of(joint, usual), visibility, strict=True) if visible
         ]  # fmt: skip
     return out
 
@@ -136,8 +136,8 @@ def together(scores: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, N
     u = scores.u[rows].sum(axis=1)
     V = scores.V[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
     raw = scores.raw[rows].sum(axis=1)
-    own = Score(u, np.diag(np.maximum(V, 0.0)), raw, scores.sign[:bases], np.zeros(bases, int))
-    return own, scores.visible[rows].all(axis=1)
+    joint = Score(u, np.diag(np.maximum(V, 0.0)), raw, scores.sign[:bases], np.zeros(bases, int))
+    return joint, scores.visible[rows].all(axis=1)
 
 
 def condition_of(tests: Sequence[Test]) -> str:
@@ -168,8 +168,8 @@ def explained(
     timed = refined(evidence, like, repeats(evidence, like, s.event, values), far, values)
     every = best(timed_by(evidence, bases, timed, price, values), EACH)
     few = TIMED if len(timed.event.every) <= SPANS else 0
-    own = [refined(evidence, c.effect.base, timed.event, far, values) for c in every[:few]]
-    again = [timed_by(evidence, [c.effect.base], t, price, values) for c, t in zip(every, own)]
+    intervals = [refined(evidence, c.effect.base, timed.event, far, values) for c in every[:few]]
+    again = [timed_by(evidence, [c.effect.base], t, price, values) for c, t in zip(every, intervals)]
     again += [[]] * (len(every) - len(again))
     return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, again, strict=True)]
 
@@ -206,4 +206,4 @@ def scored_in(
     bayes = log_bayes_of(scores, np.array([q.prior_sd for q in parameters]))
     moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
     clear = scores.visible & (moved * np.abs(scores.amplitude) > USUAL["excursion"])
-    return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
+    return [Condition(e, float(b) + prior) for e, b, visible in zip(effects, bayes, clear, strict=True) if visible]

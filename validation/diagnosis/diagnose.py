@@ -118,10 +118,10 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     looked = scan(evidence.fit, evidence.tests)
     heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     chosen = conditions(calm, case, looked, heat, kinds, progress)
-    known = {**case.model.values, **evidence.fit.values}
-    law_errors = laws(evidence, known) if kinds is None or KIND in kinds else []
+    values = {**case.model.values, **evidence.fit.values}
+    law_errors = laws(evidence, values) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], known), range(first, first + len(chosen))))
+    evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], values), range(first, first + len(chosen))))
     hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress)
     timed, noise = retimed(evidence, hypotheses, reach(looked)), noise_of_refits(hypotheses)
     if noise is not None or timed is not evidence:

@@ -60,12 +60,12 @@ class During(Effect):
 
     def extend(self, network: Network) -> Network:
         grown = self.base.extend(network)
-        own = replace(grown.parameters[-1], prior_sd=USUAL["switched"] * grown.parameters[-1].prior_sd)
-        if own.mapping == "amplitude":
-            return self._conditional(network, grown, own)
-        if own.mapping == "offset":
-            return with_parameter(network, replace(own, name=self.name, targets=self._in_test(own)))
-        return self._copied(network, own)
+        amplitude = replace(grown.parameters[-1], prior_sd=USUAL["switched"] * grown.parameters[-1].prior_sd)
+        if amplitude.mapping == "amplitude":
+            return self._conditional(network, grown, amplitude)
+        if amplitude.mapping == "offset":
+            return with_parameter(network, replace(amplitude, name=self.name, targets=self._in_test(amplitude)))
+        return self._copied(network, amplitude)
 
     def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
         """A boundary alone can be off in a test, and all through it (`lasts`); no sensor, and no clock."""

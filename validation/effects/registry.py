@@ -33,14 +33,14 @@ def kinds() -> dict[str, type[Effect]]:
         import_module(module.name)
     root: Any = Effect
     classes = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
-    own = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
-    return dict(sorted(own.items())) | {c.kind: c for c in plugins("effects").values()}
+    builtin = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
+    return dict(sorted(builtin.items())) | {c.kind: c for c in plugins("effects").values()}
 
 
 def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
     """All effects that can sit somewhere in the scene; `only` restricts the kinds."""
-    known = kinds()
-    chosen = [_of(kind, known, "the kinds to look for") for kind in (known if only is None else only)]
+    table = kinds()
+    chosen = [_of(kind, table, "the kinds to look for") for kind in (table if only is None else only)]
     return tuple(cls(place) for cls in chosen for place in cls.places(scene))
 
 

@@ -33,12 +33,12 @@ class Event:
 
     @classmethod
     def of(cls, spans: Mapping[str, Iterable[Span]]) -> Event:
-        return cls({t: tuple(sorted((float(a), float(b)) for a, b in own)) for t, own in spans.items()})
+        return cls({t: tuple(sorted((float(a), float(b)) for a, b in pairs)) for t, pairs in spans.items()})
 
     @property
     def name(self) -> str:
         """ "day:600-900,1300-1600s": what reads it back is `event`."""
-        pieces = [f"{t}:{','.join(f'{a:.10g}-{b:.10g}' for a, b in own)}s" for t, own in self.spans.items()]
+        pieces = [f"{t}:{','.join(f'{a:.10g}-{b:.10g}' for a, b in pairs)}s" for t, pairs in self.spans.items()]
         return AND.join(pieces)
 
     @property
@@ -47,7 +47,7 @@ class Event:
 
     @property
     def every(self) -> list[Span]:
-        return [s for own in self.spans.values() for s in own]
+        return [s for pairs in self.spans.values() for s in pairs]
 
     @property
     def words(self) -> str:
@@ -68,7 +68,7 @@ class Event:
         return both / max(every - both, 1e-12)
 
     def document(self) -> dict:
-        spans = [{"test": t, "begin_s": a, "end_s": b} for t, own in self.spans.items() for a, b in own]
+        spans = [{"test": t, "begin_s": a, "end_s": b} for t, pairs in self.spans.items() for a, b in pairs]
         return {"event": self.name, "words": self.words, "spans": spans}
 
 
@@ -116,7 +116,7 @@ class TimeWindow:
             return self.factor * np.asarray(inputs[self.name], float)
         if timed is None:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
-        here = [own for test, own in timed.spans.items() if f"{RUNNING}{test}" in inputs]
+        here = [pairs for test, pairs in timed.spans.items() if f"{RUNNING}{test}" in inputs]
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
 
 

@@ -199,10 +199,10 @@ def fit_noise(parts: Sequence[Segment]) -> Noise:
     """Maximum likelihood per channel, all its tests together, each in proportion to its weight."""
     channels = list(dict.fromkeys(s.channel for s in parts))
     square, logdet, count = (np.zeros((len(channels), k)) for k in (len(GRID), len(GRID), 1))
-    for own in _tests(parts):
-        time = np.unique(np.concatenate([s.time for s in own]))
-        norms, ld = _bases(stamp(time)).judged(np.column_stack([_complete(s, time) for s in own]))
-        for s, norm in zip(own, norms.T, strict=True):
+    for segments in _tests(parts):
+        time = np.unique(np.concatenate([s.time for s in segments]))
+        norms, ld = _bases(stamp(time)).judged(np.column_stack([_complete(s, time) for s in segments]))
+        for s, norm in zip(segments, norms.T, strict=True):
             at = channels.index(s.channel)
             square[at] += norm
             logdet[at] += ld

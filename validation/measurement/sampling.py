@@ -159,8 +159,8 @@ class _Felt:
         push, best = self.modes.weight @ self.heat, SampleStep(h, 0.0, None, None, None)
         for name, row, _, lag in sensors:
             inside = row.index < len(self.states)
-            own = row.weights[inside] @ self.modes.shape[row.index[inside]]
-            parts = np.abs(change @ (own[:, None] * push).T)
+            modal = row.weights[inside] @ self.modes.shape[row.index[inside]]
+            parts = np.abs(change @ (modal[:, None] * push).T)
             late = parts @ interpolation_error(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
             if (error := float(np.sqrt(np.sum(late**2) / at.size))) > best.error_K:
                 best = SampleStep(h, error, name, *self._fastest(parts[int(late.argmax())]))

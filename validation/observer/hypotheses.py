@@ -81,5 +81,5 @@ def hypotheses(
     fails = sum(PRIOR[name].share for name in ("effect", "condition", "heat")) / max(len(bodies), 1)
     log = np.log(np.array([*[fault] * len(sensors), *[fails] * len(bodies)]) / PRIOR["nothing"].share)
     spread = np.concatenate([DRIFT * sigma, USUAL["switched"] * table_sd])
-    own = np.concatenate([allowed, np.zeros(len(bodies))])
-    return Hypotheses((*sensors, *bodies), spread, own, log, np.zeros(spread.size), np.zeros(spread.size))
+    tolerance = np.concatenate([allowed, np.zeros(len(bodies))])
+    return Hypotheses((*sensors, *bodies), spread, tolerance, log, np.zeros(spread.size), np.zeros(spread.size))

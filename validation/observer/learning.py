@@ -39,16 +39,16 @@ class Design:
 
     def started(self, sensors: Sequence[Channel], readings: Array, boundaries: Mapping[str, float]) -> Observer:
         """With some sensors, from their first readings (s,)."""
-        own = [self.as_learned(c) for c in sensors]
-        bias, channels = np.array([s.bias_K for s in own]), [s.channel for s in own]
+        sensor_models = [self.as_learned(c) for c in sensors]
+        bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
         return observer(
             self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias
         )  # fmt: skip
 
     def as_learned(self, c: Channel) -> Sensor:
         """A sensor by its name; as declared where no test had it."""
-        known = self.learned.get(c.name)
-        return Sensor(c) if known is None else known.of(c)
+        constants = self.learned.get(c.name)
+        return Sensor(c) if constants is None else constants.of(c)
 
 
 def unsettled(case: Case) -> ParameterPosterior:
@@ -104,9 +104,9 @@ def design_of(
 def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[Test], doubt: Doubt) -> Constants:
     """Of the network's heat, and of every sensor of the tests."""
     bare = thermal(network)
-    own = {p.name for p in bare.parameters}
+    names = {p.name for p in bare.parameters}
     channels = {c.name: c for t in tests for c in t.channels}
-    start = {n: v for n, v in values.items() if n in own}
+    start = {n: v for n, v in values.items() if n in names}
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
 
 

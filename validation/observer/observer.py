@@ -58,8 +58,8 @@ class Sample:
     def at(self, row: Row) -> tuple[float, float]:
         """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
         z = np.concatenate([self.x, self.u])
-        own = row.index < self.x.size
-        h = row.weights[own] @ self.along[row.index[own]]
+        inside = row.index < self.x.size
+        h = row.weights[inside] @ self.along[row.index[inside]]
         return float(row.weights @ z[row.index]), float(np.linalg.norm(h @ self.S[: h.size]))
 
 
@@ -201,10 +201,10 @@ def observer(
     bias (s,) K that the sensors read too much, none by default
     """
     off = np.zeros(len(sensors)) if bias is None else bias
-    known = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
-    x = initial_state(process.network, known or float(np.mean([*boundaries.values()])))
-    around = np.array([*known.values(), *boundaries.values()])
-    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in known}
+    start_T = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
+    x = initial_state(process.network, start_T or float(np.mean([*boundaries.values()])))
+    around = np.array([*start_T.values(), *boundaries.values()])
+    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in start_T}
     count, m = len(sensors), len(process.bodies)
     heats = np.hstack([np.zeros((m, count)), np.eye(m)])
     start = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)

@@ -79,8 +79,8 @@ class _Flows:
 
     def __init__(self, network: Network, values: Mapping[str, float], test: Test, bodies: Sequence[str]) -> None:
         self.network = thermal(network)
-        own = {p.name for p in self.network.parameters}
-        self.values = values_of(self.network, {k: v for k, v in values.items() if k in own})
+        names = {p.name for p in self.network.parameters}
+        self.values = values_of(self.network, {k: v for k, v in values.items() if k in names})
         self.test, self.columns = test, [network.column(b) for b in bodies]
         driven = record(test, {})
         self.z = np.asarray(simulate(self.network, driven, self.values, keep_states=True).z)

@@ -75,8 +75,8 @@ def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[i
     if error:
         parts, p = [error.beside(s, p) for s in parts], p + error.size
     for place in places:
-        own = [s for s in parts if s.channel == PREFIX + place.name]
-        yield place, _without_bias(own, fit.noise, p)
+        segments_there = [s for s in parts if s.channel == PREFIX + place.name]
+        yield place, _without_bias(segments_there, fit.noise, p)
 
 
 def with_thermocouples(test: Test, places: Sequence[Place]) -> Test:

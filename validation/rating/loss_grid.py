@@ -120,8 +120,8 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
     kinds = {s.kind for s in network.sources} | {s.name for s in network.sources} | {_bare(s) for s in network.sources}
     for name in grid.watts:
         if name not in kinds:
-            known = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
-            raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {known}")
+            choices = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
+            raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {choices}")
     sources = []
     for s in network.sources:
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
@@ -138,13 +138,13 @@ def _bare(s: Source) -> str:
 
 def _law(grid: LossGrid, watts: Array, source: Source) -> MapLoss:
     """Of one slice with the network's own temperature law, else linear between first and last slice."""
-    own = source.law.temperature
+    law = source.law.temperature
     first, T = watts[0], float(grid.temperatures[0])
     if grid.temperatures.size > 1:
         rise = float(grid.temperatures[-1]) - T
         alpha = float(np.sum(watts[-1] - first) / max(float(np.sum(first)), 1e-300) / rise)
-        own = Linear(alpha, T)
-    elif isinstance(own, Linear):
-        own = Linear(own.alpha / (1.0 + own.alpha * (T - own.reference)), T)
+        law = Linear(alpha, T)
+    elif isinstance(law, Linear):
+        law = Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
     rows = tuple(tuple(float(v) for v in row) for row in first)
-    return MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, own)
+    return MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)

@@ -79,13 +79,13 @@ class Model:
         try:
             record = replace(record, inputs=Signals(record.inputs, record.time.size))  # factors are worked out once
             x = self.start(op, load, speed).x
-            seen: list[tuple[Array, Array]] = []
+            iterates: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):
                 run = simulate(self.network, record, self.values, self.rows, begin=self.at(op, x))
-                seen = [*seen, (x, run.end.x)][-DEPTH:]
+                iterates = [*iterates, (x, run.end.x)][-DEPTH:]
                 if np.abs(run.end.x - x).max() < REPEATS_K * TOGETHER:
                     break
-                x = mixed(seen)
+                x = mixed(iterates)
             return np.asarray(run.y.max(axis=0))
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)

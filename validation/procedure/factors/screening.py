@@ -111,13 +111,13 @@ def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], di
     The voids of slots and of end windings are filled in one and the same bath, so the two count as one group.
     """
     table, test = table_of(machine), load or Load()
-    known: dict[tuple[tuple[str, float], ...], dict[str, float]] = {}
+    cache: dict[tuple[tuple[str, float], ...], dict[str, float]] = {}
 
     def rises(levels: Mapping[str, float]) -> dict[str, float]:
         key = tuple(sorted(levels.items()))
-        if key not in known:
-            known[key] = run(machine, levels, test, table)
-        return known[key]
+        if key not in cache:
+            cache[key] = run(machine, levels, test, table)
+        return cache[key]
 
     factors = [
         Varied("convection", 5.0, 10.0), Varied("emissivity", 0.2, 0.8), Varied("base", 0.0, 1.0),

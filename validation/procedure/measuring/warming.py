@@ -71,8 +71,8 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
     from scipy.stats import t as student
 
     minutes, T = np.asarray(minutes, float), np.asarray(T, float)
-    seen = np.isfinite(T)
-    minutes, T = minutes[seen], T[seen]
+    finite = np.isfinite(T)
+    minutes, T = minutes[finite], T[finite]
     if T.size < 5 or np.min(T) <= 0 or np.ptp(T) < 4 * resolution_K:
         raise InputError(f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K", "eq. 8",
                          f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K")  # fmt: skip
@@ -121,8 +121,8 @@ def equilibrium(minutes: Array, T: Array, resolution_K: float, window_min: float
     It must have held for a window's length of such pairs, so that one lucky pair does not count.
     """
     minutes, T = np.asarray(minutes, float), np.asarray(T, float)
-    seen = np.isfinite(T)
-    minutes, T = minutes[seen], T[seen]
+    finite = np.isfinite(T)
+    minutes, T = minutes[finite], T[finite]
     if T.size < 4 or minutes[-1] - minutes[0] < 2 * window_min:
         right = f"a record longer than {2 * window_min:g} min"
         raise InputError(f"{T.size} readings", "equilibrium", right)

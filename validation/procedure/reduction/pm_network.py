@@ -276,8 +276,8 @@ class _Builder:
         both = [f"link:{n}{m}" for n in ends for m in ("", ":forced")]
         self._parameter("end space", both, 0.4, "published sets differ by 2 to 3")
         for base in dict.fromkeys(n.rsplit(".", 1)[0] for n in self.nodes if n.startswith("base")):
-            own = [n for n in films if n.startswith(f"{base}.")]
-            acts = [f"link:{n}{m}" for n in own for m in (still, ":radiation")]
+            base_films = [n for n in films if n.startswith(f"{base}.")]
+            acts = [f"link:{n}{m}" for n in base_films for m in (still, ":radiation")]
             self._parameter(f"{base} films", acts, 0.4, "published plates facing up and down differ by a factor of 2")
         self._parameter(
             "capacity", [f"capacity:{n}" for n in self.nodes if "C_J_K" in self.nodes[n]], 0.05, "fill factors"

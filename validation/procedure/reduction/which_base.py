@@ -73,8 +73,8 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
         right = "a machine file with [bases], see docs/how-to/thermal-test.md"
         raise InputError("the network knows no bases", case.name, right)
     if unknown := [n for n in names if n not in [t.name for t in tests]]:
-        known = ", ".join(t.name for t in tests)
-        raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
+        choices = ", ".join(t.name for t in tests)
+        raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {choices}")
     declared_fit = _fitted(case, tests, None)
     chosen = [t for t in tests if not names or t.name in names]
     return [h for test in chosen for h in _of_test(case, tests, test, bases, declared_fit, progress)]
@@ -121,9 +121,9 @@ def wrong_bases(hypotheses: Sequence[Hypothesis]) -> list[str]:
 
 
 def _words(declared: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
-    own = [h for h in hypotheses if h.test == declared.test and not h.excluded]
-    better = " or ".join(h.base for h in own)
+    possible = [h for h in hypotheses if h.test == declared.test and not h.excluded]
+    better = " or ".join(h.base for h in possible)
     return (
         f"{declared.test} did not stand on the base its sheet says ({declared.base}, deviance {declared.deviance:.0f}) "
-        f"but on: {better}. At the base, not in the films of the machine: {declared.heat.against(own[0].heat)}"
+        f"but on: {better}. At the base, not in the films of the machine: {declared.heat.against(possible[0].heat)}"
     )
