@@ -80,8 +80,8 @@ def _rib(start: float, end: float, thick: float, side: int, number: int) -> Shap
         [(start, -1e-3), (start, high), (start + 0.2 * (end - start), high), (end, 0.1 * high), (end, -1e-3)]
     )
     flat = extruded(slope, -wide / 2, wide / 2, 0.25 * wide)  # x out, y forwards, z around
-    turned = flat.placed((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
-    return (turned if side > 0 else turned.flipped()).turned(2 * np.pi * number / RIBS)
+    upright = flat.placed((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
+    return (upright if side > 0 else upright.flipped()).turned(2 * np.pi * number / RIBS)
 
 
 def bearing(o: Outlines, part: Part) -> list[Body]:

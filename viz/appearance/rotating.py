@@ -26,8 +26,8 @@ def wheel(o: Outlines, part: Part) -> list[Body]:
     if not blades:
         return [Body(part.name, Finish.RUBBER, joined(hub))]
     r0, r1 = radii_of(o.of(blades[0]))
-    turned = [_blade(r0, r1, z1 - z0, (z0 + z1) / 2, angle_of(o.of(p)), len(blades)) for p in blades]
-    return [Body(part.name, Finish.RUBBER, joined([*hub, *turned]))]
+    vanes = [_blade(r0, r1, z1 - z0, (z0 + z1) / 2, angle_of(o.of(p)), len(blades)) for p in blades]
+    return [Body(part.name, Finish.RUBBER, joined([*hub, *vanes]))]
 
 
 def _blade(r0: float, r1: float, deep: float, z: float, angle: float, count: int) -> Shape:

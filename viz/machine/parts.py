@@ -84,14 +84,14 @@ def exploded(
     _paint(p, surface, field, theme, shift, limits=limits)
     if T is not None:
         scene.colour_bar(p, "°C", theme)
-    moved = nodes.points + shift[nodes.owner]
+    points = nodes.points + shift[nodes.owner]
     without = [part for part in nodes.parts if part not in members]
     if without:
         scene.footnote(p, f"without {', '.join(without)}: longer than the machine", theme)
     for group in groups:
-        _title(p, moved[np.concatenate([nodes.of(part) for part in group])], group)
+        _title(p, points[np.concatenate([nodes.of(part) for part in group])], group)
     scene.headline(p, title, theme)
-    corners = moved[np.concatenate([nodes.of(part) for part in members])]
+    corners = points[np.concatenate([nodes.of(part) for part in members])]
     scene.look(p, corners, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
     scene.save(p, png)
     return p

@@ -105,8 +105,8 @@ def _error(r: Report) -> str:
 
 
 def _pictures(r: Report) -> str:
-    turned = html.more("Turn it, cut it, play it", html.inner_page(r.viewer, _VIEWER)) if r.viewer else ""
-    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()), turned)
+    viewer = html.more("Turn it, cut it, play it", html.inner_page(r.viewer, _VIEWER)) if r.viewer else ""
+    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()), viewer)
 
 
 _VIEWER = "The machine in the browser's own GL: every test, turned, cut and played. It runs a script of its own."

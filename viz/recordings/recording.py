@@ -143,13 +143,13 @@ def _names(
     places = np.array([positions[channel.name] for channel in ranked])
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], beside(places, surface.points), places)
-    chosen = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
+    visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
-        at[chosen], labels=[short(ranked[i].name) for i in chosen], radii=rr.Radius.ui_points(0.0), show_labels=True,
+        at[visible], labels=[short(ranked[i].name) for i in visible], radii=rr.Radius.ui_points(0.0), show_labels=True,
         colors=[255, 255, 255],
     )  # fmt: skip
     stream.log("machine/names", labels, static=True)
-    stubs = [np.stack([places[i], at[i]]) for i in chosen if hidden[i]]
+    stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
     lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
 
