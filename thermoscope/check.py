@@ -86,8 +86,8 @@ def _rerun() -> bool:
 
 def _vulkan() -> bool:
     """A loader and at least one driver; asked in a process of its own, since drivers may crash."""
-    done = subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
-    return done.returncode == 0
+    process = subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
+    return process.returncode == 0
 
 
 def _browser(browsers: Sequence[str]) -> bool:

@@ -117,14 +117,14 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that no law reads, and inputs that no test moves."""
     read = network.inputs
-    fed = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
-    fed |= {name: "" for p in patients for name in p.sheet.events}
+    column_of = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
+    column_of |= {name: "" for p in patients for name in p.sheet.events}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
-    for name, column in sorted(fed.items()):
+    for name, column in sorted(column_of.items()):
         if name not in read and column not in squared:
             yield Finding("", name, "no law of the network reads this input; an effect may",
                           "input = the name that a law reads, or leave it for effects", True)  # fmt: skip
-    for name in sorted(n for n in read & set(fed) if fed[n]):
+    for name in sorted(n for n in read & set(column_of) if column_of[n]):
         values = np.concatenate([p.inputs[name] for p in patients if name in p.inputs])
         if np.unique(values[np.isfinite(values)]).size < 2:
             yield Finding("", name, "no test moves this input: what depends on it cannot be told",

@@ -100,9 +100,9 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
     network, run = _run(case, test)
-    chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
-    states = np.asarray(run.z)[chosen, : len(network.states)]
-    return run.time[chosen], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
+    rows = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
+    states = np.asarray(run.z)[rows, : len(network.states)]
+    return run.time[rows], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
 def at_instant(test: Test, time: float) -> str:

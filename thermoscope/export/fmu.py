@@ -94,7 +94,7 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
 
     Raises MissingDependency where there is none for this computer.
     """
-    files, name, done = sources(model, version), identifier(model), []
+    files, name, folders = sources(model, version), identifier(model), []
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         _put(archive, "modelDescription.xml", description(model, version))
@@ -107,13 +107,13 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
                 continue
             folder = target.fmi2 if version == 2 else target.fmi3
             _put(archive, f"binaries/{folder}/{name}{target.ending}", code)
-            done.append(folder)
+            folders.append(folder)
         for file, text in files.items():
             _put(archive, f"sources/{file}", text)
         if version == 3:
             _put(archive, "sources/buildDescription.xml", _build(name, files))
         _put(archive, "documentation/README.txt", "\n".join([*heading(model), ""]))
-    return out.getvalue(), done
+    return out.getvalue(), folders
 
 
 def _put(archive: zipfile.ZipFile, name: str, content: str | bytes) -> None:

@@ -128,8 +128,8 @@ def _reaches(tests: Sequence[Test], names: Sequence[str]) -> Ranges:
 
 
 def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
-    chosen = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
-    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in chosen]
+    pairs = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
+    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in pairs]
 
 
 def _times(one: Product, by: float) -> Product:

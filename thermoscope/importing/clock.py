@@ -29,7 +29,7 @@ INSTANT = re.compile(
 DAY_S = 86400.0
 UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
 SHARE = 0.9  # of the cells of a column that is a clock
-LOOKED_AT = 200  # cells that tell what a column is
+SAMPLE = 200  # cells that tell what a column is
 
 
 @dataclass(frozen=True)
@@ -96,14 +96,14 @@ def _guessed_clock(source: Source) -> Clock | None:
 def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return bool(test is is_date)
-    nonempty = [c for c in cells[:LOOKED_AT] if c is not None and str(c).strip()]
+    nonempty = [c for c in cells[:SAMPLE] if c is not None and str(c).strip()]
     return bool(nonempty) and sum(test(c) for c in nonempty) >= SHARE * len(nonempty)
 
 
 def _has_time(cells: Sequence[Any]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return True
-    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) for c in cells[:LOOKED_AT])
+    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) for c in cells[:SAMPLE])
 
 
 def _day(cell: Any) -> str:
@@ -120,8 +120,8 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...]) -> Clock:
     day_first = points or any(len(m["a"]) < 4 and int(m["a"]) > 12 for m in read)
     zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
     seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
-    named = day_first or any(len(m["a"]) < 4 for m in read)
-    order = "day before month, " if day_first else "month before day, " if named else ""
+    clear = day_first or any(len(m["a"]) < 4 for m in read)
+    order = "day before month, " if day_first else "month before day, " if clear else ""
     return _since_first(seconds, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
 
 
@@ -185,13 +185,13 @@ def _total(parts: list[float], two: bool) -> float:
 def _numeric(source: Source) -> Clock | None:
     """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
     numeric = [c for c in source.cells if source.is_numeric(c)]
-    named = [c for c in numeric if is_time(source.labels[c])]
-    timed = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
-    candidates = [c for c in (*named, *timed) if c != TIME]
-    counted = source.file.suffix.lower() == ".tdms" and TIME in named and _counts(source.numbers(TIME))
-    if TIME in named and source.file.suffix.lower() in BINARY and not (candidates and counted):
+    by_name = [c for c in numeric if is_time(source.labels[c])]
+    by_unit = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
+    candidates = [c for c in (*by_name, *by_unit) if c != TIME]
+    counted = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and counted):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
-    if candidates or TIME in named:
+    if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)
     return _scaled(source, numeric[0]) if source.unnamed and rises(source, numeric[0]) else None
 

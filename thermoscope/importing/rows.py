@@ -11,7 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from thermoscope.importing.cells import is_reading, is_unit, number
 
-LOOKED_AT = 2000  # rows that are enough to find the table
+SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.5  # share of a row's cells that are readings
 
@@ -34,7 +34,7 @@ class Layout:
 
 def layout(rows: Sequence[Row], where: str) -> Layout:
     """InputError where no table of at least two columns stands in the rows."""
-    head = rows[:LOOKED_AT]
+    head = rows[:SAMPLE]
     widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
         raise InputError("no rows of readings in it: it is no record", where,

@@ -44,7 +44,9 @@ ROLES: Mapping[Role, frozenset[str]] = {
     Role.TEST_BED: frozenset({"bench", "bed", "plate", "prüfstand", "pruefstand"}),
 }  # fmt: skip
 
-WANTED = frozenset({"ref", "set", "setpoint", "soll", "sp", "target", "cmd", "demand", "command", "sollwert", "limit"})
+SETPOINT = frozenset(
+    {"ref", "set", "setpoint", "soll", "sp", "target", "cmd", "demand", "command", "sollwert", "limit"}
+)
 READ = frozenset({"fbk", "act", "actual", "ist", "meas", "measured", "feedback", "mess", "istwert"})
 INLET = frozenset({"inlet", "in", "vorlauf", "supply"})
 SHORTEST = 4  # letters of a word that may be looked for inside another

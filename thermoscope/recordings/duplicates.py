@@ -20,10 +20,10 @@ def twice(names: Iterable[str]) -> list[str]:
 
 def declared_once(sheet: Sheet) -> None:
     """InputError for an input fed twice, a sensor declared twice, a mean that takes a column's name."""
-    fed = [c.feeds for c in sheet.columns if c.feeds]
-    if CLOCK in (*fed, *sheet.inputs, *sheet.squares, *sheet.events):
+    inputs = [c.feeds for c in sheet.columns if c.feeds]
+    if CLOCK in (*inputs, *sheet.inputs, *sheet.squares, *sheet.events):
         raise InputError(f"input '{CLOCK}' is the clock of the test itself", sheet.where, "another name for it")
-    for name in twice([*fed, *sheet.inputs, *sheet.squares, *sheet.events]):
+    for name in twice([*inputs, *sheet.inputs, *sheet.squares, *sheet.events]):
         raise InputError(f"input '{name}' is fed twice", sheet.where, "one column or constant per input: "
                          "use = false for the others")  # fmt: skip
     for header in twice(c.header for c in sheet.columns if c.is_temperature):

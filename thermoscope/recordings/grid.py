@@ -21,15 +21,15 @@ def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]
     Raises InputError for a test too short to compare or too long to be one: mostly a wrong time unit.
     """
     usual, span = float(np.median(np.diff(samples.time))), float(samples.time[-1])
-    used = max(step, usual)
-    count = span / used + 1
+    interval = max(step, usual)
+    count = span / interval + 1
     if not LEAST <= count <= MOST or span > LONGEST_S:
         raise InputError(f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of "
-                         f"{used:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
+                         f"{interval:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
                          "right, and sample_s of case.toml?")  # fmt: skip
     coarse = usual > COARSE * step
     note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
-    return np.arange(0.0, span + ROUNDING * used, used), [note] if coarse else []
+    return np.arange(0.0, span + ROUNDING * interval, interval), [note] if coarse else []
 
 
 def averaged(time: Array, values: Array, grid: Array) -> Array:

@@ -184,14 +184,14 @@ def _channels(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
 
 
 def _means(sheet: Sheet, network: Network) -> list[Sensor]:
-    named: dict[str, Column] = {
+    column_of: dict[str, Column] = {
         c.name: c for c in sheet.columns if c.is_temperature and c.place not in network.boundaries
     }
     for mean in sheet.means:
         for name in mean.of:
-            if name not in named:
+            if name not in column_of:
                 what = f"averages '{name}', which is no temperature column of the machine"
-                raise InputError(what, mean.where, suggestion(name, named))
+                raise InputError(what, mean.where, suggestion(name, column_of))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)
         for m in sheet.means

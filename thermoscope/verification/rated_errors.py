@@ -97,8 +97,8 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
 def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
     """The step of loss, and a steady state at other coefficients; field and network."""
     yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
-    moved = point.moved(SPREAD)
-    yield moved.of_field(field), moved.of_network(network, field)
+    variant = point.moved(SPREAD)
+    yield variant.of_field(field), variant.of_network(network, field)
 
 
 @dataclass(frozen=True)

@@ -111,16 +111,16 @@ def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
     if not record.source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
     if to in target.places or to in target.boundaries:
-        wanted = "temperature"
+        quantity = "temperature"
     elif to in target.inputs:
-        wanted = target.inputs[to] or g.quantity
+        quantity = target.inputs[to] or g.quantity
     else:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
-    if g.quantity and wanted != g.quantity:
-        raise InputError(f"is a {g.quantity}, '{to}' wants a {wanted}".replace("_", " "), g.column, "another column")
-    unit = g.unit or ("degC" if wanted == "temperature" else next(iter(QUANTITIES[wanted].units), ""))
-    place, feeds = (to, "") if wanted == "temperature" and to not in target.inputs else ("", to)
-    return replace(g, quantity=wanted, unit=unit, place=place, feeds=feeds, doubt="")
+    if g.quantity and quantity != g.quantity:
+        raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
+    unit = g.unit or ("degC" if quantity == "temperature" else next(iter(QUANTITIES[quantity].units), ""))
+    place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
+    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
 
 
 def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:

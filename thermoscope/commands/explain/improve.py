@@ -33,12 +33,12 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         checked_columns(folder)
         ledger = Ledger(folder)
         supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
-        done = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
-    last = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+        result = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
+    last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
-    document = {"case": folder.case.name, **done.document(), "written": ledger.written}
+    document = {"case": folder.case.name, **result.document(), "written": ledger.written}
     give(document, target, lambda: answer(document, folder, case))
-    return 0 if done.adequate else 1
+    return 0 if result.adequate else 1
 
 
 class Ledger:

@@ -82,11 +82,11 @@ def bearable(built: Built) -> dict[str, float]:
     from thermoscope.verification.crosscheck import steady_state
 
     point = rated_inputs(built.machine)
-    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
+    means = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
     while True:
         with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
-            T = steady_state(built.network, point, 20.0)[named]
+            T = steady_state(built.network, point, 20.0)[means]
             if T.min() > 0.0 and T.max() < HOT:
                 return point
         point = {**point, "current_A": 0.8 * point["current_A"]}

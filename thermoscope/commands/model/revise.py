@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 NO_EVENT = "thermoscope explain diagnose first: it found no event in these"
 FEW = 4  # parameters named in a sentence
-MOVED_K = 1.0  # what a step has to move where no sensor is, to be told
+CHANGE_K = 1.0  # what a step has to move where no sensor is, to be told
 LINE = 75  # letters, so that its unit still fits into 80
 
 
@@ -182,9 +182,9 @@ def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
 
 def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
     """Where no reading says whether the step is right: as many places as a line holds."""
-    moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K]
+    changes = [p for p in places if abs(p["after_C"] - p["before_C"]) >= CHANGE_K]
     text = ""
-    for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in moved):
+    for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in changes):
         longer = f"{text}, {each}" if text else f"No sensor sees: {each}"
         if text and len(longer) > LINE:
             break

@@ -214,12 +214,12 @@ def assumptions(folder: Folder) -> list[str]:
     s, case = folder.settings, folder.case
     kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
     roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
-    used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
+    summary = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
     sigma = sorted({f"{c.sigma_K:g}" for t in case.tests for c in t.channels}, key=float)
     spread = " to ".join(sigma[:: max(1, len(sigma) - 1)])
     return [
         f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
-        f"Tests by role: {used}.",
+        f"Tests by role: {summary}.",
         *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
         f"Sensors are taken to be right within {spread} K (one standard deviation).",
         *folder.notes,
@@ -229,8 +229,8 @@ def assumptions(folder: Folder) -> list[str]:
 def commands(folder: Folder, case: str) -> list[str]:
     """What leads from the declared model to this page."""
     calls = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
-    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in calls]
-    return [*done, f"thermoscope show report {case}"]
+    lines = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in calls]
+    return [*lines, f"thermoscope show report {case}"]
 
 
 def provenance() -> str:

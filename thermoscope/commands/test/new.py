@@ -187,10 +187,10 @@ def drafts_of(
     """A test from each group of recordings that ran together; their clocks are aligned."""
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
-        moved = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        part, note = common((first, *moved), window_s)
+        rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
+        part, note = common((first, *rest), window_s)
         name = test_name(first.source.file, [d.name for d in out])
-        draft = Draft(name, (first, *moved), window_s=part, notes=note)
+        draft = Draft(name, (first, *rest), window_s=part, notes=note)
         out.append(dialogue.completed(draft))
     return out
 
@@ -272,8 +272,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """What became of each column of the first test, what was assumed, and the next command."""
     tests, folder = document["tests"], document["folder"]
     columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
-    used = sum(bool(_goes(c)) for c in columns)
-    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {used} of {len(columns)} columns "
+    count = sum(bool(_goes(c)) for c in columns)
+    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
                 "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
     guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])

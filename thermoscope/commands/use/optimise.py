@@ -45,8 +45,8 @@ def optimise(
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
-            chosen = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
-            document["interpolation_error"] = Condensations(problem, tell).verified(chosen)
+            samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
+            document["interpolation_error"] = Condensations(problem, tell).verified(samples)
         where = out or Path("out") / f"{folder.case.name}-designs"
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}

@@ -148,8 +148,8 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
     if cycle.drive is not None:
         from lumped.drives.coupled import coupled
 
-        driven = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
-        record = replace(record, inputs=driven.inputs)
+        drive = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
+        record = replace(record, inputs=drive.inputs)
     lap = Lap(record, op.loads)
     share, at = share_for_ever(it.model, op, it.limits, lap)
     return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}

@@ -83,7 +83,7 @@ class Session:
     errors: dict[str, list[Array]] = field(default_factory=dict)
     last: Sample | None = None
     spoken: float = -np.inf
-    begun_s: float = 0.0
+    start_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.rows = mean_rows(self.design.process.network)
@@ -91,7 +91,7 @@ class Session:
 
     def take(self, rows: Rows) -> None:
         if self.one is None:
-            self.one, self.begun_s = started(self.design, self.sensors, rows), float(rows.time[0])
+            self.one, self.start_s = started(self.design, self.sensors, rows), float(rows.time[0])
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
             initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
             self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
@@ -165,7 +165,7 @@ class Session:
         states = dict(zip((c.name for c in self.sensors), self.one.states, strict=True))
         noise, last = self.design.noise, self.last
         return {
-            "duration_s": last.time_s - self.begun_s, "samples": len(self.lines),
+            "duration_s": last.time_s - self.start_s, "samples": len(self.lines),
             "process_noise": {"time_s": noise.time_s},
             "sensors": [{"sensor": c.name, "place": c.place, "given": c in self.sensors,
                          "dropped": states[c.name].dropped if c.name in states else ""}
