@@ -89,8 +89,8 @@ def _mesh_face(points: Floats, face: shapely.Polygon, rings: list[Ints], size: f
     corners, added = np.unique(np.concatenate(rings)), interior_points(face, size)
     outline = [nudged(points[ring]) for ring in rings]
     local = np.vstack([points[corners], added])
-    for ring, moved in zip(rings, outline):
-        local[np.searchsorted(corners, ring)] = moved
+    for ring, positions in zip(rings, outline):
+        local[np.searchsorted(corners, ring)] = positions
     border = np.vstack([np.column_stack([ring, np.roll(ring, -1)]) for ring in rings])
     polygon = shapely.Polygon(outline[0], outline[1:])
     triangles = triangulate_face(local, np.searchsorted(corners, border), polygon)

@@ -73,8 +73,8 @@ class Curves:
     def _on_arc(self, which: Ids, points: Floats) -> Floats:
         x, y = (points - self.centre[which]).T
         radius, half = self.radius[which], self.sweep[which] / 2
-        turned = np.arctan2(y, x) - self.angle[which] - half
-        along = (turned + math.pi) % (2 * math.pi) - math.pi + half  # from the middle, so that both ends are near
+        angle = np.arctan2(y, x) - self.angle[which] - half
+        along = (angle + math.pi) % (2 * math.pi) - math.pi + half  # from the middle, so that both ends are near
         return np.stack([along * radius, np.hypot(x, y) - radius])
 
 
@@ -112,8 +112,8 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     np.logical_or.at(corners, (ends, np.tile(owner, 2)), True)
     original = curve[first]
     a, b = (points[pieces[first, i]] - curves.centre[original] for i in (0, 1))
-    turned = (np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])) % (2 * math.pi)
-    sweep = np.where(curves.curved[original], turned, 0.0)
+    angle = (np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])) % (2 * math.pi)
+    sweep = np.where(curves.curved[original], angle, 0.0)
     return Arrangement(
         points,
         pieces[first],
