@@ -18,12 +18,12 @@ MAPPINGS = {
 
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
-    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
-    names = [p.name for p in declared]
+    parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
+    names = [p.name for p in parameters]
     for name in (n for n in names if names.count(n) > 1):
         raise top.error(f"two parameters are called '{name}': prior_sd in a table makes one of that name",
                         "prior_sd there, or [parameters.NAME] of another name")  # fmt: skip
-    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in declared)
+    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in parameters)
 
 
 def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float]]:

@@ -50,8 +50,8 @@ def coupled(
     residuals: list[float] = []
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}
-        driven = replace(record, inputs=inputs)
-        run = simulate(network, driven, values, [*looks, *rows], keep_states=True, precision=READINGS)
+        final = replace(record, inputs=inputs)
+        run = simulate(network, final, values, [*looks, *rows], keep_states=True, precision=READINGS)
         new = {name: run.y[:, k] for k, name in enumerate(watched)}
         residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
         T = new
@@ -70,15 +70,15 @@ def _without(run: Run, first: int) -> Run:
 
 
 def series_drive(
-    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, wanted_mps: Array, slope: Array,
+    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, target_mps: Array, slope: Array,
     reference_degC: float = 20.0, alpha: float = ALPHA_CU,
 ) -> Drive:  # fmt: skip
     """The vehicle's series machine; R = R(reference) (1 + alpha (T - reference)) with T["winding"]."""
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         warm = machine.R * (1.0 + alpha * (T["winding"] - reference_degC))
-        cycle: Cycle = drive_cycle(machine, vehicle, controller, time, wanted_mps, slope, resistance=warm)
-        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(wanted_mps, float)}
+        cycle: Cycle = drive_cycle(machine, vehicle, controller, time, target_mps, slope, resistance=warm)
+        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(target_mps, float)}
 
     return drive
 

@@ -105,8 +105,8 @@ class Assembly:
         """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""
         key = live.tobytes() + steady.tobytes()
         if key not in self._packed:
-            chosen = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
-            self._packed[key] = _pack(chosen, steady[live])
+            patterns = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
+            self._packed[key] = _pack(patterns, steady[live])
         return self._packed[key]
 
 

@@ -71,12 +71,12 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
     print_ = footprint(network, joint, body, foot)
-    grown = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
+    larger = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
     films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
-    bare = [_bare(grown, film, print_, switch) for film in films]
-    moved = {film.name: link.name for film, link in zip(films, bare, strict=True)}
-    parameters = tuple(_also(p, moved) for p in network.parameters)
-    return replace(grown.extended(bare), parameters=parameters)
+    bare = [_bare(larger, film, print_, switch) for film in films]
+    copies = {film.name: link.name for film, link in zip(films, bare, strict=True)}
+    parameters = tuple(_also(p, copies) for p in network.parameters)
+    return replace(larger.extended(bare), parameters=parameters)
 
 
 def _of_base(network: Network, places: tuple[str, str]) -> bool:
@@ -100,7 +100,7 @@ def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:
     return network.surface_link(name, "contact", face.name, "ambient", Switched(film.law, switch, False))
 
 
-def _also(parameter: Parameter, moved: Mapping[str, str]) -> Parameter:
+def _also(parameter: Parameter, copies: Mapping[str, str]) -> Parameter:
     """What acts on a film acts on its share of the footprint too."""
-    more = tuple((moved[target], exponent) for target, exponent in parameter.targets if target in moved)
+    more = tuple((copies[target], exponent) for target, exponent in parameter.targets if target in copies)
     return replace(parameter, targets=(*parameter.targets, *more))

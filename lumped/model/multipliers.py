@@ -23,10 +23,10 @@ def factor(parameter: Parameter, value: float) -> tuple[float, float]:
 
 def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str, float]:
     """The value of every parameter: the declared one unless given. InputError for a value of no parameter."""
-    declared = {p.name for p in network.parameters}
-    unknown = sorted(set(values or {}) - declared)
+    names = {p.name for p in network.parameters}
+    unknown = sorted(set(values or {}) - names)
     if unknown:
-        raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(declared))}")
+        raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(names))}")
     return parameter_values(network, values or {})
 
 
@@ -80,16 +80,16 @@ def slopes(
     if not parameters:
         return []
     now = values_of(network, values)
-    acting, f, declared = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
+    acting, f, by_name = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
     out = []
     for parameter in parameters:
-        if parameter.name not in declared:
+        if parameter.name not in by_name:
             where = network.title
             raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
-        declaration = declared[parameter.name]
+        declaration = by_name[parameter.name]
         df = factor(declaration, now[declaration.name])[1]
-        moved = dict.fromkeys(target for target, _ in declaration.targets if target in acting)
-        out.append({target: _slope(acting[target], f, declaration.name) * df for target in moved})
+        targets = dict.fromkeys(target for target, _ in declaration.targets if target in acting)
+        out.append({target: _slope(acting[target], f, declaration.name) * df for target in targets})
     return out
 
 

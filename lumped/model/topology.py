@@ -37,9 +37,9 @@ class Topology:
 
     @cached_property
     def fluids(self) -> tuple[str, ...]:
-        declared = [p.name for p in self.network.places.values() if p.kind == "fluid" and p.name in self.network.states]
+        fluids = [p.name for p in self.network.places.values() if p.kind == "fluid" and p.name in self.network.states]
         passed = [self.part(x.places[1]) for x in self.links if x.kind == "stream"]
-        return tuple(dict.fromkeys((*declared, *(p for p in passed if p in self.network.states))))
+        return tuple(dict.fromkeys((*fluids, *(p for p in passed if p in self.network.states))))
 
     def part(self, place: str) -> str:
         site = self.network.places.get(place)

@@ -110,9 +110,9 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
     if not isinstance(node, Mapping):
         return node
     if node.get("type") in ("number", "integer"):
-        allowed = bounds(key, table)
-        kind = "integer" if allowed.whole else "number"
-        return {**node, "type": kind, "minimum": allowed.low, "maximum": allowed.high}
+        limits = bounds(key, table)
+        kind = "integer" if limits.whole else "number"
+        return {**node, "type": kind, "minimum": limits.low, "maximum": limits.high}
     out = {name: bounded(inner, key, table) for name, inner in node.items() if name not in INNER}
     if "properties" in node:
         out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
