@@ -93,21 +93,29 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     values = parameter_values(network, case.model.values)
     roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
     tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
-    grown, doubts = with_doubts(network, case.doubt, tests or case.tests)
+    larger, doubts = with_doubts(network, case.doubt, tests or case.tests)
     of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
-        return ParameterPosterior(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
+        return ParameterPosterior(larger, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
     plain = minimise(network, tests, unknowns, start, None, values, 0, CachedSegments(parts, nearby=False))
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
-    names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
+    names = (*unknowns.names, *uncertain_names(larger, doubts, tests[0], values, fit, case.doubt), *inputs)
     covariance, offset = joint(fit, inputs)
     return ParameterPosterior(
-        grown, values, names, covariance, of_network, tuple(t.name for t in tests), case.doubt, rows_read(tests), offset
+        larger,
+        values,
+        names,
+        covariance,
+        of_network,
+        tuple(t.name for t in tests),
+        case.doubt,
+        rows_read(tests),
+        offset,
     )
 
 
@@ -125,9 +133,9 @@ def input_columns(
     """
     out: dict[str, list[Array]] = {}
     for test in tests:
-        for name, moved in moved_inputs(network, test, doubt):
+        for name, variant in moved_inputs(network, test, doubt):
             if name not in FLOWS.values():
-                change = {s.channel: s for s in segments(network, [moved], values)}
+                change = {s.channel: s for s in segments(network, [variant], values)}
                 column = out.setdefault(name, [np.zeros_like(s.r) for s in plain])
                 for i, s in enumerate(plain):
                     if s.test == test.name:
@@ -136,11 +144,11 @@ def input_columns(
 
 
 def uncertain_names(
-    grown: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
+    larger: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
 ) -> list[str]:
     """A name for every column of the model error: links and capacities, cores, placements, flows."""
-    cored = with_cores(grown, test, values, doubt)
-    first = [p.name for p in (*doubts, *cored.parameters[len(grown.parameters) :])]
+    cored = with_cores(larger, test, values, doubt)
+    first = [p.name for p in (*doubts, *cored.parameters[len(larger.parameters) :])]
     assert fit.error is not None
     rest = fit.error.size - len(first)
     return [*first, *(f"placement {i}" for i in range(rest - 2)), "flow of air", "flow of liquid"]

@@ -154,9 +154,9 @@ def minimise(
     iterate = Iterate(network, tests, unknowns, fixed, theta, noise, cache, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {iterate.objective:.4g}")
-        done = iterate.step()
+        finished = iterate.step()
         keep(unknowns.values(iterate.theta))
-        if done:
+        if finished:
             break
     return iterate.fit()
 

@@ -260,11 +260,11 @@ def model_error(
 
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
-    grown, doubts = with_doubts(network, doubt, sensed or tests)
+    larger, doubts = with_doubts(network, doubt, sensed or tests)
 
     def of_test(test: Test) -> tuple[tuple[Parameter, ...], dict[tuple[str, str], Array]]:
-        cored = with_cores(grown, test, values, doubt)
-        every = (*doubts, *cored.parameters[len(grown.parameters) :])
+        cored = with_cores(larger, test, values, doubt)
+        every = (*doubts, *cored.parameters[len(larger.parameters) :])
         parts = segments(cored, [test], values, every)
         scale = np.array([p.prior_sd for p in every])
         beside = placements(network, test, values, doubt, sensed or tests)

@@ -77,13 +77,13 @@ def uncertainties(
     y : (n_time, n_channel) degC, the prediction where it is known already
     """
     plain = predict(network, test, values).y if y is None else y
-    moved = dict(_contributions(network, test, values, doubt, plain))
+    contributions = dict(_contributions(network, test, values, doubt, plain))
     numeric = _time_steps(network, test, values) if budget is None else budget
     out = []
     for j, c in enumerate(test.channels):
         read = np.isfinite(c.y)
         if read.any():
-            inputs = {name: float(u[j]) for name, u in moved.items()}
+            inputs = {name: float(u[j]) for name, u in contributions.items()}
             # estimates of discretisation errors are bounds, as Roache's factor of 3 makes them: expanded uncertainties
             numeric_K = numeric.get(c.name, 0.0) / COVERAGE
             out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, numeric_K, _rms((c.y - plain[:, j])[read])))

@@ -99,18 +99,20 @@ class HatScores:
         return Interval(event, path, float(log_bayes(np.array([u]), np.array([V]), self.usual(path))[0]))
 
 
-def hat_scores(evidence: Evidence, looked: Scan, values: Mapping[str, float]) -> HatScores:
+def hat_scores(evidence: Evidence, heat_scan: Scan, values: Mapping[str, float]) -> HatScores:
     """The scan as an efficient score: calibration and model error projected out."""
     fit, network = evidence.fit, evidence.fit.network
     left = {(s.test, s.channel): s.r for s in fit.parts}
-    grams = projected(fit, [replace(s, r=left[s.test, s.channel]) for s in looked.parts])
+    grams = projected(fit, [replace(s, r=left[s.test, s.channel]) for s in heat_scan.parts])
     start, count = {}, 0
     for name, g in grams.items():
         start[name], count = count, count + g.Zr.size
     theta, sd = extended_prior(fit)
     scores = score(per_test(grams), theta, sd, np.zeros(count, int))
-    T = {t.name: temperatures(evidence, t, looked.knots[t.name], values) for t in evidence.tests}
-    return HatScores(looked.places, looked.knots, start, T, scores, power_scale(network), conductance_scale(network))
+    T = {t.name: temperatures(evidence, t, heat_scan.knots[t.name], values) for t in evidence.tests}
+    return HatScores(
+        heat_scan.places, heat_scan.knots, start, T, scores, power_scale(network), conductance_scale(network)
+    )
 
 
 def temperatures(evidence: Evidence, test: Test, at: Array, values: Mapping[str, float]) -> dict[str, Array]:

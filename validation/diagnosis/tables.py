@@ -133,16 +133,16 @@ def candidates(
     """The groups' members, then the others by probability."""
     e = posterior.evidence
     share = inclusion(posterior.hypotheses, len(e.effects))
-    chosen = [k for g in choice.groups for k in g]
-    order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
+    members = [k for g in choice.groups for k in g]
+    order = [*members, *(int(k) for k in np.argsort(-share, kind="stable") if k not in members)]
     size, limit = smallest(e), thresholds(e)
-    lead = single[chosen[0]].fit if chosen else e.fit
+    lead = single[members[0]].fit if members else e.fit
     beside = Beside.of(case, posterior, lead)
     few = order[:ROWS]
     P = probabilities(posterior.hypotheses)
     fitted = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
     within = {k: next((h.fit for h in fitted if k in h.members), single[k].fit) for k in few}
-    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1])
+    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in members[:1])
             for k in few]  # fmt: skip
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
                  for r, k in zip(rows, few, strict=True))  # fmt: skip

@@ -165,10 +165,10 @@ def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments,
         m, P = now.posterior()
         around = (m - now.mean) ** 2 + np.einsum("uii->ui", P)
         variance = np.maximum(np.average(around, axis=0, weights=weights), LOWEST)
-        moved = float(np.max(np.abs(np.log(variance / now.variance))))
+        change = float(np.max(np.abs(np.log(variance / now.variance))))
         now = replace(now, variance=variance).with_mean(weights)
         weights = now.weights()
-        if moved < TOLERANCE:
+        if change < TOLERANCE:
             break
     return now, weights
 

@@ -324,31 +324,31 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     """The noise of what calibration, model error and some effects leave, by tangents."""
     e, p = evidence, evidence.p
     G, (theta, sd) = total(e.grams), extended_prior(e.fit)
-    chosen, q = list(members), theta.size
-    A = np.block([[G.JJ, G.JZ[:, chosen]], [G.JZ[:, chosen].T, G.ZZ[np.ix_(chosen, chosen)]]])
-    wide = np.array([widened(e.parameters[k]).prior_sd for k in chosen])
+    columns, q = list(members), theta.size
+    A = np.block([[G.JJ, G.JZ[:, columns]], [G.JZ[:, columns].T, G.ZZ[np.ix_(columns, columns)]]])
+    wide = np.array([widened(e.parameters[k]).prior_sd for k in columns])
     weight = np.concatenate([sd, wide]) ** -2.0
-    b = np.concatenate([G.Jr, G.Zr[chosen]]) - weight * np.concatenate([theta, np.zeros(len(chosen))])
+    b = np.concatenate([G.Jr, G.Zr[columns]]) - weight * np.concatenate([theta, np.zeros(len(columns))])
     x = np.linalg.solve(A + np.diag(weight), b)
     error, left = e.fit.error, []
     for s in e.parts:
-        moved = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in chosen]] @ x[q:]
-        left.append(replace(s, r=s.r - moved - (error.of(s) @ x[p:q] if error else 0.0)))
+        response = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in columns]] @ x[q:]
+        left.append(replace(s, r=s.r - response - (error.of(s) @ x[p:q] if error else 0.0)))
     return fit_noise(left)
 
 
 def refit(
     evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = (),
-    begun: float | None = None,
+    objective: float | None = None,
 ) -> Fit:  # fmt: skip
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
     tangents : of all these where the fit begins, by default those without the candidates
-    begun : objective there, by default that without the candidates
+    objective : there, by default that without the candidates
     """
     network, unknowns, fixed = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
-    before = fit.objective if begun is None else begun
+    before = fit.objective if objective is None else objective
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, fixed, 8,
                      CachedSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
@@ -388,8 +388,8 @@ def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finel
     finely : to its end, with tangents of its own there
     """
     network, unknowns, fixed = with_members(evidence, members)
-    moved, fit = before.unknowns.names != unknowns.names, evidence.fit
-    cache = CachedSegments(before.parts, nearby=moved, renewed=True, stale=True)
+    other_times, fit = before.unknowns.names != unknowns.names, evidence.fit
+    cache = CachedSegments(before.parts, nearby=other_times, renewed=True, stale=True)
     steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
     return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, fixed, steps, cache, draft=not finely,
                     worth=worth, error=fit.error)  # fmt: skip

@@ -228,8 +228,8 @@ def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[Array, Arr
     eigenvalues, vectors = np.linalg.eigh(root.T @ A @ root)
     basis = root @ vectors
     b, square = basis.T @ u, sizes[:, None] ** 2
-    grown = 1.0 + square * np.maximum(eigenvalues, 0.0)
-    evidence = 0.5 * np.sum(square * b**2 / grown - np.log(grown), axis=1)
+    denominator = 1.0 + square * np.maximum(eigenvalues, 0.0)
+    evidence = 0.5 * np.sum(square * b**2 / denominator - np.log(denominator), axis=1)
     best = int(np.argmax(evidence))
-    share = square[best] / grown[best]
+    share = square[best] / denominator[best]
     return evidence, basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))

@@ -38,8 +38,8 @@ class Gram:
 
     def of(self, few: Sequence[int]) -> Gram:
         """With some of its effects only."""
-        chosen = list(few)
-        return replace(self, JZ=self.JZ[:, chosen], ZZ=self.ZZ[np.ix_(chosen, chosen)], Zr=self.Zr[chosen])
+        columns = list(few)
+        return replace(self, JZ=self.JZ[:, columns], ZZ=self.ZZ[np.ix_(columns, columns)], Zr=self.Zr[columns])
 
 
 def gram(parts: Sequence[Segment], noise: Noise, p: int) -> dict[str, Gram]:

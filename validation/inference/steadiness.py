@@ -62,8 +62,8 @@ def at_every_second(posterior: Posterior, first: int) -> Posterior:
               - log_bayes(e, h.fit, h.members) for h in every if h.fit and h.members}  # fmt: skip
     best = max((h for h in every if h.members in gained), key=lambda h: h.log_bayes, default=None)
     share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
-    moved = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
-    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, moved, strict=True))
+    increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
+    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))
     return replace(posterior, evidence=new, hypotheses=now)
 
 

@@ -81,7 +81,7 @@ ELLS = (ELL, 600.0, 2400.0)  # s, of the slow part: the usual one, a shorter and
 SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])  # variance over the white one, by decades
 _AT = [(f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL]
 GRID = tuple(Shape(*FASTS[f], float(SLOWS[b]), ELLS[e]) for f, e, b in _AT)
-CHOSEN = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid
+GRID_INDEX = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid
 
 
 class Bases(NamedTuple):
@@ -100,7 +100,7 @@ class Bases(NamedTuple):
         scale = 1.0 + SLOWS[:, None] * self.slow[:, :, None, :]
         norm = (1.0 / scale) @ square
         logdet = self.logdet[:, None, None] + np.log(scale).sum(axis=-1)
-        return norm[CHOSEN], logdet[CHOSEN]
+        return norm[GRID_INDEX], logdet[GRID_INDEX]
 
 
 @lru_cache(maxsize=16)

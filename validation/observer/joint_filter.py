@@ -68,11 +68,11 @@ class _Run:
         self.of, self.test, self.process, self.terms = of, test, of.process, of.terms
         self.n = self.process.size
         self.w, self.q = of.w, np.zeros(len(of.bodies))
-        driven = record(test, {})
-        self.time = np.asarray(driven.time, float)
-        self.f = self.terms.factors(driven)
+        course = record(test, {})
+        self.time = np.asarray(course.time, float)
+        self.f = self.terms.factors(course)
         names = self.process.network.boundaries
-        self.u = np.column_stack([np.broadcast_to(driven.boundaries[b], self.time.shape) for b in names])
+        self.u = np.column_stack([np.broadcast_to(course.boundaries[b], self.time.shape) for b in names])
         self.at = {c.name: j for j, c in enumerate(of.constants.channels)}
         self.x, self.P = self._begun(of.noise)
         self.along = np.zeros((self.x.size, self.process.slow.size))
@@ -219,11 +219,11 @@ class _Terms:
         K = self.every.matrix(now)
         G, unit = K[:, : self.n].copy(), self._unit(z) if self._bent else np.empty((0, 0))
         for e, law, hot, cold in self._bent:
-            for row, moved in ((hot, _slope(law, hot, cold, z, 0)), (cold, _slope(law, hot, cold, z, 1))):
+            for row, slope in ((hot, _slope(law, hot, cold, z, 0)), (cold, _slope(law, hot, cold, z, 1))):
                 inside = row.index < self.n
-                if moved and inside.any():
+                if slope and inside.any():
                     np.subtract.at(
-                        G.T, row.index[inside], coefficient[e] * moved * np.outer(row.weights[inside], unit[e])
+                        G.T, row.index[inside], coefficient[e] * slope * np.outer(row.weights[inside], unit[e])
                     )
         return -(K @ z), G
 

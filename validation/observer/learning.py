@@ -113,11 +113,11 @@ def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[
 def over(design: Design, test: Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
     """An observer after a test, and its samples."""
     test = thinned(test)
-    driven, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
+    course, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
     y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
-    around = {b: float(np.asarray(u, float).flat[0]) for b, u in driven.boundaries.items()}
+    around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
     one = design.started(sensors, y[0], around)
-    return one, list(one.follow(driven, y))
+    return one, list(one.follow(course, y))
 
 
 def usual_rise(tests: Sequence[Test]) -> float:

@@ -65,10 +65,10 @@ def access(network: Network, place: Place) -> str:
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 
 
-def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[int]) -> Iterator[tuple[Place, Gram]]:
+def with_sensors(evidence: Evidence, places: Sequence[Place], effects: Sequence[int]) -> Iterator[tuple[Place, Gram]]:
     """What a thermocouple at each place adds to the Gram matrix, its unknown bias projected out."""
     fit = evidence.fit
-    columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
+    columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in effects))
     tests = [with_thermocouples(t, places) for t in evidence.tests]
     p, error = len(fit.unknowns.parameters), widened_error(evidence, tests)
     parts = segments(evidence.network, tests, fit.values, columns)

@@ -74,12 +74,12 @@ def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) ->
     if "voltage_V" not in columns:
         return columns
     voltages = np.unique(columns["voltage_V"])
-    chosen = voltages[0] if voltage is None and voltages.size == 1 else voltage
-    if chosen not in voltages:
+    level = voltages[0] if voltage is None and voltages.size == 1 else voltage
+    if level not in voltages:
         raise InputError(
             f"the map has {voltages.size} voltages", where, f"--voltage one of {', '.join(f'{v:g}' for v in voltages)}"
         )
-    return {n: c[columns["voltage_V"] == chosen] for n, c in columns.items()}
+    return {n: c[columns["voltage_V"] == level] for n, c in columns.items()}
 
 
 def _complete(count: NDArray[np.int64], axes: list[Array], where: str) -> None:
@@ -102,9 +102,9 @@ def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> Non
     shaft = columns[TORQUE] * columns[SPEED] * RPM
     heat = np.sum([columns[f"{n}_W"] for n in names], axis=0)
     off = np.abs(columns["input_W"] - shaft - heat)
-    allowed = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))
-    if np.any(off > allowed + 1e-9):
-        k = int(np.argmax(off - allowed))
+    tolerance = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))
+    if np.any(off > tolerance + 1e-9):
+        k = int(np.argmax(off - tolerance))
         raise InputError(
             f"the powers do not balance: at {columns[TORQUE][k]:g} Nm, {columns[SPEED][k]:g} 1/min input less shaft is "
             f"{columns['input_W'][k] - shaft[k]:.4g} W, the losses are {heat[k]:.4g} W", where,

@@ -97,8 +97,8 @@ def schedule(test: Test, before: Test) -> list[tuple[str, float, float, float]]:
         value = np.broadcast_to(np.asarray(values, float), test.time.shape)
         starts = np.flatnonzero(np.diff(value, prepend=np.nan))
         record = before.inputs.get(name, before.boundaries.get(name))
-        driven = record is not None and np.array_equal(np.unique(np.asarray(record, float)), np.unique(value))
-        if len(starts) > STEPS or driven:
+        as_before = record is not None and np.array_equal(np.unique(np.asarray(record, float)), np.unique(value))
+        if len(starts) > STEPS or as_before:
             continue
         ends = [*starts[1:], len(value) - 1]
         out += [(name, float(test.time[a]), float(test.time[b]), float(value[a])) for a, b in zip(starts, ends)]

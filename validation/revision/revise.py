@@ -150,8 +150,8 @@ def _revised(
         raise InputError(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
-    grown = replace(case.training(), model=model)
-    fits = staged_fit(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
+    training = replace(case.training(), model=model)
+    fits = staged_fit(training, tests if action == "calibrate" else _plain(tests), start(training), search, progress)
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = errors(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))

@@ -129,8 +129,8 @@ def equilibrium(minutes: Array, T: Array, resolution_K: float, window_min: float
     late = minutes > minutes[-1] - window_min
     drift = 60.0 * float(np.polyfit(minutes[late], T[late], 1)[0]) if late.sum() > 1 else float("nan")
     before = minutes <= minutes[-1] - window_min + 1e-9
-    moved = np.abs(np.interp(minutes[before] + window_min, minutes, T) - T[before])
-    wrong = np.flatnonzero(moved > resolution_K + 1e-9)
+    change = np.abs(np.interp(minutes[before] + window_min, minutes, T) - T[before])
+    wrong = np.flatnonzero(change > resolution_K + 1e-9)
     first = 0 if wrong.size == 0 else int(wrong[-1]) + 1
     if first >= before.sum() or minutes[first] > minutes[-1] - 2 * window_min + 1e-9:
         return Equilibrium(False, None, float(T[late].mean()), drift, resolution_K)
