@@ -36,8 +36,8 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
         theme, (0.66, 0.34), title={"text": f"{short(c.name)} ({c.place})", "x": 0.02, "y": 0.98, "font": {"size": 14}}
     )
     shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
-    for values, filled in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
-        out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **filled)
+    for values, style in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
+        out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **style)
     _line(out, x, y, "measured ± limit", theme.ink, 1)
     if comparison.before is not None:
         _line(out, x, comparison.before[c.name][thin], "earlier model", ORANGE, 1, "dash")

@@ -105,8 +105,8 @@ class Surface:
         owner[flat.reshape(-1)] = np.repeat(self.part, 3)
         weights = self.weights[nodes]
         where = np.column_stack([np.round(weights @ self.nodes.points * 1e9).astype(np.int64), owner])
-        _, first, joined = np.unique(where, axis=0, return_index=True, return_inverse=True)
-        triangles = joined.reshape(-1)[flat.reshape(-1, 3)]
+        _, first, merger = np.unique(where, axis=0, return_index=True, return_inverse=True)
+        triangles = merger.reshape(-1)[flat.reshape(-1, 3)]
         solid = (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all(axis=1)
         return Surface(self.nodes, weights[first], triangles[solid], self.part[solid])
 
