@@ -82,13 +82,13 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
         if name not in network.boundaries:
             raise top.error(f"no boundary is called '{name}'", suggestion(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, watched, series = _drive(top, network, ratings, time, inputs)
+    drive, places, series = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
     notes = (*(columns.notes if columns is not None else ()), *_unread(network, inputs, drive, str(path)))
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, series, notes)
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, places, series, notes)
     _complete(network, cycle, str(path))
     return cycle
 

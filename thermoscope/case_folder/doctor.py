@@ -84,12 +84,12 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     """A measured power that cannot have warmed the machine as it did, even if nothing had leaked."""
     rises = [float(np.nanmax(v) - v[np.isfinite(v)][0]) for v in p.temperatures.values() if np.isfinite(v).any()]
     rise, span = float(np.median(rises)) if rises else 0.0, float(p.samples.time[-1])
-    stored = float(network.C.sum()) * rise
+    heat_J = float(network.C.sum()) * rise
     columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in network.inputs]
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
-    if columns and rise > WARM_K and 0.0 < STORED * came < stored:
+    if columns and rise > WARM_K and 0.0 < STORED * came < heat_J:
         names = ", ".join(c.name for c in columns)
-        yield p.finding(names, f"{came:.3g} J came in, {stored:.3g} J would be needed for the rise "
+        yield p.finding(names, f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise "
                       f"of {rise:.0f} K: kW?", 'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
 
 
@@ -109,8 +109,8 @@ def _rates(patients: list[Patient]) -> Iterator[Finding]:
 def _copies(patients: list[Patient]) -> Iterator[Finding]:
     """Tests with the same readings under two names: what is fitted would also be held out."""
     for a, b in combinations(patients, 2):
-        shared = set(a.samples.values) & set(b.samples.values)
-        if shared and all(np.array_equal(a.samples.values[n], b.samples.values[n], equal_nan=True) for n in shared):
+        common = set(a.samples.values) & set(b.samples.values)
+        if common and all(np.array_equal(a.samples.values[n], b.samples.values[n], equal_nan=True) for n in common):
             yield Finding(f"{a.name}, {b.name}", "", "are the same recording under two names", "keep one of them")
 
 

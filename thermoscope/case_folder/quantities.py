@@ -21,8 +21,10 @@ def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[T
         by_name |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
         by_name |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
     network = replace(network, quantities={**by_name, **network.quantities})
-    fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(network, signals={q: name for q in INPUTS if (name := _largest_of(network, fitted, q)) is not None})
+    training = [t for t in tests if t.role != "hold-out"] or list(tests)
+    return replace(
+        network, signals={q: name for q in INPUTS if (name := _largest_of(network, training, q)) is not None}
+    )
 
 
 def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:

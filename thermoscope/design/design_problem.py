@@ -70,10 +70,10 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     drive = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
     space = Space(tuple(_variables(larger, inputs, file, request.vary or {}, drive)))
     machine = {} if file is None else _of_machine(larger, file, space, inputs)
-    aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
+    objectives = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
     problem = Problem(
         larger, values, inputs, op.boundaries, space, hot_spots(larger, rows, limits), first, electrics, sure=sure,
-        driven=drive, aimed=aimed, **machine,
+        driven=drive, aimed=objectives, **machine,
     )  # fmt: skip
     _refuse_hot_at_no_load(problem, op.loads)
     if file is not None and any(v.conducts for v in space.variables):

@@ -155,9 +155,9 @@ def description(model: Model, version: int) -> bytes:
     results = [i for i in outputs if fmi_variables[i].causality == "output"]
     if version == 2:
         for group in ("Outputs", "InitialUnknowns"):
-            listed = SubElement(structure, group)
+            element = SubElement(structure, group)
             for i in results:
-                SubElement(listed, "Unknown", index=str(i + 1))
+                SubElement(element, "Unknown", index=str(i + 1))
     else:
         for group in ("Output", "InitialUnknown"):
             for i in results:
@@ -176,14 +176,14 @@ def _co_simulation(root: Element, model: Model, version: int) -> None:
         can |= {"canInterpolateInputs": "true", "canNotUseMemoryManagementFunctions": "true"}
     element = SubElement(root, "CoSimulation", modelIdentifier=identifier(model), **can)
     if version == 2:
-        listed = SubElement(element, "SourceFiles")
+        files = SubElement(element, "SourceFiles")
         for file in sources(model, 2):
             if file.endswith(".c"):
-                SubElement(listed, "File", name=file)
+                SubElement(files, "File", name=file)
 
 
 def _variables(root: Element, variables: Sequence[Variable], version: int) -> None:
-    listed = SubElement(root, "ModelVariables")
+    element = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables):
         attributes: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
         attributes["variability"] = "fixed" if v.causality == "parameter" else "continuous"
@@ -195,6 +195,6 @@ def _variables(root: Element, variables: Sequence[Variable], version: int) -> No
             attributes["initial"] = "exact"
         value: Attributes = {"unit": v.unit} | ({} if v.start is None else {"start": f"{v.start:.17g}"})
         if version == 2:
-            SubElement(SubElement(listed, "ScalarVariable", **attributes), "Real", **value)
+            SubElement(SubElement(element, "ScalarVariable", **attributes), "Real", **value)
         else:
-            SubElement(listed, "Float64", **attributes, **value)
+            SubElement(element, "Float64", **attributes, **value)

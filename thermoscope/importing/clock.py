@@ -188,8 +188,8 @@ def _numeric(source: Source) -> Clock | None:
     by_name = [c for c in numeric if is_time(source.labels[c])]
     by_unit = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
     candidates = [c for c in (*by_name, *by_unit) if c != TIME]
-    counted = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
-    if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and counted):
+    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)

@@ -124,8 +124,8 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
     place, other = target.place_of(label)
     if not place:
         return base.without("no place of the model fits its name")
-    shared = set(tokens(label)) & set(tokens(place))
-    weak = bool(shared) and all(w.isdigit() for w in shared) and not roles_of(label)
+    common = set(tokens(label)) & set(tokens(place))
+    weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
     doubt = f"or {other}" if other else "place by its number only" if weak else base.doubt
     return replace(base, place=place, doubt=doubt)
 

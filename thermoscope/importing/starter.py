@@ -32,14 +32,14 @@ Columns = Sequence[tuple[Source, Guess]]
 
 def starter(columns: Columns, name: str, span_s: float) -> str:
     """The text of network.toml. InputError where no column is a temperature of a machine."""
-    placed = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
-    hot = [(source, g, place) for source, g, place in placed if place and place not in BOUNDARIES.values()]
+    places = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
+    hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         raise InputError("no column is a temperature of a machine", files,
                          "a column with degC or K, or a name such as T_winding")  # fmt: skip
     nodes = list(dict.fromkeys(place for *_, place in hot))
-    boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in placed) else [])]
+    boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
     heat, watts = _heat(columns, max(rises, key=lambda place: rises[place]))
     G = watts / max(*rises.values(), 1.0)

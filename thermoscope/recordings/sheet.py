@@ -145,8 +145,8 @@ def load_sheet(path: Path) -> Sheet:
     data = read_toml(path, "a sheet with [test] and [columns.NAME]")
     other = Table(data.get("test", {}), f"{path} [test]").word("columns_of", "")
     if other:
-        shared = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
-        data = {**{key: shared[key] for key in ("columns", "means", "root_sum_square") if key in shared}, **data}
+        template = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
+        data = {**{key: template[key] for key in ("columns", "means", "root_sum_square") if key in template}, **data}
     return read_sheet(data, str(path), path.parent)
 
 

@@ -29,11 +29,11 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
     from thermoscope.verification.network_size import accurate_network
 
-    described = load_machine_file(Path(machine))
-    folder = out or Path("out") / described.name
+    source = load_machine_file(Path(machine))
+    folder = out or Path("out") / source.name
     with progress() as tell:
-        size = accurate_network(described, accuracy, progress=tell)
-        document = {"machine": described.name, **checked(size.built, size, tell)}
+        size = accurate_network(source, accuracy, progress=tell)
+        document = {"machine": source.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
     return 0 if size.met else 1

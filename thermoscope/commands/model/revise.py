@@ -156,7 +156,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
-    stored = where if document["written"] else "nothing written (--anyway writes it)"
+    outcome = where if document["written"] else "nothing written (--anyway writes it)"
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
@@ -167,7 +167,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         _blind(document["parameters"]),
     ]  # fmt: skip
     return Answer(
-        f"{name}: {verdict}; {document['why']}; {stored}.",
+        f"{name}: {verdict}; {document['why']}; {outcome}.",
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )

@@ -115,9 +115,9 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    stored = current_diagnosis(folder)
-    if stored is not None:
-        return stored, False
+    current = current_diagnosis(folder)
+    if current is not None:
+        return current, False
     last = last_diagnosis(folder)
     return last, last is not None
 

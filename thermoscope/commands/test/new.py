@@ -276,8 +276,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
                 "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
-    guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
-    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), guessed, _files(tests)]
+    table = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
+    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), table, _files(tests)]
     return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
 
