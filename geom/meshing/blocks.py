@@ -62,8 +62,8 @@ def find_blocks(cut: Partition) -> list[Block]:
 def _groups(cut: Partition, slab: int) -> list[Ints]:
     """Sets of solid faces of one slab that are connected through common edges."""
     solid = np.append(cut.solid[:, slab], False)
-    joined = solid[cut.left] & solid[cut.right]
-    a, b = cut.left[joined], cut.right[joined]
+    inside = solid[cut.left] & solid[cut.right]
+    a, b = cut.left[inside], cut.right[inside]
     n = len(solid)
     component = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)[1]
     members = defaultdict(list)

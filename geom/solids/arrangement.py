@@ -45,10 +45,10 @@ class Curves:
         """(n, 4) bounds (m), a little wider than the curves."""
         low, high = np.minimum(self.start, self.end), np.maximum(self.start, self.end)
         for quarter in range(4):
-            reached = (quarter * math.pi / 2 - self.angle) % (2 * math.pi) <= self.sweep
+            passes = (quarter * math.pi / 2 - self.angle) % (2 * math.pi) <= self.sweep
             far = self.centre + self.radius[:, None] * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][quarter])
-            low = np.where((reached & self.curved)[:, None], np.minimum(low, far), low)
-            high = np.where((reached & self.curved)[:, None], np.maximum(high, far), high)
+            low = np.where((passes & self.curved)[:, None], np.minimum(low, far), low)
+            high = np.where((passes & self.curved)[:, None], np.maximum(high, far), high)
         return np.hstack([low - TOLERANCE, high + TOLERANCE])
 
     def place(self, which: Ids, points: Floats) -> Floats:

@@ -154,9 +154,9 @@ def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, lis
     translation = cq.Location(cq.Vector(*(-float(x) for x in origin)))
     by_name: dict[str, list[cq.Solid]] = {}
     for shape, name, place, _ in _assembly(path):
-        placed = shape.moved(rotation * translation * place)
-        if placed.Solids():
-            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
+        body = shape.moved(rotation * translation * place)
+        if body.Solids():
+            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(body.Solids())
     if not by_name:
         raise InputError("no solids", str(path), "a STEP assembly of named solids")
     return by_name
