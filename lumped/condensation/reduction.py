@@ -152,14 +152,16 @@ def reduce(
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
     loads = unit_loads(field, places)
-    stored = BasisCache(cache, _geometry(field, loads, recipe))
+    basis_cache = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
-    cached = stored.find(centre, recipe.spread)
+    cached = basis_cache.find(centre, recipe.spread)
     if cached is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
         local = isolated_part(field, films, contacts, S, unit, recipe)
-        cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+        cached = basis_cache.keep(
+            centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2
+        )
     principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
 

@@ -33,7 +33,7 @@ def coupled(
     network: Network,
     record: Record,
     drive: Drive,
-    watched: Mapping[str, str],
+    places: Mapping[str, str],
     values: Mapping[str, float] | None = None,
     rows: Sequence[Row] = (),
     tolerance: float = 1e-3,
@@ -41,19 +41,19 @@ def coupled(
 ) -> Coupled:
     """Waveform iteration: drive(temperatures over the record) -> inputs, network -> temperatures, and again.
 
-    watched : name the drive knows -> place of the network;  record.inputs: what the drive does not give
+    places : name the drive knows -> place of the network;  record.inputs: what the drive does not give
     tolerance : K, largest change of a watched temperature over the whole record between two rounds
     """
-    looks = [network.place(place).mean for place in watched.values()]
+    looks = [network.place(place).mean for place in places.values()]
     start = np.concatenate([initial_state(network, record.initial), np.zeros(len(network.boundaries))])
-    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(watched, looks, strict=True)}
+    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(places, looks, strict=True)}
     residuals: list[float] = []
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}
         final = replace(record, inputs=inputs)
         run = simulate(network, final, values, [*looks, *rows], keep_states=True, precision=READINGS)
-        new = {name: run.y[:, k] for k, name in enumerate(watched)}
-        residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
+        new = {name: run.y[:, k] for k, name in enumerate(places)}
+        residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in places), default=0.0))
         T = new
         if residuals[-1] < tolerance:
             return Coupled(_without(run, len(looks)), inputs, tuple(residuals))

@@ -179,8 +179,8 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
     tables = [_table(p.law.temperature) for p in patterns]
     codes = [_code(p.law.temperature) for p in patterns]
     points = starts(tables)
-    shared = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
-    distinct = [patterns[k] for k in np.unique(shared, return_index=True)[1]]
+    pattern_of = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
+    distinct = [patterns[k] for k in np.unique(pattern_of, return_index=True)[1]]
     rows = starts([p.row for p in distinct])
     probes = [side if p.bends else NOTHING for p in patterns for side in (p.hot, p.cold)]
     probe_of = _numbered([(x.index.tobytes(), x.weights.tobytes()) for x in probes]).reshape(-1, 2)
@@ -194,8 +194,10 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
         at=ints([ints(p.cols for p in distinct)[by_row], *(x.index for x in probed)]),
         weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in probed)]),
         row=ints(p.row for p in distinct),
-        part=np.column_stack([shared, rows[shared], rows[shared + 1], rows[-1] + probe_of, points[:-1], points[1:]]),
-        order=np.argsort(shared, kind="stable"),
+        part=np.column_stack(
+            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points[:-1], points[1:]]
+        ),
+        order=np.argsort(pattern_of, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
         point=np.concatenate([np.empty((0, 2)), *tables]),

@@ -147,8 +147,8 @@ def compiled(
     curves = [signals.curve(p.name, p.law) for p in every.patterns]
     factors = [c.value for c in curves]
     steady = ~every.bends & np.array([f.ndim == 0 for f in factors], bool)
-    watched = {target for d in slope for target in d}
-    live = all_terms | np.array([name in watched for name in every.names], bool) | ~(steady | (m == 0.0))
+    targets = {target for d in slope for target in d}
+    live = all_terms | np.array([name in targets for name in every.names], bool) | ~(steady | (m == 0.0))
     constant = np.array([float(f) if s else 0.0 for f, s in zip(factors, steady, strict=True)])
     alive = np.flatnonzero(live)
     names, patterns = tuple(every.names[k] for k in alive), [every.patterns[k] for k in alive]

@@ -215,8 +215,8 @@ class _Course:
         """As many steps as the trace holds; whether there are more."""
         core, at, sample = self.core, self.position.at, int(self.position.at[SAMPLE])
         control = core.control if self.given is None else self._follow(first)
-        shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
-        integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
+        common = (core.rows, control, self.trace, self.position, self.both, self.scratch)
+        integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y, self.late)
         if at[STATUS] not in (0, FULL):
             raise self._failed(forcing)
         count, X = int(at[COUNT]), self.trace

@@ -45,10 +45,10 @@ def on_every_base(network: Network) -> Network:
     if not any(isinstance(x.law, Switched) for x in network.links):
         return network
     present = [x for x in network.links if not isinstance(x.law, Switched) or x.law.closed]
-    joined = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in present]
+    links = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in present]
     bare = {x.places[0] for x in network.links if isinstance(x.law, Switched) and not x.law.closed}
     places = {name: place for name, place in network.places.items() if name not in bare}
-    return replace(network, links=tuple(joined), places=places, parameters=())
+    return replace(network, links=tuple(links), places=places, parameters=())
 
 
 def switches(machine: Machine) -> dict[str, str]:

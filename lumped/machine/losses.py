@@ -100,8 +100,8 @@ def _source(network: Network, name: str, kind: str, parts: Shares, law: Law, pro
         index += p.states.tolist()
         weights += (share * p.b).tolist()
     main = place_of(network, next(iter(parts)))
-    watched = Row(np.array(index), np.array(weights)) if probe == "" else place_of(network, probe).mean
-    return Source(f"loss:{name}", kind, main.part, np.array(index), np.array(weights), law, watched)
+    probe_row = Row(np.array(index), np.array(weights)) if probe == "" else place_of(network, probe).mean
+    return Source(f"loss:{name}", kind, main.part, np.array(index), np.array(weights), law, probe_row)
 
 
 def _spread(network: Network, parts: Shares) -> dict[str, float]:

@@ -70,9 +70,9 @@ def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset
     """All that hangs on what turns through contacts, without a bearing or a standing part between."""
     pairs = [tuple(name.split("|")) for name in contacts]
     joints = [pair for pair in pairs if all(p in identities and identities[p].turns is not False for p in pair)]
-    turning_parts, reached = {name for name, i in identities.items() if i.turns}, -1
-    while len(turning_parts) > reached:
-        reached = len(turning_parts)
+    turning_parts, count = {name for name, i in identities.items() if i.turns}, -1
+    while len(turning_parts) > count:
+        count = len(turning_parts)
         turning_parts |= {part for pair in joints if turning_parts & set(pair) for part in pair}
     return frozenset(turning_parts)
 

@@ -82,15 +82,15 @@ def _sink(top: Topology, boundary: str) -> float:
 def _ambient(top: Topology, free: list[str]) -> tuple[str, str] | None:
     """By films of free convection first, then by faces met, then by how little the strongest joint there conducts."""
     natural = {b: sum(not fixed(x) and not x.law.reads for _, x in top.outer(b)) for b in free}
-    washed = {b: sum(p.fluid == b for p in top.network.places.values()) for b in free}
-    met = {b: len({name for name, _ in top.outer(b)}) for b in free}
-    score = {b: (natural[b], washed[b], met[b], -_sink(top, b)) for b in free if natural[b] or washed[b] or met[b]}
+    faces = {b: sum(p.fluid == b for p in top.network.places.values()) for b in free}
+    bodies = {b: len({name for name, _ in top.outer(b)}) for b in free}
+    score = {b: (natural[b], faces[b], bodies[b], -_sink(top, b)) for b in free if natural[b] or faces[b] or bodies[b]}
     if not score:
         return (free[0], "the only boundary") if len(top.network.boundaries) == 1 else None
     best = max(score, key=lambda b: score[b])
     why = (
         f"{natural[best]} films of still air lead there" if natural[best]
-        else f"{max(washed[best], met[best])} bodies meet it" if max(washed[best], met[best]) > 1 or len(score) == 1
+        else f"{max(faces[best], bodies[best])} bodies meet it" if max(faces[best], bodies[best]) > 1 or len(score) == 1
         else "the weaker sink"
     )  # fmt: skip
     return best, why
@@ -129,8 +129,8 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
         return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _has_separate_current(
             top, body, turns) else (Role.WINDING, "carries a copper loss")  # fmt: skip
     if body in top.bearings:
-        washed = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
-        return (Role.END_SHIELD, "carries friction and meets the outside") if washed else (
+        outside = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
+        return (Role.END_SHIELD, "carries friction and meets the outside") if outside else (
             Role.BEARING, "carries friction")  # fmt: skip
     if kinds & {"iron", "map", "stray", "measured"}:
         return (Role.ROTOR, "carries a loss of the field and turns") if turning_ else (

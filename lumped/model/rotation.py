@@ -159,5 +159,5 @@ def cut(top: Topology, turn: Collection[str], stand: Collection[str], bearings: 
     left = graph - maximum_flow(graph, n, n + 1).flow
     left.data = np.where(left.data > 0, left.data, 0)
     left.eliminate_zeros()
-    reached = breadth_first_order(left, n, return_predecessors=False)
-    return {bodies[i] for i in reached if i < n}
+    indices = breadth_first_order(left, n, return_predecessors=False)
+    return {bodies[i] for i in indices if i < n}

@@ -122,11 +122,11 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
 
 
 INNER = ("properties", "additionalProperties")
-SHARED = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
+COMMON = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
 
 
 def _owned(key: str, table: str) -> tuple[str, str]:
-    return ("shares" if key in SHARED else key), table
+    return ("shares" if key in COMMON else key), table
 
 
 def wanted() -> Iterator[tuple[Path, Schema]]:
