@@ -147,8 +147,8 @@ def uncertain_names(
     larger: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
 ) -> list[str]:
     """A name for every column of the model error: links and capacities, cores, placements, flows."""
-    cored = with_cores(larger, test, values, doubt)
-    first = [p.name for p in (*doubts, *cored.parameters[len(larger.parameters) :])]
+    with_core = with_cores(larger, test, values, doubt)
+    first = [p.name for p in (*doubts, *with_core.parameters[len(larger.parameters) :])]
     assert fit.error is not None
     rest = fit.error.size - len(first)
     return [*first, *(f"placement {i}" for i in range(rest - 2)), "flow of air", "flow of liquid"]
@@ -172,11 +172,13 @@ def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> tuple[Array, Array
 def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:
     """The network with the cores that a record gives its nodes; all in it that is uncertain but sensors; for each of
     these the size of one deviation where it is a doubt, else 1."""
-    cored = with_cores(of.network, test, of.values, of.doubt)
-    cores = {p.name for p in cored.parameters[len(of.network.parameters) :]}
+    with_core = with_cores(of.network, test, of.values, of.doubt)
+    cores = {p.name for p in with_core.parameters[len(of.network.parameters) :]}
     doubts = cores | set(of.doubts)
-    free = tuple(p for p in cored.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test)))
-    return cored, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
+    free = tuple(
+        p for p in with_core.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test))
+    )
+    return with_core, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
 
 
 def _of_sensor(p: Parameter, test: Test) -> bool:

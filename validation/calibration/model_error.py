@@ -97,8 +97,8 @@ def _log(target: str, sd: float) -> Parameter:
 
 def alone(network: Network) -> set[str]:
     """Links, losses and capacities that a parameter moves by themselves, or with what an exponent adds to them."""
-    added = {x.name for x in network.links if x.origin} | {x.name for x in network.sources if x.origin}
-    groups = [[t for t, _ in p.targets if t not in added] for p in network.parameters if p.mapping == "log"]
+    extras = {x.name for x in network.links if x.origin} | {x.name for x in network.sources if x.origin}
+    groups = [[t for t, _ in p.targets if t not in extras] for p in network.parameters if p.mapping == "log"]
     return {targets[0] for targets in groups if len(targets) == 1}
 
 
@@ -263,9 +263,9 @@ def model_error(
     larger, doubts = with_doubts(network, doubt, sensed or tests)
 
     def of_test(test: Test) -> tuple[tuple[Parameter, ...], dict[tuple[str, str], Array]]:
-        cored = with_cores(larger, test, values, doubt)
-        every = (*doubts, *cored.parameters[len(larger.parameters) :])
-        parts = segments(cored, [test], values, every)
+        with_core = with_cores(larger, test, values, doubt)
+        every = (*doubts, *with_core.parameters[len(larger.parameters) :])
+        parts = segments(with_core, [test], values, every)
         scale = np.array([p.prior_sd for p in every])
         beside = placements(network, test, values, doubt, sensed or tests)
         flow = of_inputs(network, test, values, doubt, parts)

@@ -68,8 +68,8 @@ def conditions(
     for name, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, name, share / len(bases)) for base in bases]
         selection += best(scored_in(evidence, effects, values, odds_against_nothing(share / len(bases))), EACH)
-    ordered = sorted(selection, key=lambda c: -c.worth)
-    once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
+    by_worth = sorted(selection, key=lambda c: -c.worth)
+    once = {c.effect.name: c.effect for c in reversed(by_worth)}  # two stretches may come to the same ends
     return list(reversed(once.values()))
 
 
@@ -153,8 +153,8 @@ def likely_intervals(
     """The stretches that could carry weight once the price of when, what and where is paid."""
     scores = hat_scores(evidence, heat_scan, values)
     limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
-    ordered = stretches(scores, heat, neighbours(evidence.fit.network))
-    return [s for s in distinct(ordered, EVENTS) if worth(scores, s) > limit]
+    by_worth = stretches(scores, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(by_worth, EVENTS) if worth(scores, s) > limit]
 
 
 def explained(

@@ -144,10 +144,10 @@ def ways(n: int, usual: float | None) -> float:
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
 
 
-def distinct(ordered: Sequence[Interval], most: int) -> list[Interval]:
+def distinct(by_worth: Sequence[Interval], most: int) -> list[Interval]:
     """The first of those that overlap."""
     out: list[Interval] = []
-    for s in ordered:
+    for s in by_worth:
         if len(out) < most and all(s.event.overlap(t.event) < ALIKE for t in out):
             out.append(s)
     return out

@@ -140,8 +140,8 @@ def candidates(
     beside = Beside.of(case, posterior, lead)
     few = order[:ROWS]
     P = probabilities(posterior.hypotheses)
-    fitted = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
-    within = {k: next((h.fit for h in fitted if k in h.members), single[k].fit) for k in few}
+    refits = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
+    within = {k: next((h.fit for h in refits if k in h.members), single[k].fit) for k in few}
     rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in members[:1])
             for k in few]  # fmt: skip
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))

@@ -152,8 +152,8 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     fit = evidence.fit
     pull = dict(zip(fit.unknowns.names, np.abs(fit.theta / fit.unknowns.sd), strict=True))
     alone = [(i, evidence.twins[h.members[0]]) for i, h in enumerate(hypotheses) if len(h.members) == 1 and not h.fit]
-    ranked = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
-    return [i for _, i in ranked[:MOST_LINEAR]]
+    order = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
+    return [i for _, i in order[:MOST_LINEAR]]
 
 
 def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, warm_fits: WarmFits = NOWHERE,

@@ -61,11 +61,11 @@ def unsettled(case: Case) -> ParameterPosterior:
 
 def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Network:
     """With priors of added effects that say half of what was found: in a fit they say nothing."""
-    added = {e.name for e in case.model.effects}
+    effects = {e.name for e in case.model.effects}
 
     def prior(p: Parameter) -> Parameter:
         deviation = abs(values.get(p.name, p.value) - p.neutral)
-        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in added else p
+        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in effects else p
 
     return replace(network, parameters=tuple(prior(p) for p in network.parameters))
 

@@ -82,8 +82,8 @@ def _turn(difference: Array) -> Array:
 def levels(tests: Sequence[Test]) -> dict[str, float]:
     """Root mean square of every input over all tests that record it; inputs that are zero throughout are left out."""
     names = dict.fromkeys(name for t in tests for name in t.inputs)
-    pooled = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
-    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in pooled.items()}
+    values = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
+    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in values.items()}
     return {n: v for n, v in level.items() if v > 0}
 
 

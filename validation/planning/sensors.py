@@ -51,9 +51,9 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
 
 def free_places(network: Network, tests: Sequence[Test]) -> list[Place]:
     """Where no channel sits: parts, nodes and fluids, and the faces of parts that have several."""
-    occupied = {c.place for t in tests for c in t.channels}
+    with_sensor = {c.place for t in tests for c in t.channels}
     kinds = ("part", "node", "surface", "fluid")
-    return [p for p in network.places.values() if p.kind in kinds and p.name not in occupied]
+    return [p for p in network.places.values() if p.kind in kinds and p.name not in with_sensor]
 
 
 def access(network: Network, place: Place) -> str:

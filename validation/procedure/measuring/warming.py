@@ -82,18 +82,18 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
     wide = student.ppf(0.975, T.size - 3) * np.sqrt(np.diag(covariance))
     ci = {n: (float(v - w), float(v + w)) for n, v, w in zip("abc", p, wide, strict=True)}
     rmse = float(np.sqrt(np.mean((eq8(minutes, *p) - T) ** 2)))
-    fitted = Warming(float(p[0]), float(p[1]), float(p[2]), ci, rmse)
+    fit = Warming(float(p[0]), float(p[1]), float(p[2]), ci, rmse)
     measured = first if start_C is None and minutes[0] < 0.5 else start_C
-    return Warming(fitted.a, fitted.b, fitted.c, ci, rmse, _doubts(fitted, measured, minutes[-1]))
+    return Warming(fit.a, fit.b, fit.c, ci, rmse, _doubts(fit, measured, minutes[-1]))
 
 
-def _doubts(fitted: Warming, measured: float | None, last_min: float) -> tuple[str, ...]:
+def _doubts(fit: Warming, measured: float | None, last_min: float) -> tuple[str, ...]:
     out = []
-    if measured is not None and abs(fitted.start - measured) > START_K:
-        out.append(f"the formula starts at {fitted.start:.1f} degC, the record at {measured:.1f} degC: "
+    if measured is not None and abs(fit.start - measured) > START_K:
+        out.append(f"the formula starts at {fit.start:.1f} degC, the record at {measured:.1f} degC: "
                    "eq. 8 does not describe the first minutes")  # fmt: skip
-    if fitted.b < 0 and fitted.c < 0 and fitted.time_to_share_min() > last_min:
-        out.append(f"95 % of the end is reached after {fitted.time_to_share_min():.0f} min, after the record's end: "
+    if fit.b < 0 and fit.c < 0 and fit.time_to_share_min() > last_min:
+        out.append(f"95 % of the end is reached after {fit.time_to_share_min():.0f} min, after the record's end: "
                    "the end temperature is extrapolated")  # fmt: skip
     return tuple(out)
 

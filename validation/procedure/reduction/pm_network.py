@@ -258,8 +258,8 @@ class _Builder:
                   "R20_ohm": s.resistance_ohm, "temperature_of": "winding", "prior_sd": 0.02}  # fmt: skip
         out: dict[str, Any] = {"copper": copper}
         if s.magnetic_W:
-            shared = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
-            out["magnetic"] = {"at": shared, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
+            parts = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
+            out["magnetic"] = {"at": parts, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
                                "speed_at": 383, "prior_sd": 0.15}  # fmt: skip
         caps: dict[str, Any] = {"endcap.left": 0.5, "endcap.right": 0.5}
         out["bearings"] = {"at": caps, "kind": "bearing", "P_W": s.friction_W, "of": speed}
