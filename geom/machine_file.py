@@ -81,13 +81,13 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
 
 def _refuse_outside_envelope(machine: Machine, where: str) -> None:
     """[ratings] envelope_mm = [length, width, height], where given, holds the whole machine."""
-    allowed = machine.sections.get("ratings", {}).get("envelope_mm")
-    if allowed is None:
+    envelope = machine.sections.get("ratings", {}).get("envelope_mm")
+    if envelope is None:
         return
     place = f"{where} [ratings] envelope_mm"
-    if not isinstance(allowed, list) or len(allowed) != 3 or not all(_is_size(v) for v in allowed):
-        raise InputError(f"{allowed!r} is not an envelope", place, "write [length, width, height]")
-    for word, size, limit in zip(("length", "width", "height"), machine.extent, allowed):
+    if not isinstance(envelope, list) or len(envelope) != 3 or not all(_is_size(v) for v in envelope):
+        raise InputError(f"{envelope!r} is not an envelope", place, "write [length, width, height]")
+    for word, size, limit in zip(("length", "width", "height"), machine.extent, envelope):
         if size * 1e3 > limit + 1e-6:
             raise InputError(
                 f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit"
@@ -105,17 +105,17 @@ def _family(header: Mapping[str, Any], where: str) -> Family:
     for key, value in header.items():
         if not isinstance(value, str):
             raise InputError(f"{key} = {str(value)[:60]} is no text", f"{where} [machine]", "words in quotes")
-    known = families()
-    if header.get("family") not in known:
+    available = families()
+    if header.get("family") not in available:
         where = f"{where} [machine] family"
-        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(known)}")
-    return known[header["family"]]
+        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(available)}")
+    return available[header["family"]]
 
 
-def _with_materials(parts: tuple[Part, ...], chosen: Mapping[str, Any], where: str) -> tuple[Part, ...]:
+def _with_materials(parts: tuple[Part, ...], materials: Mapping[str, Any], where: str) -> tuple[Part, ...]:
     names = [part.name for part in parts]
-    for part, name in chosen.items():
+    for part, name in materials.items():
         if part not in names:
             raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
         material(name)
-    return tuple(replace(part, material=chosen.get(part.name, part.material)) for part in parts)
+    return tuple(replace(part, material=materials.get(part.name, part.material)) for part in parts)

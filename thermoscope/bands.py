@@ -59,15 +59,15 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
 
 def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as archive:
-        names, fitted = json.loads(str(archive["said"]))
+        names, tests = json.loads(str(archive["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
         covariance, offset = archive["covariance"], archive["offset"]
-    read = rows_read([t for t in folder.case.tests if t.name in fitted])
+    read = rows_read([t for t in folder.case.tests if t.name in tests])
     return replace(
         parameter_posterior(bare),
         names=tuple(names),
         covariance=covariance,
-        fitted=tuple(fitted),
+        fitted=tuple(tests),
         read=read,
         offset=offset,
     )

@@ -7,8 +7,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
@@ -28,10 +29,15 @@ class Finding:
     """
 
     name: str
-    found: bool
+    present: bool
     needed_for: str
     needed: bool
     fix: str = ""
+
+    @property
+    def document(self) -> dict[str, Any]:
+        return {"name": self.name, "found": self.present, "needed_for": self.needed_for, "needed": self.needed,
+                "fix": self.fix}  # fmt: skip
 
 
 def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
@@ -80,8 +86,8 @@ def _rerun() -> bool:
 
 def _vulkan() -> bool:
     """A loader and at least one driver; asked in a process of its own, since drivers may crash."""
-    done = subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
-    return done.returncode == 0
+    process = subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
+    return process.returncode == 0
 
 
 def _browser(browsers: Sequence[str]) -> bool:
@@ -102,19 +108,19 @@ def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
     with progress() as tell:
         tell("looking for graphics")
         parts = findings(browsers)
-    document = {"ready": all(f.found for f in parts if f.needed), "checks": [asdict(f) for f in parts]}
+    document = {"ready": all(f.present for f in parts if f.needed), "checks": [f.document for f in parts]}
     give(document, target, lambda: answer(parts))
     return 0 if document["ready"] else 1
 
 
 def answer(parts: list[Finding]) -> Answer:
     """What is missing, and the command that fixes it."""
-    missing = [f.name for f in parts if f.needed and not f.found]
+    missing = [f.name for f in parts if f.needed and not f.present]
     lines = [_line(f) for f in parts]
     sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
     return Answer(sentence, lines)
 
 
 def _line(f: Finding) -> str:
-    state = "there" if f.found else "MISSING" if f.needed else "not there (optional)"
+    state = "there" if f.present else "MISSING" if f.needed else "not there (optional)"
     return f"{f.name}: {state}; for {f.needed_for}" + (f". Install it with: {f.fix}" if f.fix else "")

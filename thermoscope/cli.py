@@ -396,9 +396,9 @@ def rate(
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
     from thermoscope.commands.use.rate import rate as run
 
-    given = tuple(limit or ()), tuple(at or ())
+    options = tuple(limit or ()), tuple(at or ())
     loads = tuple(load or ())
-    raise typer.Exit(run(name, *given, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
+    raise typer.Exit(run(name, *options, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
 
 
 @app.command()
@@ -423,8 +423,8 @@ def optimise(
     from thermoscope.commands.use.optimise import optimise as run
     from validation.optimisation.search import Effort
 
-    given = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
-    raise typer.Exit(run(name, *given, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+    options = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
+    raise typer.Exit(run(name, *options, Effort(population, generations, seed), cluster, cycle, robust, out, json))
 
 
 @app.command()

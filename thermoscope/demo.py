@@ -46,7 +46,7 @@ class Stage:
 @one_bar()
 def demo(out: Path, target: str | None) -> int:
     """Exit code 0 when an effect was named, accepted, and the error on the held-out test fell."""
-    begun = time.monotonic()
+    start = time.monotonic()
     case = fresh(out)
     headline("1  The machine: solids, mesh, field, network")
     with within(SHORT):
@@ -60,25 +60,25 @@ def demo(out: Path, target: str | None) -> int:
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
         picture(misses(folder, out), "after an hour on the road, what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
-    turned = old_way(folder)
-    stages.append(Stage(f"{KNOB} x {turned.factor:.2f} instead", turned.comparison.document()))
+    fit = old_way(folder)
+    stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.comparison.document()))
     headline("5  What is missing?")
     with within(LONGER):
         diagnosis = print_diagnosis(folder, out)
     picture(odds(diagnosis, out), "what the readings say")
-    done, named = False, diagnosis["named"]
-    if named:
-        headline(f"6  Add {named[0]}")
+    success, effects = False, diagnosis["named"]
+    if effects:
+        headline(f"6  Add {effects[0]}")
         with within(SHORT):
-            done = add(str(case), named[0], False, str(out / "add.json")) == 0
+            success = add(str(case), effects[0], False, str(out / "add.json")) == 0
         folder = open_demo(case)
-        stages.append(Stage(f"with {named[0]}", folder.compared.document()))
+        stages.append(Stage(f"with {effects[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
     say(remaining_error(diagnosis, stages[-1].errors))
     pages(folder, case, out)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
-    return closing(stages, done, out, target, time.monotonic() - begun)
+    return closing(stages, success, out, target, time.monotonic() - start)
 
 
 def remaining_error(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
@@ -220,10 +220,10 @@ def old_way(folder: Folder) -> OneFactorFit:
 
     with progress() as tell:
         tell("turning the fan's air flow")
-        turned = one_factor_fit(folder.case, KNOB, flange(folder.case.tests))
-    flow = 138 * turned.factor
+        fit = one_factor_fit(folder.case, KNOB, flange(folder.case.tests))
+    flow = 138 * fit.factor
     say(f"{flow:.0f} m3/h instead of 138 bring it closest on road-1; see below what else they do")
-    return turned
+    return fit
 
 
 def flange(tests: Sequence[Any]) -> str:
@@ -231,11 +231,11 @@ def flange(tests: Sequence[Any]) -> str:
     return next(c.name for t in tests for c in t.channels if c.place == "flange.right")
 
 
-def closing(stages: Sequence[Stage], done: bool, out: Path, target: str | None, seconds: float) -> int:
+def closing(stages: Sequence[Stage], success: bool, out: Path, target: str | None, seconds: float) -> int:
     """The table the story ends with: rms error per test, all sensors, and on the right flange."""
     first, last = stages[0].errors["tests"], stages[-1].errors["tests"]
     hold_out = [(a, b) for a, b in zip(first, last, strict=True) if a["role"] == "hold-out"]
-    fell = done and all(b["rmse_K"] < a["rmse_K"] for a, b in hold_out)
+    fell = success and all(b["rmse_K"] < a["rmse_K"] for a, b in hold_out)
     document = {"case": CASE, "stages": [{"stage": s.name, **s.errors} for s in stages], "fell": fell}
     give(document, target, lambda: answer(stages, out, seconds))
     return 0 if fell else 1

@@ -36,8 +36,8 @@ def page() -> str:
         for n, q in QUANTITIES.items()
         if n in MEMORY_UNIT
     ]
-    own = {name: kind for name, kind in kinds().items() if kind.__module__.startswith("validation.")}
-    effects = [f"| `{n}` | {k.title} | {k.sits} | {', '.join(k.needs)} |" for n, k in own.items()]
+    builtin_kinds = {name: kind for name, kind in kinds().items() if kind.__module__.startswith("validation.")}
+    effects = [f"| `{n}` | {k.title} | {k.sits} | {', '.join(k.needs)} |" for n, k in builtin_kinds.items()]
     return HEAD + "\n".join(rows) + "\n" + EFFECTS + "\n".join(effects) + "\n"
 
 

@@ -74,24 +74,24 @@ def row(
 
 def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior | None) -> float | None:
     """Half the 95 % band of a load; none where bands are not wanted or no load reaches a limit."""
-    known = of is not None and np.isfinite(r.load) and r.slope > 0.0
-    return _half95(folder, op, r, of) if of is not None and known else None
+    determinate = of is not None and np.isfinite(r.load) and r.slope > 0.0
+    return _half95(folder, op, r, of) if of is not None and determinate else None
 
 
 def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
     """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
     network = of.network
-    seen = named_rows(network, folder)[r.at]
+    place_row = named_rows(network, folder)[r.at]
     if r.form == "S1":
         bare = thermal(network)
         values = parameter_values(bare, of.values)
         at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
-        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, seen) / r.slope
+        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, place_row) / r.slope
     span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     bands = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
-                  {r.at: seen})  # fmt: skip
+                  {r.at: place_row})  # fmt: skip
     return float(bands.half95[-1, 0] / r.slope)

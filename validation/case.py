@@ -45,19 +45,19 @@ class Channel:
 class Recorded:
     """The inputs of a test as they were recorded, in finer steps than it is looked at in.
 
-    time (n,) s;  inputs : name -> (n,);  grid, seen : time and inputs of the test that were made of them
+    time (n,) s;  inputs : name -> (n,);  grid, on_grid : time and inputs of the test that were made of them
     """
 
     time: Array
     inputs: Mapping[str, Array]
     grid: Array
-    seen: Mapping[str, Array]
+    on_grid: Mapping[str, Array]
 
     def now(self, test: Test) -> dict[str, Array] | None:
         """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
         if test.time is not self.grid:
             return None
-        unchanged = {name for name, u in test.inputs.items() if self.seen.get(name) is u}
+        unchanged = {name for name, u in test.inputs.items() if self.on_grid.get(name) is u}
         other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in unchanged}
         return other | {n: self.inputs[n] for n in unchanged}
 
@@ -124,8 +124,8 @@ class Test:
         if self.recorded is None:
             return replace(self, inputs=inputs)
         fine = {**self.recorded.inputs, **{n: f * self.recorded.inputs[n] for n, f in factors.items()}}
-        seen = {n: inputs[n] if n in factors else u for n, u in self.recorded.seen.items()}
-        return replace(self, inputs=inputs, recorded=replace(self.recorded, inputs=fine, seen=seen))
+        sampled = {n: inputs[n] if n in factors else u for n, u in self.recorded.on_grid.items()}
+        return replace(self, inputs=inputs, recorded=replace(self.recorded, inputs=fine, on_grid=sampled))
 
 
 @dataclass(frozen=True)

@@ -40,5 +40,5 @@ def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[
         return [work(piece) for piece in every]
     order = sorted(range(len(every)), key=lambda i: -length(every[i])) if length else range(len(every))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        begun = {i: pool.submit(work, every[i]) for i in order}
-        return [begun[i].result() for i in range(len(every))]
+        futures = {i: pool.submit(work, every[i]) for i in order}
+        return [futures[i].result() for i in range(len(every))]

@@ -35,8 +35,8 @@ class Sensor:
     @property
     def weight(self) -> float:
         """Its residual over its uncertainty; -1 where there is none."""
-        known = self.residual_K is not None and np.isfinite(self.residual_K)
-        return abs(self.residual_K) / self.limit_K if known and self.residual_K is not None else -1.0
+        has_residual = self.residual_K is not None and np.isfinite(self.residual_K)
+        return abs(self.residual_K) / self.limit_K if has_residual and self.residual_K is not None else -1.0
 
     @property
     def verdict(self) -> str:

@@ -89,10 +89,10 @@ def block_of(
 ) -> Block:
     """Part `number` of a mesh; its unknowns begin at `start`."""
     mine = mesh.region == number
-    chosen = mesh.tets if mine.all() else mesh.tets[mine]
-    if len(chosen) == 0:
+    cells = mesh.tets if mine.all() else mesh.tets[mine]
+    if len(cells) == 0:
         raise InputError("no tetrahedron", f"part '{mesh.parts[number]}'", "a part with a volume")
-    points, tets = renumbered(chosen, len(mesh.points))
+    points, tets = renumbered(cells, len(mesh.points))
     xyz = np.ascontiguousarray(mesh.points[points])
     volumes = kernels.volumes(xyz, tets)
     elements: Elements = Quadratic.on(tets, xyz) if quadratic else Linear(tets, xyz)
@@ -103,8 +103,8 @@ def block_of(
 
 def renumbered(cells: Ints, n: int) -> tuple[Ints, Ints]:
     """The point numbers (below n) that cells use, ascending, and the cells in terms of them."""
-    used = np.zeros(n, bool)
-    used[cells] = True
-    if used.all():
+    mask = np.zeros(n, bool)
+    mask[cells] = True
+    if mask.all():
         return np.arange(n), np.ascontiguousarray(cells)
-    return np.flatnonzero(used), (np.cumsum(used) - 1)[cells]
+    return np.flatnonzero(mask), (np.cumsum(mask) - 1)[cells]

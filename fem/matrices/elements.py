@@ -65,8 +65,8 @@ class Elements(Protocol):
 def tensors(xyz: Floats, tets: Ints, conductivity: HasTensor, some: int = CHUNK) -> Iterator[tuple[slice, Floats]]:
     """Slices of the tetrahedra with the tensors (., 3, 3) at their centres, so that memory stays small."""
     for first in range(0, len(tets), some):
-        chosen = slice(first, first + some)
-        yield chosen, np.ascontiguousarray(conductivity.tensor(xyz[tets[chosen]].mean(1)))
+        chunk = slice(first, first + some)
+        yield chunk, np.ascontiguousarray(conductivity.tensor(xyz[tets[chunk]].mean(1)))
 
 
 def pattern(cells: Ints, n: int) -> sp.csr_array:

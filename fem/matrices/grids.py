@@ -74,8 +74,8 @@ def named(points: Floats, tets: Ints, part: Naming, fluid: Naming) -> NamedMesh:
     second = np.zeros(len(unique), int)
     second[inverse] = owner  # the last one written stays
     patches = _patches(points, unique[count == 1], parts[owner[first[count == 1]]], fluid)
-    shared = (count == 2) & (owner[first] != second)
-    contacts = _contacts(unique[shared], parts, owner[first[shared]], second[shared])
+    common = (count == 2) & (owner[first] != second)
+    contacts = _contacts(unique[common], parts, owner[first[common]], second[common])
     return NamedMesh(points, tets, region, tuple(map(str, parts)), patches, contacts)
 
 
@@ -85,10 +85,10 @@ def _positive(points: Floats, tets: Ints) -> Ints:
 
 
 def _patches(points: Floats, facets: Ints, owner: NDArray[np.str_], fluid: Naming) -> dict[str, Patch]:
-    washed = np.asarray(fluid(points[facets].mean(1)))
+    fluids = np.asarray(fluid(points[facets].mean(1)))
     out = {}
-    for p, f in sorted({(str(p), str(f)) for p, f in zip(owner, washed, strict=True) if f}):
-        out[f"{p}.{'outer' if f == 'ambient' else f}"] = Patch(p, f, facets[(owner == p) & (washed == f)])
+    for p, f in sorted({(str(p), str(f)) for p, f in zip(owner, fluids, strict=True) if f}):
+        out[f"{p}.{'outer' if f == 'ambient' else f}"] = Patch(p, f, facets[(owner == p) & (fluids == f)])
     return out
 
 

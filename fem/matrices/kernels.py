@@ -28,25 +28,25 @@ def pattern(cells, n):  # type: ignore[no-untyped-def]
         for a in range(k):
             owner[fill[cells[e, a]]] = e
             fill[cells[e, a]] += 1
-    seen, indptr = np.full(n, -1, np.int32), np.zeros(n + 1, np.int32)
+    last_row, indptr = np.full(n, -1, np.int32), np.zeros(n + 1, np.int32)
     for i in range(n):
         count = 0
         for p in range(start[i], start[i + 1]):
             for a in range(k):
                 j = cells[owner[p], a]
-                if seen[j] != i:
-                    seen[j] = i
+                if last_row[j] != i:
+                    last_row[j] = i
                     count += 1
         indptr[i + 1] = indptr[i] + count
     indices = np.empty(indptr[n], np.int32)
-    seen[:] = -1
+    last_row[:] = -1
     for i in range(n):
         q = indptr[i]
         for p in range(start[i], start[i + 1]):
             for a in range(k):
                 j = cells[owner[p], a]
-                if seen[j] != i:
-                    seen[j] = i
+                if last_row[j] != i:
+                    last_row[j] = i
                     r = q
                     while r > indptr[i] and indices[r - 1] > j:
                         indices[r] = indices[r - 1]

@@ -112,9 +112,9 @@ def hats(corner: Floats, degree: int = 2) -> Floats:
 
 def _slopes(corner: Floats) -> Floats:
     """(10, 4, q) derivatives of the quadratic functions by the barycentric coordinates (4, q)."""
-    (a, b), own, middle = EDGES.T, np.arange(4), 4 + np.arange(6)
+    (a, b), corners, middle = EDGES.T, np.arange(4), 4 + np.arange(6)
     out = np.zeros((10, 4, corner.shape[1]))
-    out[own, own] = 4 * corner - 1
+    out[corners, corners] = 4 * corner - 1
     out[middle, a], out[middle, b] = 4 * corner[b], 4 * corner[a]
     return out
 

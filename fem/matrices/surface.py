@@ -105,14 +105,14 @@ def _straight(trace: Trace) -> sp.csr_array:
 
 def trace_of(mesh: NamedMesh, block: Block, facets: Ints) -> Trace:
     """The side of `facets` (nf, 3) that belongs to a part."""
-    own = np.minimum(np.searchsorted(block.points, facets), len(block.points) - 1)
-    if not np.array_equal(block.points[own], facets):
+    points = np.minimum(np.searchsorted(block.points, facets), len(block.points) - 1)
+    if not np.array_equal(block.points[points], facets):
         raise InputError(
             "a facet has points outside its part", f"part '{block.name}'", "facets of the part's own tetrahedra"
         )
     edge = mesh.points[facets[:, 1:]] - mesh.points[facets[:, :1]]
     areas = np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1) / 2
-    unknowns, local = renumbered(block.elements.facets(own), block.n)
+    unknowns, local = renumbered(block.elements.facets(points), block.n)
     mass, share = pattern(local, len(unknowns)), _reference(1 if local.shape[1] == 3 else 2)
     kernels.spread(local, areas[:, None, None] * share, mass.indptr, mass.indices, mass.data)
     b = np.bincount(local.ravel(), np.outer(areas, share.sum(1)).ravel(), len(unknowns)).astype(float)

@@ -29,7 +29,7 @@ def local_solutions(
     points : matrices (n, n) of the machine at other coefficients
     """
     solutions = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
-    own = {part: _unit_loads(field, loads, part) for part in field.blocks}
+    units = {part: _unit_loads(field, loads, part) for part in field.blocks}
     order: dict[str, Symbolic] = {}
     for K in points:
         state = S @ (rng.standard_normal((S.shape[1], width)) / np.sqrt(S.shape[1]))
@@ -38,7 +38,10 @@ def local_solutions(
             A = sp.csr_array(rows[:, block.dofs])
             order[part] = order.get(part) or analyse(A, block.xyz)
             inverse = factorise(A, order[part])
-            solutions[part] += [inverse(A @ state[block.dofs] - rows @ state), of_unit_energy(inverse(own[part]), A)]
+            solutions[part] += [
+                inverse(A @ state[block.dofs] - rows @ state),
+                of_unit_energy(inverse(units[part]), A),
+            ]
     return {part: np.hstack(fields) for part, fields in solutions.items()}
 
 

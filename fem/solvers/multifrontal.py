@@ -30,30 +30,30 @@ class Symbolic:
     @property
     def size(self) -> int:
         """Numbers stored in the factor."""
-        own = np.diff(self.tree.start)
-        return int(sum(o * (o + len(r)) for o, r in zip(own, self.reach, strict=True)))
+        widths = np.diff(self.tree.start)
+        return int(sum(o * (o + len(r)) for o, r in zip(widths, self.reach, strict=True)))
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A = L L': dense panels, own (k, k) and below (m, k), of every node."""
+    """A = L L': dense panels, pivots (k, k) and below (m, k), of every node."""
 
     symbolic: Symbolic
-    own: tuple[Floats, ...]
+    pivots: tuple[Floats, ...]
     below: tuple[Floats, ...]
 
     def __call__(self, b: Floats) -> Floats:
         """Solve A x = b for b (n,) or (n, k)."""
         s, t = self.symbolic, self.symbolic.tree
         x = np.ascontiguousarray(b[t.order].reshape(len(b), -1))
-        for i, (L, B) in enumerate(zip(self.own, self.below, strict=True)):
+        for i, (L, B) in enumerate(zip(self.pivots, self.below, strict=True)):
             mine = slice(t.start[i], t.start[i + 1])
             x[mine] = blas.dtrsm(1.0, L, x[mine].T, side=1, lower=1, trans_a=1).T
             x[s.reach[i]] -= B @ x[mine]
-        for i in range(len(self.own) - 1, -1, -1):
+        for i in range(len(self.pivots) - 1, -1, -1):
             mine = slice(t.start[i], t.start[i + 1])
             rest = x[mine] - self.below[i].T @ x[s.reach[i]]
-            x[mine] = blas.dtrsm(1.0, self.own[i], rest.T, side=1, lower=1).T
+            x[mine] = blas.dtrsm(1.0, self.pivots[i], rest.T, side=1, lower=1).T
         out = np.empty_like(x)
         out[t.order] = x
         return out.reshape(b.shape)
@@ -66,8 +66,8 @@ def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
     reach: list[Ints] = []
     for i, below in enumerate(tree.children):
         lo, hi = tree.start[i], tree.start[i + 1]
-        seen = [upper.indices[upper.indptr[lo] : upper.indptr[hi]], *(reach[c] for c in below)]
-        rows = np.unique(np.concatenate(seen))
+        columns = [upper.indices[upper.indptr[lo] : upper.indptr[hi]], *(reach[c] for c in below)]
+        rows = np.unique(np.concatenate(columns))
         reach.append(rows[rows >= hi].astype(np.int64))
     return Symbolic(tree, tuple(reach))
 
@@ -76,7 +76,7 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
     """Cholesky factor of a symmetric positive definite A (n, n) whose pattern lies within `symbolic`."""
     tree, upper = symbolic.tree, _upper(A, symbolic.tree)
     local = np.full(A.shape[0], -1, np.int64)
-    own: list[Floats] = []
+    pivots: list[Floats] = []
     below: list[Floats] = []
     waiting: dict[int, Floats] = {}
     for i, children in enumerate(tree.children):
@@ -88,10 +88,10 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
         for c in children:
             _extend_add(front, waiting.pop(c), local[symbolic.reach[c]])
         L, B, S = _eliminate(front, k)
-        own.append(L)
+        pivots.append(L)
         below.append(B)
         waiting[i] = S
-    return Factor(symbolic, tuple(own), tuple(below))
+    return Factor(symbolic, tuple(pivots), tuple(below))
 
 
 def _eliminate(front: Floats, k: int) -> tuple[Floats, Floats, Floats]:

@@ -34,11 +34,11 @@ class Pardiso:
 
         A = sp.csr_matrix(sp.triu(K + shift * self.field.M if shift else K, format="csr"))
         A.sort_indices()
-        own = PyPardisoSolver(mtype=POSITIVE_DEFINITE)
-        own.factorize(A)
+        solver = PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+        solver.factorize(A)
 
         def solve(b: Floats) -> Floats:
             columns = np.asfortranarray(b.reshape(len(b), -1), float)
-            return np.asarray(own.solve(A, columns)).reshape(b.shape)
+            return np.asarray(solver.solve(A, columns)).reshape(b.shape)
 
         return solve

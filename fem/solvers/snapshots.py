@@ -214,6 +214,6 @@ def enriched(
     S = of_unit_energy(S, field.stiffness(films, contacts))
     out = {}
     for name, block in field.blocks.items():
-        own = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
-        out[name] = _principal(block, np.column_stack([own, S[block.dofs]]), energy[name])
+        fields = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
+        out[name] = _principal(block, np.column_stack([fields, S[block.dofs]]), energy[name])
     return out

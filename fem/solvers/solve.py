@@ -154,12 +154,12 @@ def coupled(inverse: Inverse, b: Floats, B: Floats, G: Floats, s: Floats) -> tup
 
 def shed(field: FieldModel, films: Mapping[str, float], fluids: Fluids, T: Floats, u: Floats) -> float:
     """Heat (W) to fluids of fixed temperature, and what streams and leaks carry away."""
-    lost = sum(
+    watts = sum(
         films[name] * float(f.trace.b @ T[f.trace.dofs] - f.trace.area * fluids.fixed[f.fluid])
         for name, f in field.films.items()
         if f.fluid in fluids.fixed
     )
-    return lost + float(np.sum(fluids.D @ u - fluids.s))
+    return watts + float(np.sum(fluids.D @ u - fluids.s))
 
 
 def film_columns(field: FieldModel, films: Mapping[str, float], names: tuple[str, ...]) -> tuple[Floats, Floats]:
@@ -183,11 +183,11 @@ def from_fixed(field: FieldModel, films: Mapping[str, float], fixed: Mapping[str
 
 
 def refuse_unknown_fluid(field: FieldModel, fluids: Fluids) -> None:
-    known = {*fluids.names, *fluids.fixed}
+    names = {*fluids.names, *fluids.fixed}
     for face, film in field.films.items():
-        if film.fluid not in known:
+        if film.fluid not in names:
             raise InputError(
-                f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(known))}"
+                f"no temperature for fluid '{film.fluid}'", f"face '{face}'", f"given: {', '.join(sorted(names))}"
             )
 
 

@@ -20,18 +20,18 @@ from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.errors import InputError
 
-OWN_BASE = "own"
+THIS_MACHINE = "own"
 PIECES = ("foot", "base")
 
 
 def based(machine: Machine, load: Callable[[str], Machine], where: str) -> Machine:
     """The machine with the bases that its section [bases] names; itself if there is none."""
     table = machine.sections.get("bases", {})
-    others = {name: other for name, other in table.items() if other != OWN_BASE}
+    others = {name: other for name, other in table.items() if other != THIS_MACHINE}
     place, have = f"{where} [bases]", [part.name for part in machine.parts]
     if table and (len(others) > 1 or len(table) - len(others) != 1 or "base" not in have):
         raise InputError(
-            f"{dict(table)!r} is not possible", place, f"one base {OWN_BASE!r} of this file and one other machine"
+            f"{dict(table)!r} is not possible", place, f"one base {THIS_MACHINE!r} of this file and one other machine"
         )
     for name, other in others.items():
         machine = _with_base(machine, name, load(str(other)), place)

@@ -50,10 +50,10 @@ class Machine:
 
     def part(self, name: str) -> Part:
         """The solid or fluid of this name; InputError if there is none."""
-        known = {part.name: part for part in (*self.parts, *self.fluids)}
-        if name not in known:
-            raise InputError(f"unknown part {name!r}", self.name, f"known: {', '.join(known)}")
-        return known[name]
+        parts = {part.name: part for part in (*self.parts, *self.fluids)}
+        if name not in parts:
+            raise InputError(f"unknown part {name!r}", self.name, f"known: {', '.join(parts)}")
+        return parts[name]
 
     def material_of(self, name: str) -> Material:
         """What the part is made of, [materials] overrides and the winding's fill and impregnation included."""

@@ -115,9 +115,9 @@ class ArcGrid:
             step = min([self.step, *(_fine_step(radius, other) for other in partners[radius])])
             self._cuts[radius] = _divided(self._merged(breaks[radius], neighbours), step)
 
-    def _merged(self, own: Iterable[float], others: Iterable[float]) -> list[float]:
+    def _merged(self, first: Iterable[float], others: Iterable[float]) -> list[float]:
         """All own breaks, and those of others that do not nearly coincide with one already there."""
-        breaks = sorted(own)
+        breaks = sorted(first)
         for angle in sorted(others):
             if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.05 * self.step:
                 breaks.append(angle)

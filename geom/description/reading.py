@@ -87,19 +87,19 @@ class _Group:
         return value
 
 
-def _refuse_unknown(declared: Mapping[str, Parameter], table: Mapping[str, Any], where: str) -> None:
-    groups = {parameter.group for parameter in declared.values()}
+def _refuse_unknown(parameters: Mapping[str, Parameter], table: Mapping[str, Any], where: str) -> None:
+    groups = {parameter.group for parameter in parameters.values()}
     for group, keys in table.items():
         if group not in groups or not isinstance(keys, Mapping):
             raise InputError(f"unknown section [geometry.{group}]", where, _suggestion(group, groups))
-        ratios = {p.ratio_name for p in declared.values() if p.group == group and p.of is not None}
+        ratios = {p.ratio_name for p in parameters.values() if p.group == group and p.of is not None}
         for name in keys:
-            if f"{group}.{name}" not in declared and name not in ratios:
-                _refuse_key(declared, group, name, where)
+            if f"{group}.{name}" not in parameters and name not in ratios:
+                _refuse_key(parameters, group, name, where)
 
 
-def _refuse_key(declared: Mapping[str, Parameter], group: str, name: str, where: str) -> None:
-    siblings = {p.name: p for p in declared.values() if p.group == group}
+def _refuse_key(parameters: Mapping[str, Parameter], group: str, name: str, where: str) -> None:
+    siblings = {p.name: p for p in parameters.values() if p.group == group}
     ratios = [p.ratio_name for p in siblings.values() if p.of is not None]
     place = f"{where} [geometry.{group}]"
     with_unit = [

@@ -59,8 +59,10 @@ def family_page(family: Family, picture: str) -> str:
 
 def _rows(family: Family, measured: bool) -> list[str]:
     usual = usual_geometry(family.parameters)
-    chosen = [p for p in family.parameters if (p.of is not None) == measured]
-    return [_measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in chosen]
+    parameters = [p for p in family.parameters if (p.of is not None) == measured]
+    return [
+        _measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in parameters
+    ]
 
 
 def _measured(p: Parameter, usual: Geometry) -> str:

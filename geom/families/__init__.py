@@ -10,5 +10,5 @@ def families() -> dict[str, Family]:
     """All families by name, those of other packages too (entry points "thermoscope.families")."""
     from geom.families import radial_flux, series_dc
 
-    own = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)
-    return {family.name: family for family in (*own, *plugins("families").values())}
+    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)
+    return {family.name: family for family in (*builtin, *plugins("families").values())}

@@ -48,22 +48,22 @@ class Column:
 
 def find_blocks(cut: Partition) -> list[Block]:
     """Blocks in order of their first slab."""
-    done: list[Block] = []
+    blocks: list[Block] = []
     growing: list[Block] = []
     for slab in range(cut.labels.shape[1]):
         groups = _groups(cut, slab)
-        grown = [_continued(cut, growing, faces, slab) for faces in groups]
-        grown_ids = {id(block) for block, _ in grown if block}
-        done += [block for block in growing if id(block) not in grown_ids]
-        growing = [new for _, new in grown]
-    return sorted(done + growing, key=lambda block: (block.first, block.faces[0]))
+        extensions = [_continued(cut, growing, faces, slab) for faces in groups]
+        open_ids = {id(block) for block, _ in extensions if block}
+        blocks += [block for block in growing if id(block) not in open_ids]
+        growing = [new for _, new in extensions]
+    return sorted(blocks + growing, key=lambda block: (block.first, block.faces[0]))
 
 
 def _groups(cut: Partition, slab: int) -> list[Ints]:
     """Sets of solid faces of one slab that are connected through common edges."""
     solid = np.append(cut.solid[:, slab], False)
-    joined = solid[cut.left] & solid[cut.right]
-    a, b = cut.left[joined], cut.right[joined]
+    inside = solid[cut.left] & solid[cut.right]
+    a, b = cut.left[inside], cut.right[inside]
     n = len(solid)
     component = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)[1]
     members = defaultdict(list)

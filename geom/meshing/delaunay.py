@@ -43,13 +43,13 @@ def nudged(ring: Floats) -> Floats:
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     turn = np.abs(_cross(before, after)) / (np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1))
     corners = np.flatnonzero(turn > _STRAIGHT)
-    moved = ring.copy()
+    points = ring.copy()
     for a, b in zip(corners, [*corners[1:], corners[0] + len(ring)]):
         between = np.arange(a + 1, b) % len(ring)
         along = ring[b % len(ring)] - ring[a]
         share = (ring[between] - ring[a]) @ along / (along @ along)
-        moved[between] += (_NUDGE * 4 * share * (1 - share))[:, None] * np.array([-along[1], along[0]])
-    return moved
+        points[between] += (_NUDGE * 4 * share * (1 - share))[:, None] * np.array([-along[1], along[0]])
+    return points
 
 
 def triangulate_face(points: Floats, border: Ints, face: shapely.Polygon) -> Ints:

@@ -114,11 +114,11 @@ def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Float
 def _assembled(
     plane: Floats, z: Floats, tets: Ints, label: Ints, walls: Walls, parts: Sequence[Part], face_name: FaceName
 ) -> NamedMesh:
-    used, corners = np.unique(tets, return_inverse=True)
-    points = np.column_stack([plane[used % len(plane)], z[used // len(plane)]])
+    nodes, corners = np.unique(tets, return_inverse=True)
+    points = np.column_stack([plane[nodes % len(plane)], z[nodes // len(plane)]])
     solid = np.array([part.solid for part in parts])
     names = tuple(part.name for part in parts if part.solid)
-    facets = np.searchsorted(used, np.concatenate([triangles for triangles, _ in walls]))
+    facets = np.searchsorted(nodes, np.concatenate([triangles for triangles, _ in walls]))
     sides = np.concatenate([labels for _, labels in walls])
     tets = _positive(points, corners.reshape(-1, 4))
     return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))

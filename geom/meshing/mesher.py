@@ -44,15 +44,15 @@ def build_mesh(
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
     file = _cache_file(machine, (size_m, segments, across, axial), cache)
-    known = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
+    identities = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (cached := recalled(file, read_npz)) is not None:
-        return replace(cached, identities=known)
+        return replace(cached, identities=identities)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
     if file is not None:
         write_npz(mesh, file)
-    return replace(mesh, identities=known)
+    return replace(mesh, identities=identities)
 
 
 @dataclass(frozen=True)

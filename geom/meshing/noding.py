@@ -49,10 +49,10 @@ def _distinct(edges: Ints) -> Ints:
 
 def _split(points: Floats, edges: Ints) -> Ints:
     """Edges cut at every point that lies on them to within NEAR."""
-    used = np.unique(edges)
+    vertices = np.unique(edges)
     tree = shapely.STRtree(shapely.linestrings(points[edges]))
-    which, edge = tree.query(shapely.points(points[used]), predicate="dwithin", distance=NEAR)
-    point = used[which]
+    which, edge = tree.query(shapely.points(points[vertices]), predicate="dwithin", distance=NEAR)
+    point = vertices[which]
     inner = (edges[edge] != point[:, None]).all(axis=1)
     point, edge = point[inner], edge[inner]
     start, along = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]

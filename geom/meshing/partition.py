@@ -98,10 +98,10 @@ def _label(
 
 
 def _refuse_overlap(parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]) -> None:
-    occupied = block != AMBIENT
-    if not occupied.any() or shapely.area(faces)[occupied.any(axis=1)].sum() < _OVERLAP:
+    solid = block != AMBIENT
+    if not solid.any() or shapely.area(faces)[solid.any(axis=1)].sum() < _OVERLAP:
         return
-    other = parts[block[occupied][0]].name
+    other = parts[block[solid][0]].name
     raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
 
 

@@ -86,13 +86,13 @@ def _borders(faces: NDArray[np.object_], points: Floats, edges: Ints, inner: lis
 
 def _mesh_face(points: Floats, face: shapely.Polygon, rings: list[Ints], size: float) -> tuple[Ints, Floats]:
     """Triangles of one face in global point numbers, and the points with those inside the face added."""
-    corners, added = np.unique(np.concatenate(rings)), interior_points(face, size)
+    corners, interior = np.unique(np.concatenate(rings)), interior_points(face, size)
     outline = [nudged(points[ring]) for ring in rings]
-    local = np.vstack([points[corners], added])
-    for ring, moved in zip(rings, outline):
-        local[np.searchsorted(corners, ring)] = moved
+    local = np.vstack([points[corners], interior])
+    for ring, positions in zip(rings, outline):
+        local[np.searchsorted(corners, ring)] = positions
     border = np.vstack([np.column_stack([ring, np.roll(ring, -1)]) for ring in rings])
     polygon = shapely.Polygon(outline[0], outline[1:])
     triangles = triangulate_face(local, np.searchsorted(corners, border), polygon)
-    number = np.concatenate([corners, len(points) + np.arange(len(added))])
-    return number[triangles], np.vstack([points, added])
+    number = np.concatenate([corners, len(points) + np.arange(len(interior))])
+    return number[triangles], np.vstack([points, interior])

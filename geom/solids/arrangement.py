@@ -45,10 +45,10 @@ class Curves:
         """(n, 4) bounds (m), a little wider than the curves."""
         low, high = np.minimum(self.start, self.end), np.maximum(self.start, self.end)
         for quarter in range(4):
-            reached = (quarter * math.pi / 2 - self.angle) % (2 * math.pi) <= self.sweep
+            passes = (quarter * math.pi / 2 - self.angle) % (2 * math.pi) <= self.sweep
             far = self.centre + self.radius[:, None] * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][quarter])
-            low = np.where((reached & self.curved)[:, None], np.minimum(low, far), low)
-            high = np.where((reached & self.curved)[:, None], np.maximum(high, far), high)
+            low = np.where((passes & self.curved)[:, None], np.minimum(low, far), low)
+            high = np.where((passes & self.curved)[:, None], np.maximum(high, far), high)
         return np.hstack([low - TOLERANCE, high + TOLERANCE])
 
     def place(self, which: Ids, points: Floats) -> Floats:
@@ -73,8 +73,8 @@ class Curves:
     def _on_arc(self, which: Ids, points: Floats) -> Floats:
         x, y = (points - self.centre[which]).T
         radius, half = self.radius[which], self.sweep[which] / 2
-        turned = np.arctan2(y, x) - self.angle[which] - half
-        along = (turned + math.pi) % (2 * math.pi) - math.pi + half  # from the middle, so that both ends are near
+        angle = np.arctan2(y, x) - self.angle[which] - half
+        along = (angle + math.pi) % (2 * math.pi) - math.pi + half  # from the middle, so that both ends are near
         return np.stack([along * radius, np.hypot(x, y) - radius])
 
 
@@ -112,8 +112,8 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     np.logical_or.at(corners, (ends, np.tile(owner, 2)), True)
     original = curve[first]
     a, b = (points[pieces[first, i]] - curves.centre[original] for i in (0, 1))
-    turned = (np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])) % (2 * math.pi)
-    sweep = np.where(curves.curved[original], turned, 0.0)
+    angle = (np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])) % (2 * math.pi)
+    sweep = np.where(curves.curved[original], angle, 0.0)
     return Arrangement(
         points,
         pieces[first],

@@ -35,7 +35,7 @@ Poles = NDArray[np.float64]
 def channel(helix: Helix) -> cq.Solid:
     """The channel (mm): a rectangle in a plane through the axis, moved as on a screw, cut by radii and end planes."""
     make = Boundary()
-    cuts = [_Cut(helix, turned, make) for turned in _angles(helix)]
+    cuts = [_Cut(helix, angle, make) for angle in _angles(helix)]
     spans = [_Span(here, following, make) for here, following in pairwise(cuts)]
     ends = [cuts[0].end(outward=True), cuts[-1].end(outward=False)]
     return make.solid([make.shell([*ends, *(face for span in spans for face in span.faces())])])
@@ -52,13 +52,13 @@ def _angles(helix: Helix) -> list[float]:
 class _Cut:
     """The rectangle in a half plane through the axis; corners, "up" and "out" by side: 0 inner or lower, 1 the other.
 
-    turned : from the channel's start (rad);  z : lower and upper edge (mm)
+    rotation : from the channel's start (rad);  z : lower and upper edge (mm)
     up : upright edges at either radius;  out : radial edges, lower and upper
     """
 
-    def __init__(self, helix: Helix, turned: float, make: Boundary) -> None:
-        self.make, self.turned, self.angle = make, turned, helix.angle + turned
-        low = helix.bottom + helix.blunt - helix.width + helix.pitch * turned / (2 * math.pi)
+    def __init__(self, helix: Helix, rotation: float, make: Boundary) -> None:
+        self.make, self.rotation, self.angle = make, rotation, helix.angle + rotation
+        low = helix.bottom + helix.blunt - helix.width + helix.pitch * rotation / (2 * math.pi)
         self.z = (mm * max(helix.bottom, low), mm * min(helix.top, low + helix.width))
         self.radii = (mm * helix.inner, mm * helix.outer)
         self.corner = {(side, edge): make.vertex(self._at(side, edge)) for side in (0, 1) for edge in (0, 1)}
@@ -84,7 +84,7 @@ class _Span:
 
     def __init__(self, here: _Cut, following: _Cut, make: Boundary) -> None:
         self.here, self.next, self.make = here, following, make
-        self.sweep = following.turned - here.turned
+        self.sweep = following.rotation - here.rotation
         self.along = {corner: self._edge(*corner) for corner in here.corner}
 
     def faces(self) -> list[Any]:
@@ -99,8 +99,8 @@ class _Span:
         for edge, curve in enumerate((low, high)):
             ends = ((0.0, self.here.z[edge] - z), (self.sweep, self.next.z[edge] - z))
             self.make.lay(curve, _straight_2d(*ends), surface)
-        for cut, turned in ((self.here, 0.0), (self.next, self.sweep)):
-            self.make.lay(cut.up[side], line_2d(turned, cut.z[0] - z, 0.0, 1.0), surface)
+        for cut, rotation in ((self.here, 0.0), (self.next, self.sweep)):
+            self.make.lay(cut.up[side], line_2d(rotation, cut.z[0] - z, 0.0, 1.0), surface)
         loop = [(low, True), (self.next.up[side], True), (high, False), (self.here.up[side], False)]
         return self.make.face(surface, [loop], outward=bool(side))
 

@@ -102,10 +102,10 @@ class Sections:
         return np.array([np.bincount(pieces[row].ravel(), minlength=points) for row in edge])
 
     def _runs(self, edge: Flags, corner: Flags) -> list[Run]:
-        chosen, corners, pieces = np.flatnonzero(edge).tolist(), corner.tolist(), self._pieces
-        follows = {pieces[p][0]: p for p in chosen if not corners[pieces[p][0]]}
+        indices, corners, pieces = np.flatnonzero(edge).tolist(), corner.tolist(), self._pieces
+        follows = {pieces[p][0]: p for p in indices if not corners[pieces[p][0]]}
         out = []
-        for p in chosen:
+        for p in indices:
             if corners[pieces[p][0]]:
                 run = [p]
                 while (following := follows.get(pieces[run[-1]][1])) is not None:

@@ -134,10 +134,10 @@ def _chained(pieces: list[Piece]) -> list[Loop] | None:
             following = _next(left, end)
             if following is None:
                 return None
-            index, turned = following
+            index, backwards = following
             start, other, bulge = left.pop(index)
-            here, end = (other, start) if turned else (start, other)
-            loop.append(_vertex(here, -bulge if turned else bulge))
+            here, end = (other, start) if backwards else (start, other)
+            loop.append(_vertex(here, -bulge if backwards else bulge))
         loops.append(tuple(loop))
     return loops
 
@@ -148,8 +148,8 @@ def _next(pieces: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
     distance = np.hypot(*ends.T)
     if not len(pieces) or distance.min() > _JOIN:
         return None
-    index, turned = divmod(int(distance.argmin()), 2)
-    return index, bool(turned)
+    index, backwards = divmod(int(distance.argmin()), 2)
+    return index, bool(backwards)
 
 
 def _vertex(point: np.ndarray, bulge: float) -> Vertex:
@@ -187,5 +187,5 @@ def _outline(loop: Loop) -> list[tuple[float, float]]:
 def _anticlockwise(loop: Loop) -> Loop:
     if loop_area(loop) > 0:
         return loop
-    turned = [(x, y, -before[2]) for (x, y, _), before in zip(loop, (loop[-1], *loop[:-1]))]
-    return tuple(reversed(turned))
+    vertices = [(x, y, -before[2]) for (x, y, _), before in zip(loop, (loop[-1], *loop[:-1]))]
+    return tuple(reversed(vertices))

@@ -125,10 +125,10 @@ class _Stack:
         for key in level:
             _, first, at = key
             angle = self.of.angle(self.of.level_runs[at][first])
-            turned = (angle - self.of.angle(run) + 1e-6) % (2 * math.pi) - 1e-6  # rounding is no full turn
-            self.make.lay(self.edges[key], line_2d(turned - angle, height * (at - section), 1.0, 0.0), surface)
-        for key, turned in ((left, 0.0), (right, self.of.sweep(run))):
-            self.make.lay(self.edges[key], line_2d(turned, 0.0, 0.0, 1.0), surface)
+            rotation = (angle - self.of.angle(run) + 1e-6) % (2 * math.pi) - 1e-6  # rounding is no full turn
+            self.make.lay(self.edges[key], line_2d(rotation - angle, height * (at - section), 1.0, 0.0), surface)
+        for key, rotation in ((left, 0.0), (right, self.of.sweep(run))):
+            self.make.lay(self.edges[key], line_2d(rotation, 0.0, 0.0, 1.0), surface)
 
     def _floor(self, region: Region, level: int, ceiling: bool) -> _Face:
         z = mm * self.of.levels[level]

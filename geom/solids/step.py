@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 INSIDE = "air.inside"
 NOTHING = Identity()
 _ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 0.0)}  # axis and angle (deg) onto z
-_ALLOWED = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
+_KEYS = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
 
 
 def import_step(path: str | Path) -> Machine:
@@ -64,7 +64,7 @@ def import_step(path: str | Path) -> Machine:
     fluids = sidecar.get("fluids", {})
     _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
-    made_of = {
+    material_of = {
         name: _material(name, sidecar.get("materials", {}), str(beside)) for name in prisms if name not in fluids
     }
     header = sidecar.get("machine", {})
@@ -75,7 +75,7 @@ def import_step(path: str | Path) -> Machine:
         parts=tuple(
             Part(
                 name,
-                made_of[name],
+                material_of[name],
                 prisms[name],
                 role=what.get(name, NOTHING).role,
                 turns=what.get(name, NOTHING).turns,
@@ -131,15 +131,13 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
     sidecar = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
-    known = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
+    sections = ("import", "fluids", "roles", *(section for section in SECTIONS if section != "geometry"))
     for section, table in sidecar.items():
-        if section not in known or not isinstance(table, Mapping):
-            raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(known)}")
+        if section not in sections or not isinstance(table, Mapping):
+            raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(sections)}")
         for key in table:
-            if key not in _ALLOWED.get(section, (key,)):
-                raise InputError(
-                    f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_ALLOWED[section])}"
-                )
+            if key not in _KEYS.get(section, (key,)):
+                raise InputError(f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_KEYS[section])}")
     return sidecar
 
 
@@ -152,13 +150,13 @@ def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, lis
         raise InputError(f"{axis!r} is no axis", f"{where} [import] axis", f"one of {', '.join(_ROTATIONS)}")
     if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
         raise InputError(f"{origin!r} is no point", f"{where} [import] origin_mm", "write [x, y, z]")
-    turned = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
-    moved = cq.Location(cq.Vector(*(-float(x) for x in origin)))
+    rotation = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
+    translation = cq.Location(cq.Vector(*(-float(x) for x in origin)))
     by_name: dict[str, list[cq.Solid]] = {}
     for shape, name, place, _ in _assembly(path):
-        placed = shape.moved(turned * moved * place)
-        if placed.Solids():
-            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(placed.Solids())
+        body = shape.moved(rotation * translation * place)
+        if body.Solids():
+            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(body.Solids())
     if not by_name:
         raise InputError("no solids", str(path), "a STEP assembly of named solids")
     return by_name
@@ -210,9 +208,13 @@ def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
     return InputError(f"no solid is called {pattern!r}", where, f"the file has: {', '.join(names)}")
 
 
-def _material(name: str, chosen: Mapping[str, str], where: str) -> str:
+def _material(name: str, materials: Mapping[str, str], where: str) -> str:
     """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
-    fitting = [chosen[name]] if name in chosen else [m for pattern, m in chosen.items() if fnmatchcase(name, pattern)]
+    fitting = (
+        [materials[name]]
+        if name in materials
+        else [m for pattern, m in materials.items() if fnmatchcase(name, pattern)]
+    )
     if fitting:
         return material(fitting[0]).name
     if name not in _habits():

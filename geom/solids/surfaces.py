@@ -46,9 +46,9 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
     import cadquery as cq
 
     file = cache_file(part, cache, f"check-{tolerance_mm:g}", "json")
-    known = file and recalled(file, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
-    if known:
-        return known
+    check = file and recalled(file, lambda path: CadCheck(**{**json.loads(path.read_text()), "part": part.name}))
+    if check:
+        return check
     exact = solids(part, cache)
     times = Counter(solid.located(cq.Location()) for solid in exact)  # copies of one solid are looked at once
     surfaces = {solid: surface(solid, tolerance_mm) for solid in times}

@@ -217,8 +217,8 @@ class Circuit:
     def _exchanged(self, network: Network, suffix: str, start: str, law: Law) -> Link:
         """The exchanger with the node that flows into it."""
         assert self.cooler is not None
-        own, hot, air = (network.column(n) for n in (f"{self.name}.cooled", start, self.cooler.air))
-        rows, cols, vals = np.array([own, own]), np.array([hot, air]), np.array([1.0, -1.0])
+        outlet, hot, air = (network.column(n) for n in (f"{self.name}.cooled", start, self.cooler.air))
+        rows, cols, vals = np.array([outlet, outlet]), np.array([hot, air]), np.array([1.0, -1.0])
         places, ends = (f"{self.name}.cooled", self.cooler.air), (node_row(hot), node_row(air))
         return Link(f"exchanger:{self.name}{suffix}", "film", places, rows, cols, vals, law, *ends)
 

@@ -25,8 +25,8 @@ class PlaceError:
         return sum(e for e in (self.mesh_K, self.condensation_K, self.time_K) if e is not None)
 
     def document(self) -> dict[str, Any]:
-        known = any(e is not None for e in (self.mesh_K, self.condensation_K, self.time_K))
-        return {**vars(self), "total_K": self.total_K if known else None}
+        estimable = any(e is not None for e in (self.mesh_K, self.condensation_K, self.time_K))
+        return {**vars(self), "total_K": self.total_K if estimable else None}
 
 
 @dataclass(frozen=True)

@@ -61,14 +61,14 @@ class Size:
 
     @classmethod
     def of(
-        cls, reduction: Reduction, requested: int, points: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy
+        cls, reduction: Reduction, requested: int, points: Sequence[FullPoint], cases: LoadCases, accuracy: Accuracy
     ) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *others = (point_error(network, point, cases) for point in points)
         random = merged(others)
         return cls(
-            requested, network, nominal, random, max(excess(nominal, allowed), excess(random, allowed)) <= RESERVE
+            requested, network, nominal, random, max(excess(nominal, accuracy), excess(random, accuracy)) <= RESERVE
         )
 
     def document(self) -> dict[str, Any]:
@@ -79,7 +79,7 @@ class Size:
 
 
 def enrich(
-    reduction: Reduction, cases: LoadCases, allowed: Accuracy, rounds: int = 3, points: Sequence[FullPoint] = (),
+    reduction: Reduction, cases: LoadCases, accuracy: Accuracy, rounds: int = 3, points: Sequence[FullPoint] = (),
     guides: Sequence[FullPoint] = (), fresh: int = 3, tell: Tell = lambda message: None,
 ) -> Enrichment:  # fmt: skip
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
@@ -88,36 +88,36 @@ def enrich(
     fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
-    learned, begun = list(points) or [reduction.nominal_point()], len(points) + len(guides)
+    learned, first = list(points) or [reduction.nominal_point()], len(points) + len(guides)
     # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
     reduction = reduction.enriched(learned) if points else reduction
-    done: list[Round] = []
+    history: list[Round] = []
     for k in range(rounds):
-        network = allotted_shapes(reduction, [*learned, *guides], cases, allowed, weights)
-        new = [reduction.random_point(begun + fresh * k + j) for j in range(fresh)]
+        network = allotted_shapes(reduction, [*learned, *guides], cases, accuracy, weights)
+        new = [reduction.random_point(first + fresh * k + j) for j in range(fresh)]
         errors = merged([point_error(network, point, cases) for point in new])
-        done.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, allowed) <= 1.0))
+        history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
         tell(f"{len(network.states)} states: {errors}")
-        if done[-1].met or k == rounds - 1:
+        if history[-1].met or k == rounds - 1:
             break
-        fuller = [*guides, reduction.extreme_point(begun + k)]
+        fuller = [*guides, reduction.extreme_point(first + k)]
         learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
-    return Enrichment(reduction, network, dict(weights), tuple(done))
+    return Enrichment(reduction, network, dict(weights), tuple(history))
 
 
-def excess(errors: Errors, allowed: Accuracy) -> float:
+def excess(errors: Errors, accuracy: Accuracy) -> float:
     """1 where the worst part is just good enough."""
-    return max(map(allowed.excess, errors.parts.values()))
+    return max(map(accuracy.excess, errors.parts.values()))
 
 
 def allotted_shapes(
-    reduction: Reduction, learned: Sequence[FullPoint], cases: LoadCases, allowed: Accuracy, weights: dict[str, float]
+    reduction: Reduction, learned: Sequence[FullPoint], cases: LoadCases, accuracy: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
         errors = merged([point_error(network, point, cases) for point in learned])
-        missing = {part: allowed.excess(e) for part, e in errors.parts.items() if allowed.excess(e) > MARGIN}
+        missing = {part: accuracy.excess(e) for part, e in errors.parts.items() if accuracy.excess(e) > MARGIN}
         if not missing:
             break
         for part, excess in missing.items():

@@ -152,14 +152,16 @@ def reduce(
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
     loads = unit_loads(field, places)
-    stored = BasisCache(cache, _geometry(field, loads, recipe))
+    basis_cache = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
-    cached = stored.find(centre, recipe.spread)
+    cached = basis_cache.find(centre, recipe.spread)
     if cached is None:
         unit = np.column_stack([*loads.values()])
         S = snapshots(field, films, contacts, unit, recipe, solver)
         local = isolated_part(field, films, contacts, S, unit, recipe)
-        cached = stored.keep(centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2)
+        cached = basis_cache.keep(
+            centre, principals(field, S, energies(field, films, contacts), local), recipe.tolerance**2
+        )
     principal = {part: Principal(*pair) for part, pair in cached.items()}
     return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, principal)
 
@@ -171,8 +173,8 @@ def unit_loads(field: FieldModel, zones: Mapping[str, Zone]) -> dict[str, Array]
 
 def _geometry(field: FieldModel, loads: Mapping[str, Array], recipe: Recipe) -> list[bytes]:
     """What the shapes depend on besides coefficients: points, parts, zones, heat capacities, recipe."""
-    own = replace(recipe, tolerance=0.0, max_states=None, favour=1.0)
-    out = [repr((own, list(field.blocks), list(loads), list(field.films), list(field.contacts))).encode()]
+    neutral = replace(recipe, tolerance=0.0, max_states=None, favour=1.0)
+    out = [repr((neutral, list(field.blocks), list(loads), list(field.films), list(field.contacts))).encode()]
     out.append(np.ascontiguousarray(field.xyz).tobytes())
     out += [block.tets.tobytes() + repr(block.rho_cp).encode() for block in field.blocks.values()]
     return out + [load.tobytes() for load in loads.values()]

@@ -97,11 +97,11 @@ def _part(T: Array, sampled: Array, shape: PartShape, floor: float, rng: np.rand
     w = shape.weights
     mean, off = w @ T, T - sampled
     at = rng.choice(len(T), min(POINTS, len(T)), replace=False)
-    own = max(abs(float(mean)), floor)
+    rise = max(abs(float(mean)), floor)
     return PartError(
-        100 * abs(float(w @ off)) / own,
+        100 * abs(float(w @ off)) / rise,
         100 * abs(float(T.max() - sampled.max())) / max(float(T.max()), floor),
-        100 * float(np.abs(off[at]).max()) / own,
+        100 * float(np.abs(off[at]).max()) / rise,
     )
 
 
@@ -127,13 +127,13 @@ def random_load_cases(
     rated : zone -> W;  rises : fluid -> K over the surroundings with the rated losses, 0 if not given
     """
     rng = np.random.default_rng(3)
-    own = np.array([rated.get(zone, 0.0) for zone in zones])
-    own = own if own.any() else np.ones(len(zones))
-    random = own.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
+    rated_watts = np.array([rated.get(zone, 0.0) for zone in zones])
+    rated_watts = rated_watts if rated_watts.any() else np.ones(len(zones))
+    random = rated_watts.sum() * rng.dirichlet(np.full(len(zones), 0.5), DRAWS)
     warm = np.array([0.0 if fluid == "ambient" else 20.0 for fluid in fluids])
     at_rated = np.array([(rises or {}).get(fluid, 0.0) for fluid in fluids])
     kelvin = [at_rated, *np.zeros((DRAWS, len(fluids))), 0.5 * at_rated + warm]
-    return LoadCases(tuple(zones), tuple(fluids), np.array([own, *random, 0.5 * own]), np.array(kelvin))
+    return LoadCases(tuple(zones), tuple(fluids), np.array([rated_watts, *random, 0.5 * rated_watts]), np.array(kelvin))
 
 
 def network_states(
@@ -153,4 +153,4 @@ def point_errors(network: Network, films: Mapping[str, float], contacts: Mapping
                  cases: LoadCases) -> Errors:  # fmt: skip
     """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
     x, full = network_states(network, films, contacts, cases), cases.of_field(X)
-    return merged([errors(network, T, own) for T, own in zip(full.T, x.T, strict=True)])
+    return merged([errors(network, T, states) for T, states in zip(full.T, x.T, strict=True)])

@@ -32,8 +32,9 @@ def gnielinski_turbulent(Re: float, Pr: float) -> float:
 def duct_film(
     speed: float, diameter: float, length: float, fluid: Fluid | None = None, developed: float = 3.66
 ) -> tuple[float, Info]:
-    """Mean film of a duct, h (W/m2/K): laminar with entry below Re 2300, Gnielinski above 4000, linear between.
+    """Mean film of a duct, h (W/m2/K).
 
+    Nu is `hausen_laminar` below Re 2300, `gnielinski_turbulent` above 4000, linear between.
     speed (m/s), diameter: hydraulic, 4 A/P (m), length (m); fluid defaults to air at 40 degC;
     developed: laminar Nu far from the entry (3.66 circle, staton_rectangle, 7.54 parallel plates).
     Range: Re < 5e6, 0.5 < Pr < 2000. Source: Gnielinski 2013, Int. J. Heat Mass Transfer 63, 134 (transition).

@@ -26,8 +26,8 @@ def natural(table: Table) -> Law:
 def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
     """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
-    known = {**NATURAL, **plugins("still_air")}
-    film, factor = known[table.word("surface", None, known)](table, film_air(table)), table.number("factor", 1.0)
+    surfaces = {**NATURAL, **plugins("still_air")}
+    film, factor = surfaces[table.word("surface", None, surfaces)](table, film_air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
     return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
@@ -145,8 +145,8 @@ FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
 def over(table: Table) -> list[Law]:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
     liquid = "coolant" in table and table.raw("coolant") != "air"
-    known = {**FORCED, **plugins("moving_air")}
-    film, scale = known[table.word("surface", None, known)], table.number("m_s_per_unit", 1.0)
+    surfaces = {**FORCED, **plugins("moving_air")}
+    film, scale = surfaces[table.word("surface", None, surfaces)], table.number("m_s_per_unit", 1.0)
     fluid, usual = (_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)
     of, top = table.word("speed"), table.number("up_to_m_s", 50.0) / scale
     return film_laws(table, of, lambda x: partial(_scaled, film(table, x), scale), fluid, usual, top, liquid)

@@ -26,7 +26,7 @@ from lumped.transfer.reversal import Direction, OneWay
 if TYPE_CHECKING:
     from lumped.circuits.circuit import Circuit
 
-NAMED = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
+SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
 
 
@@ -61,7 +61,7 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
     name, boundaries, settles = head.word("name"), head.members("boundaries"), head.number("settles_s", 3600.0)
     head.close()
-    for key in NAMED:
+    for key in SECTIONS:
         checked_names(top.tables(key), f"{where} [{key}]")
     checked_names(boundaries, f"{where} [network] boundaries")
     circuits = _circuits(top, nodes, boundaries)
@@ -70,8 +70,8 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     clash = set(nodes) & set(boundaries)
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
-    declared = read_identities(top, nodes, boundaries, cells)
-    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=declared,
+    identities = read_identities(top, nodes, boundaries, cells)
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=identities,
                       quantities=read_quantities(top))  # fmt: skip
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]

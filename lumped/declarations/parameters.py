@@ -18,18 +18,18 @@ MAPPINGS = {
 
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
-    declared = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
-    names = [p.name for p in declared]
+    parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
+    names = [p.name for p in parameters]
     for name in (n for n in names if names.count(n) > 1):
         raise top.error(f"two parameters are called '{name}': prior_sd in a table makes one of that name",
                         "prior_sd there, or [parameters.NAME] of another name")  # fmt: skip
-    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in declared)
+    return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in parameters)
 
 
 def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float]]:
     """What a measured total leaves out grows with what the model injects instead."""
     pairs = [(s.name, s.name.partition(":less:")[2]) for s in network.sources if ":less:" in s.name]
-    return [(own, e) for own, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
+    return [(remainder, e) for remainder, of in pairs for target, e in parameter.targets if target == f"loss:{of}"]
 
 
 def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
@@ -43,8 +43,8 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
     ):
         for name, table in top.tables(section).items():
             if "prior_sd" in table:
-                own = f"{target}{name}"
-                mine = [i.name for i in items if i.name == own or i.name.startswith(f"{own}:")]
+                stem = f"{target}{name}"
+                mine = [i.name for i in items if i.name == stem or i.name.startswith(f"{stem}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
                 sd, flow = table.number("prior_sd"), section == "streams"
                 out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))

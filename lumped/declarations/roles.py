@@ -19,9 +19,9 @@ def read_identities(
         if name not in boundaries:
             raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
     out = {
-        name: declared
+        name: statement
         for name, table in {**nodes, **around}.items()
-        if (declared := _declared_identity(table)) is not None
+        if (statement := _declared_identity(table)) is not None
     }
     for table in around.values():
         table.close()

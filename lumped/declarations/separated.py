@@ -141,13 +141,13 @@ def products(h: Array, weight: Array | None = None) -> list[tuple[Array, Array]]
     profile, scale = h / np.maximum(h.max(axis=1, keepdims=True), 1e-300), np.maximum(h, SMALL)
     scale = scale / (np.ones(h.shape[1]) if weight is None else weight)
     few = np.arange(0, len(h), 4), np.arange(0, h.shape[1], max(1, h.shape[1] // 30))
-    chosen: list[int] = []
+    basis: list[int] = []
     while True:
-        errors = {k: _missed(h, scale, profile, [*chosen, k], *few) for k in few[0].tolist() if k not in chosen}
-        chosen.append(min(errors, key=lambda k: errors[k]))
-        share = _shares(h, scale, profile[chosen])
-        if np.all(np.abs(h - share @ profile[chosen]) <= TOLERANCE * scale) or len(chosen) == MOST:
-            return list(zip(share.T, profile[chosen], strict=True))
+        errors = {k: _missed(h, scale, profile, [*basis, k], *few) for k in few[0].tolist() if k not in basis}
+        basis.append(min(errors, key=lambda k: errors[k]))
+        share = _shares(h, scale, profile[basis])
+        if np.all(np.abs(h - share @ profile[basis]) <= TOLERANCE * scale) or len(basis) == MOST:
+            return list(zip(share.T, profile[basis], strict=True))
 
 
 def _shares(h: Array, scale: Array, profiles: Array) -> Array:
@@ -157,8 +157,8 @@ def _shares(h: Array, scale: Array, profiles: Array) -> Array:
     return np.array([nnls((profiles / s).T, row / s)[0] for row, s in zip(h, scale, strict=True)])
 
 
-def _missed(h: Array, scale: Array, profile: Array, chosen: list[int], rows: Indices, cols: Indices) -> float:
+def _missed(h: Array, scale: Array, profile: Array, basis: list[int], rows: Indices, cols: Indices) -> float:
     """What mixtures of the chosen rows miss of some rows and columns; large errors count most."""
-    h, scale, profiles = h[rows][:, cols], scale[rows][:, cols], profile[chosen][:, cols]
+    h, scale, profiles = h[rows][:, cols], scale[rows][:, cols], profile[basis][:, cols]
     off = (h - _shares(h, scale, profiles) @ profiles) / scale
     return float(np.sum(off**4))

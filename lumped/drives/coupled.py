@@ -33,7 +33,7 @@ def coupled(
     network: Network,
     record: Record,
     drive: Drive,
-    watched: Mapping[str, str],
+    places: Mapping[str, str],
     values: Mapping[str, float] | None = None,
     rows: Sequence[Row] = (),
     tolerance: float = 1e-3,
@@ -41,19 +41,19 @@ def coupled(
 ) -> Coupled:
     """Waveform iteration: drive(temperatures over the record) -> inputs, network -> temperatures, and again.
 
-    watched : name the drive knows -> place of the network;  record.inputs: what the drive does not give
+    places : name the drive knows -> place of the network;  record.inputs: what the drive does not give
     tolerance : K, largest change of a watched temperature over the whole record between two rounds
     """
-    looks = [network.place(place).mean for place in watched.values()]
+    looks = [network.place(place).mean for place in places.values()]
     start = np.concatenate([initial_state(network, record.initial), np.zeros(len(network.boundaries))])
-    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(watched, looks, strict=True)}
+    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(places, looks, strict=True)}
     residuals: list[float] = []
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}
-        driven = replace(record, inputs=inputs)
-        run = simulate(network, driven, values, [*looks, *rows], keep_states=True, precision=READINGS)
-        new = {name: run.y[:, k] for k, name in enumerate(watched)}
-        residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in watched), default=0.0))
+        final = replace(record, inputs=inputs)
+        run = simulate(network, final, values, [*looks, *rows], keep_states=True, precision=READINGS)
+        new = {name: run.y[:, k] for k, name in enumerate(places)}
+        residuals.append(max((float(np.abs(new[n] - T[n]).max()) for n in places), default=0.0))
         T = new
         if residuals[-1] < tolerance:
             return Coupled(_without(run, len(looks)), inputs, tuple(residuals))
@@ -70,15 +70,15 @@ def _without(run: Run, first: int) -> Run:
 
 
 def series_drive(
-    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, wanted_mps: Array, slope: Array,
+    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, target_mps: Array, slope: Array,
     reference_degC: float = 20.0, alpha: float = ALPHA_CU,
 ) -> Drive:  # fmt: skip
     """The vehicle's series machine; R = R(reference) (1 + alpha (T - reference)) with T["winding"]."""
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         warm = machine.R * (1.0 + alpha * (T["winding"] - reference_degC))
-        cycle: Cycle = drive_cycle(machine, vehicle, controller, time, wanted_mps, slope, resistance=warm)
-        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(wanted_mps, float)}
+        cycle: Cycle = drive_cycle(machine, vehicle, controller, time, target_mps, slope, resistance=warm)
+        return cycle.inputs() | {"vehicle_speed_wanted_mps": np.asarray(target_mps, float)}
 
     return drive
 
@@ -88,10 +88,10 @@ def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array) -> Drive:
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         i_d, i_q = machine.currents(torque, speed_rpm, T["winding"], T["magnet"])
-        given = machine.torque(i_d, i_q, T["magnet"])
+        shaft_torque = machine.torque(i_d, i_q, T["magnet"])
         volts = machine.voltage(i_d, i_q, speed_rpm, T["winding"], T["magnet"])
         return {
-            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": given, "voltage_V": volts,
+            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": shaft_torque, "voltage_V": volts,
             "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
         }  # fmt: skip
 

@@ -121,12 +121,12 @@ def drive_cycle(
     vehicle: Vehicle,
     controller: Controller,
     time: Array,
-    wanted_mps: Array,
+    target_mps: Array,
     slope: Array,
     step: float = 5e-3,
     resistance: Array | None = None,
 ) -> Cycle:
-    """Drive a speed profile: time (nt,) s, wanted_mps and slope (nt,) linear between the times; starts at rest.
+    """Drive a speed profile: time (nt,) s, target_mps and slope (nt,) linear between the times; starts at rest.
 
     resistance: (nt,) ohm where it changes with temperature, else the machine's R
     step: of the inner integration (s); current by its exact exponential over the step, speed by the midpoint.
@@ -138,13 +138,13 @@ def drive_cycle(
     plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
     control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
     R = np.full(len(time), machine.R) if resistance is None else resistance
-    arrays = (np.ascontiguousarray(x, float) for x in (time, wanted_mps, load0, R))
+    arrays = (np.ascontiguousarray(x, float) for x in (time, target_mps, load0, R))
     _march(*arrays, plant, control, step, out)
     return Cycle(time, out[:, 0], out[:, 1] / RPM, out[:, 2], out[:, 3], out[:, 4])
 
 
 @entry
-def _march(time, wanted, load, resistance, plant, control, step, out):
+def _march(time, profile, load, resistance, plant, control, step, out):
     L_af, L, J, B, wheel, drag = plant
     Kp, Ki, i_max, v_max, lag = control
     i, w, integral = 0.0, 0.0, 0.0
@@ -154,7 +154,7 @@ def _march(time, wanted, load, resistance, plant, control, step, out):
         h, square, V, R = span / count, 0.0, 0.0, 0.5 * (resistance[t - 1] + resistance[t])
         for s in range(count):
             share = (s + 0.5) / count
-            target = (wanted[t - 1] + share * (wanted[t] - wanted[t - 1])) / wheel
+            target = (profile[t - 1] + share * (profile[t] - profile[t - 1])) / wheel
             resist = load[t - 1] + share * (load[t] - load[t - 1])
             demand = Kp * (target - w) + integral
             i_ref = min(max(demand, 0.0), i_max)

@@ -62,17 +62,17 @@ class PMMachine:
 
         Torque above the limits is cut to what they allow (compare `torque` of the answer with what was asked).
         """
-        wanted, n, Tw, Tm = np.broadcast_arrays(
+        demand, n, Tw, Tm = np.broadcast_arrays(
             *(np.asarray(x, float) for x in (torque, speed_rpm, winding_degC, magnet_degC))
         )
-        size = np.abs(wanted)
+        size = np.abs(demand)
         peak = _bisected(lambda i: self.torque(*self._least(i, Tm), Tm) - size, np.zeros_like(size), self.current_limit)
         i_d, i_q = self._least(peak, Tm)
         over = self.voltage(i_d, i_q, n, Tw, Tm) > self.voltage_limit
         if np.any(over):
             weak_d, weak_q = self._weakened(np.minimum(size, self.torque(i_d, i_q, Tm)), i_d, n, Tw, Tm)
             i_d, i_q = np.where(over, weak_d, i_d), np.where(over, weak_q, i_q)
-        return i_d, i_q * np.where(wanted < 0, -1.0, 1.0)
+        return i_d, i_q * np.where(demand < 0, -1.0, 1.0)
 
     def _least(self, peak: Array, magnet_degC: Array) -> tuple[Array, Array]:
         """(i_d, i_q) of most torque for a current: Morimoto et al. 1990, IEEE Trans. Ind. Appl. 26, 866."""

@@ -44,11 +44,11 @@ class Pattern:
         """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle."""
         P = np.zeros((self.row.size, int(self.cols.max(initial=0)) + 1))
         np.add.at(P, (self.to, self.cols), self.vals)
-        own = (np.arange(self.row.size), self.row)
+        diagonal = (np.arange(self.row.size), self.row)
         small = 1e-9 * float(np.abs(self.vals).max(initial=0.0))
         if np.any(self.row >= P.shape[1]) or np.any(np.abs(P.sum(axis=1)) > small):
             return False
-        P[own] = np.minimum(P[own], 0.0)
+        P[diagonal] = np.minimum(P[diagonal], 0.0)
         return bool(np.all(small >= P))
 
     @property
@@ -105,8 +105,8 @@ class Assembly:
         """The live terms without multipliers and factors; a steady one stands in the constant matrix (dynamic 0)."""
         key = live.tobytes() + steady.tobytes()
         if key not in self._packed:
-            chosen = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
-            self._packed[key] = _pack(chosen, steady[live])
+            patterns = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
+            self._packed[key] = _pack(patterns, steady[live])
         return self._packed[key]
 
 
@@ -179,8 +179,8 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
     tables = [_table(p.law.temperature) for p in patterns]
     codes = [_code(p.law.temperature) for p in patterns]
     points = starts(tables)
-    shared = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
-    distinct = [patterns[k] for k in np.unique(shared, return_index=True)[1]]
+    pattern_of = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
+    distinct = [patterns[k] for k in np.unique(pattern_of, return_index=True)[1]]
     rows = starts([p.row for p in distinct])
     probes = [side if p.bends else NOTHING for p in patterns for side in (p.hot, p.cold)]
     probe_of = _numbered([(x.index.tobytes(), x.weights.tobytes()) for x in probes]).reshape(-1, 2)
@@ -194,8 +194,10 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
         at=ints([ints(p.cols for p in distinct)[by_row], *(x.index for x in probed)]),
         weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in probed)]),
         row=ints(p.row for p in distinct),
-        part=np.column_stack([shared, rows[shared], rows[shared + 1], rows[-1] + probe_of, points[:-1], points[1:]]),
-        order=np.argsort(shared, kind="stable"),
+        part=np.column_stack(
+            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points[:-1], points[1:]]
+        ),
+        order=np.argsort(pattern_of, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
         point=np.concatenate([np.empty((0, 2)), *tables]),
@@ -205,5 +207,5 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
 
 def _numbered(keys: Sequence[Hashable]) -> NDArray[np.int64]:
     """Equal keys have equal numbers, in the order in which they appear."""
-    known: dict[Hashable, int] = {}
-    return np.array([known.setdefault(key, len(known)) for key in keys], np.int64)
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], np.int64)

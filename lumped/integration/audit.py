@@ -50,9 +50,9 @@ def audit(network: Network, record: Record, values: Mapping[str, float] | None =
     run = march(network, record, core, keep_states=True)
     way, m = walk(network, record, core, run), multipliers(network, values)
     signals = record.inputs if isinstance(record.inputs, Signals) else Signals(record.inputs, run.time.size)
-    declared = {s.name: m.get(s.name, 1.0) * _heat(s, signals, way) for s in network.sources}
+    energies = {s.name: m.get(s.name, 1.0) * _heat(s, signals, way) for s in network.sources}
     heat = counted(network, core, run, way)
-    return Audit(declared, {name: float(x[-1]) for name, x in heat.injected.items()}, heat)
+    return Audit(energies, {name: float(x[-1]) for name, x in heat.injected.items()}, heat)
 
 
 def _heat(source: Source, signals: Signals, way: Walk) -> float:

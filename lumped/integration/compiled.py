@@ -102,7 +102,7 @@ def pack_rows(rows: Sequence[Row], size: int) -> Rows:
 def _pack_tangents(
     network: Network, slope: Sequence[Mapping[str, float]], names: Sequence[str], shifts: Sequence[str | None]
 ) -> Tangents:
-    moved = [(j, names.index(t), s) for j, d in enumerate(slope) for t, s in d.items() if t in names and s != 0.0]
+    triplets = [(j, names.index(t), s) for j, d in enumerate(slope) for t, s in d.items() if t in names and s != 0.0]
     dC = np.zeros((len(slope), len(network.C)))
     for j in (j for j, d in enumerate(slope) if any(t.startswith("capacity:") for t in d)):
         dC[j] = network.C * capacity_slopes(network, slope[j])
@@ -112,8 +112,8 @@ def _pack_tangents(
     for j, name in enumerate(shifts, len(slope)):
         first[hidden.size + network.boundaries.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
     return Tangents(
-        np.array([x[0] for x in moved], np.int64), np.array([x[1] for x in moved], np.int64),
-        np.array([x[2] for x in moved], float), state, column, dC[column, state], first,
+        np.array([x[0] for x in triplets], np.int64), np.array([x[1] for x in triplets], np.int64),
+        np.array([x[2] for x in triplets], float), state, column, dC[column, state], first,
     )  # fmt: skip
 
 
@@ -147,8 +147,8 @@ def compiled(
     curves = [signals.curve(p.name, p.law) for p in every.patterns]
     factors = [c.value for c in curves]
     steady = ~every.bends & np.array([f.ndim == 0 for f in factors], bool)
-    watched = {target for d in slope for target in d}
-    live = all_terms | np.array([name in watched for name in every.names], bool) | ~(steady | (m == 0.0))
+    targets = {target for d in slope for target in d}
+    live = all_terms | np.array([name in targets for name in every.names], bool) | ~(steady | (m == 0.0))
     constant = np.array([float(f) if s else 0.0 for f, s in zip(factors, steady, strict=True)])
     alive = np.flatnonzero(live)
     names, patterns = tuple(every.names[k] for k in alive), [every.patterns[k] for k in alive]
@@ -156,7 +156,7 @@ def compiled(
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
     bends = bool(np.any(terms.kind[stiff, BENDS]))
-    driven = forcing(
+    drive = forcing(
         time, u, signals, patterns, [curves[k] for k in alive], moving, stiff, bends, precision.every_sample
     )
     return Compiled(
@@ -164,7 +164,7 @@ def compiled(
         every.matrix(m * constant),
         names,
         terms,
-        driven,
+        drive,
         _pack_tangents(network, slope, names, shifts),
         pack_rows(rows, network.size),
         control(network, every, m, factors, precision),

@@ -114,11 +114,11 @@ def curve(
     if every.ndim == 0:
         return straight(every)
     nt = moves.far.size + 1
-    bulge, looked, limits = np.zeros(nt), np.empty(nt, np.int64), np.array([ROUNDING, FLAT, SMALL, 0.0])
-    count = halfway(every, moves.left, moves.far, limits, bulge, looked)
+    bulge, intervals, limits = np.zeros(nt), np.empty(nt, np.int64), np.array([ROUNDING, FLAT, SMALL, 0.0])
+    count = halfway(every, moves.left, moves.far, limits, bulge, intervals)
     if count < 0:
         return straight(every[0])
-    near = looked[:count]
+    near = intervals[:count]
 
     def again(at: Array) -> Array:
         """Beside the extremes, for laws that look for the largest of what they are given."""

@@ -39,8 +39,8 @@ def _instant(forcing: Forcing, at: Position) -> float:
 
 def _growing(network: Network) -> list[str]:
     """Losses that grow with temperature."""
-    own = [s for s in network.sources if not s.origin and getattr(s.law.temperature, "alpha", 0.0) > 0.0]
-    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in own))
+    sources = [s for s in network.sources if not s.origin and getattr(s.law.temperature, "alpha", 0.0) > 0.0]
+    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in sources))
 
 
 def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:

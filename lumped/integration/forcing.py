@@ -62,14 +62,14 @@ def forcing(
         curves = [source.curve(p.name, p.law) for p in patterns]
         t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
     ends = [straight(x) for x in u.T]
-    chosen, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
+    indices, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
     if not every_sample:
-        chosen, wholes = _needed(t, curves, ends, list(source.values()))
-    factor, bulge = _between(t, chosen, curves, wholes[: len(curves)])
-    u, arch = _between(t, chosen, ends, wholes[len(curves) :])
-    knots = t[chosen]
-    renew = np.full(chosen.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
-    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, chosen, np.flatnonzero(sample >= 0)))
+        indices, wholes = _needed(t, curves, ends, list(source.values()))
+    factor, bulge = _between(t, indices, curves, wholes[: len(curves)])
+    u, arch = _between(t, indices, ends, wholes[len(curves) :])
+    knots = t[indices]
+    renew = np.full(indices.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
+    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, indices, np.flatnonzero(sample >= 0)))
 
 
 def _needed(
@@ -86,13 +86,13 @@ def _needed(
               *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
     varying = {i: k for k, i in enumerate(i for i, x in enumerate(curves) if _varies(x[0]))}
     value, bulge, whole = np.empty((3, len(varying), time.size))
-    allowed = np.empty((len(varying), 2))
+    tolerance = np.empty((len(varying), 2))
     for i, k in varying.items():
         c, share, most = curves[i]
         value[k], bulge[k] = c.value, c.bulge
-        allowed[k] = max(most, share * SMALL * _largest(c.value)), share
+        tolerance[k] = max(most, share * SMALL * _largest(c.value)), share
     out = np.empty(time.size, np.int64)
-    count = needed(time, value, bulge, allowed, whole, np.empty(4), out)
+    count = needed(time, value, bulge, tolerance, whole, np.empty(4), out)
     return out[:count], [whole[varying[i]] if i in varying else NONE for i in range(len(heats) + len(ends))]
 
 
@@ -104,19 +104,19 @@ def _largest(x: Array) -> float:
     return max(float(x.max()), -float(x.min()))
 
 
-def _between(time: Array, chosen: Ints, curves: Sequence[Curve], wholes: Sequence[Array]) -> tuple[Array, Array]:
+def _between(time: Array, indices: Ints, curves: Sequence[Curve], wholes: Sequence[Array]) -> tuple[Array, Array]:
     """(nk, n) values at some of the knots, and how far between them parabolas bulge that keep every integral.
 
     wholes : the integrals of the curves from the first knot
     """
-    value, bulge = np.zeros((2, chosen.size, len(curves)))
+    value, bulge = np.zeros((2, indices.size, len(curves)))
     value[:] = [c.value if c.value.ndim == 0 else 0.0 for c in curves]
-    starts = 1 + np.flatnonzero(np.diff(chosen) > 1)
-    left, right = chosen[starts - 1], chosen[starts]
+    starts = 1 + np.flatnonzero(np.diff(indices) > 1)
+    left, right = indices[starts - 1], indices[starts]
     for e, c in enumerate(curves):
         if c.value.ndim == 0:
             continue
-        value[:, e], bulge[:, e] = c.value[chosen], c.bulge if c.bulge.ndim == 0 else c.bulge[chosen]
+        value[:, e], bulge[:, e] = c.value[indices], c.bulge if c.bulge.ndim == 0 else c.bulge[indices]
         if starts.size and wholes[e].size:
             mean = (wholes[e][right] - wholes[e][left]) / (time[right] - time[left])
             off = 1.5 * (mean - 0.5 * (c.value[left] + c.value[right]))
@@ -125,10 +125,10 @@ def _between(time: Array, chosen: Ints, curves: Sequence[Curve], wholes: Sequenc
     return value, bulge
 
 
-def _samples(time: Array, knot_time: Array, chosen: Ints, at: Ints) -> tuple[Ints, Array]:
+def _samples(time: Array, knot_time: Array, indices: Ints, at: Ints) -> tuple[Ints, Array]:
     """first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is"""
     first, share = np.empty(knot_time.size + 1, np.int64), np.empty(time.size)
-    placed(time, knot_time, chosen, at, first, share)
+    placed(time, knot_time, indices, at, first, share)
     return first, share
 
 

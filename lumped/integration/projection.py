@@ -98,10 +98,10 @@ def _edges(f: Array, cell: NDArray[np.int64], inner: Mask, largest: Array, cut: 
 def _positions(near: Curve, time: Array, full: Mask, cut: Mask, edges: Array, fine: Curve, fine_time: Array) -> Array:
     """Where to cut: at some samples and, in the intervals that are cut, where the factor turns between samples;
     elsewhere as the near curve says."""
-    own = near.inserted[~full[near.inserted.astype(np.int64) + 1]]
+    knots = near.inserted[~full[near.inserted.astype(np.int64) + 1]]
     t = np.concatenate([edges, np.interp(fine.inserted, np.arange(fine_time.size), fine_time)])
     t = t[(t > time[0]) & (t < time[-1])]
     k = np.searchsorted(time, t, "right") - 1
     mine = full[k + 1] & cut[k + 1] & (t > time[k])
     t, k = t[mine], k[mine]
-    return np.concatenate([own, k + (t - time[k]) / (time[k + 1] - time[k])])
+    return np.concatenate([knots, k + (t - time[k]) / (time[k + 1] - time[k])])

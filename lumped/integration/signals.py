@@ -28,8 +28,8 @@ class Source(NamedTuple):
 
     def between(self, at: Array) -> Between:
         """The recorded inputs at positions of ours (index plus share)."""
-        own = np.interp(between(self.at, at), self.time, np.arange(self.time.size))
-        return Between(self.signals, lambda x: between(x, own))
+        positions = np.interp(between(self.at, at), self.time, np.arange(self.time.size))
+        return Between(self.signals, lambda x: between(x, positions))
 
     def part(self, at: Array) -> Source:
         """The recorded samples from before the first to after the last of some times, with these as ours."""

@@ -20,7 +20,7 @@ from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.dense import factored
 from lumped.numerics.kernel import (
-    DONE,
+    COUNT,
     FACTORED,
     FULL,
     LOW,
@@ -202,8 +202,8 @@ class _Course:
             pass
 
     def _rest(self, forcing: Forcing) -> None:
-        core, own = self.core, self.moved[1]
-        scratch = self.scratch._replace(D=own.D, R=own.R)
+        core, sensitivity = self.core, self.moved[1]
+        scratch = self.scratch._replace(D=sensitivity.D, R=sensitivity.R)
         if not solve_steady_start(core.C, core.K0, core.terms, core.tangents, forcing.factor[0], self.both, scratch):
             raise self._failed(forcing)
 
@@ -215,17 +215,17 @@ class _Course:
         """As many steps as the trace holds; whether there are more."""
         core, at, sample = self.core, self.position.at, int(self.position.at[SAMPLE])
         control = core.control if self.given is None else self._follow(first)
-        shared = (core.rows, control, self.trace, self.position, self.both, self.scratch)
-        integrate(forcing, core.C, core.K0, core.terms, *shared, self.z, self.y, self.late)
+        common = (core.rows, control, self.trace, self.position, self.both, self.scratch)
+        integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y, self.late)
         if at[STATUS] not in (0, FULL):
             raise self._failed(forcing)
-        done, X = int(at[DONE]), self.trace
-        self.steps_done += done
-        self.steps.append(Steps(X.knot[:done] + first, X.share[:done].copy(), X.kind[:done].copy()))
+        count, X = int(at[COUNT]), self.trace
+        self.steps_done += count
+        self.steps.append(Steps(X.knot[:count] + first, X.share[:count].copy(), X.kind[:count].copy()))
         if self.path is not None:
-            self.path.append(ends(X, done)[:, self.place[: core.C.size]])
+            self.path.append(ends(X, count)[:, self.place[: core.C.size]])
         if self.tangents:
-            position = (core.rows, core.curved, X, done, sample, int(at[SAMPLE]), *self.moved, self.dy)
+            position = (core.rows, core.curved, X, count, sample, int(at[SAMPLE]), *self.moved, self.dy)
             differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *position)
         return bool(at[STATUS] == FULL)
 
@@ -261,10 +261,10 @@ class _Course:
         )
 
 
-def ends(X: Trace, done: int) -> Array:
-    """(done, n) states at the ends of the steps in a trace."""
-    inner = np.where(X.kind[:done, None] == EULER, X.U[:done, 0], X.U[:done, 0] / GAMMA)
-    return np.asarray(X.x[:done, : inner.shape[1]] + inner + X.U[:done, 2])
+def ends(X: Trace, count: int) -> Array:
+    """(count, n) states at the ends of the steps in a trace."""
+    inner = np.where(X.kind[:count, None] == EULER, X.U[:count, 0], X.U[:count, 0] / GAMMA)
+    return np.asarray(X.x[:count, : inner.shape[1]] + inner + X.U[:count, 2])
 
 
 def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:

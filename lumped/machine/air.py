@@ -89,10 +89,10 @@ def fan_streams(network: Network, features: Features, shares: Mapping[str, float
 
 def _cell(network: Network, cell: str, upstream: Mapping[str, float], law: Law) -> Link:
     """An upwind cell: it takes up flow x heat capacity x (own temperature - what flows in)."""
-    own = network.column(cell)
-    cols = np.array([own, *(network.column(name) for name in upstream)])
+    column = network.column(cell)
+    cols = np.array([column, *(network.column(name) for name in upstream)])
     vals = np.array([sum(upstream.values()), *(-share for share in upstream.values())])
     inflow = -vals[1:] / vals[0]
-    rows, first = np.full(len(cols), own), next(iter(upstream))
-    hot, cold = Row(np.array([own]), np.array([1.0])), Row(cols[1:], inflow)
+    rows, first = np.full(len(cols), column), next(iter(upstream))
+    hot, cold = Row(np.array([column]), np.array([1.0])), Row(cols[1:], inflow)
     return Link(f"stream:fan:{cell}", "stream", (first, cell), rows, cols, vals, law, hot, cold)

@@ -16,7 +16,7 @@ from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
 from lumped.transfer.laws import Array, Inputs, Wrapped
 
-OWN_BASE = "own"
+THIS_MACHINE = "own"
 
 
 @dataclass(frozen=True)
@@ -45,16 +45,16 @@ def on_every_base(network: Network) -> Network:
     if not any(isinstance(x.law, Switched) for x in network.links):
         return network
     present = [x for x in network.links if not isinstance(x.law, Switched) or x.law.closed]
-    joined = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in present]
+    links = [replace(x, law=x.law.base) if isinstance(x.law, Switched) else x for x in present]
     bare = {x.places[0] for x in network.links if isinstance(x.law, Switched) and not x.law.closed}
     places = {name: place for name, place in network.places.items() if name not in bare}
-    return replace(network, links=tuple(joined), places=places, parameters=())
+    return replace(network, links=tuple(links), places=places, parameters=())
 
 
 def switches(machine: Machine) -> dict[str, str]:
     """Input -> the foot it couples."""
     table = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == OWN_BASE else f"foot.{name}" for name, machine_ in table.items()}
+    return {f"on_{name}": "foot" if machine_ == THIS_MACHINE else f"foot.{name}" for name, machine_ in table.items()}
 
 
 def switched(machine: Machine, network: Network) -> Network:
@@ -71,12 +71,12 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
     print_ = footprint(network, joint, body, foot)
-    grown = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
+    larger = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
     films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
-    bare = [_bare(grown, film, print_, switch) for film in films]
-    moved = {film.name: link.name for film, link in zip(films, bare, strict=True)}
-    own = tuple(_also(p, moved) for p in network.parameters)
-    return replace(grown.extended(bare), parameters=own)
+    bare = [_bare(larger, film, print_, switch) for film in films]
+    copies = {film.name: link.name for film, link in zip(films, bare, strict=True)}
+    parameters = tuple(_also(p, copies) for p in network.parameters)
+    return replace(larger.extended(bare), parameters=parameters)
 
 
 def _of_base(network: Network, places: tuple[str, str]) -> bool:
@@ -85,13 +85,13 @@ def _of_base(network: Network, places: tuple[str, str]) -> bool:
 
 def footprint(network: Network, joint: Link, body: str, foot: str) -> Place:
     """The body's side of the joint as a face of its own."""
-    own = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
-    at = {state: k for k, state in enumerate(own)}
-    K = np.zeros((len(own), len(own)))
+    states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
+    at = {state: k for k, state in enumerate(states)}
+    K = np.zeros((len(states), len(states)))
     for row, col, value in zip(joint.rows, joint.cols, joint.vals, strict=True):
         if int(row) in at and int(col) in at:
             K[at[int(row)], at[int(col)]] += value
-    return Place(f"{foot}.print", "surface", body, np.array(own), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
+    return Place(f"{foot}.print", "surface", body, np.array(states), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
 
 
 def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:
@@ -100,7 +100,7 @@ def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:
     return network.surface_link(name, "contact", face.name, "ambient", Switched(film.law, switch, False))
 
 
-def _also(parameter: Parameter, moved: Mapping[str, str]) -> Parameter:
+def _also(parameter: Parameter, copies: Mapping[str, str]) -> Parameter:
     """What acts on a film acts on its share of the footprint too."""
-    more = tuple((moved[target], exponent) for target, exponent in parameter.targets if target in moved)
+    more = tuple((copies[target], exponent) for target, exponent in parameter.targets if target in copies)
     return replace(parameter, targets=(*parameter.targets, *more))

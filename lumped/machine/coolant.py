@@ -145,11 +145,11 @@ def grown(units: np.ndarray) -> np.ndarray:
 def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
     """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
     cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
-    last = {jacket: own[-1] for jacket, own in cells.items()} | {INLET: INLET}
+    last = {jacket: path[-1] for jacket, path in cells.items()} | {INLET: INLET}
     return [
         _stream(network, feed, cell, _rate_law(machine, jacket, cooling))
-        for jacket, own in cells.items()
-        for feed, cell in zip((last[cooling.feeds[jacket]], *own), own)
+        for jacket, path in cells.items()
+        for feed, cell in zip((last[cooling.feeds[jacket]], *path), path)
     ]
 
 
@@ -160,10 +160,10 @@ def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
 
 
 def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
-    own, before, one = network.column(cell), network.column(feed), np.array([1.0])
+    i, before, one = network.column(cell), network.column(feed), np.array([1.0])
     return Link(
-        f"stream:{cell}", "stream", (feed, cell), np.array([own, own]), np.array([own, before]), np.array([1.0, -1.0]),
-        law, Row(np.array([own]), one), Row(np.array([before]), one),
+        f"stream:{cell}", "stream", (feed, cell), np.array([i, i]), np.array([i, before]), np.array([1.0, -1.0]),
+        law, Row(np.array([i]), one), Row(np.array([before]), one),
     )  # fmt: skip
 
 

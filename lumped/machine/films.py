@@ -70,8 +70,8 @@ class Surroundings:
         """Of the rotor (m), or where no air gap is known, as in an imported machine, of the largest part that turns."""
         if self.gap is not None:
             return self.gap.rotor_radius
-        turned = [part for part in self.machine.parts if part.name in self.turning]
-        return max((radius(profile.outer) for part in turned for profile, _, _ in part.prisms), default=0.0)
+        rotating = [part for part in self.machine.parts if part.name in self.turning]
+        return max((radius(profile.outer) for part in rotating for profile, _, _ in part.prisms), default=0.0)
 
     @cached_property
     def top_rpm(self) -> float:

@@ -55,12 +55,12 @@ def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) 
     return out
 
 
-Declared = tuple[str, str, Shares, Law, str]
+Loss = tuple[str, str, Shares, Law, str]
 ASSUMED = "loss:assumed"
 ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
-def _declared(machine: Machine) -> list[Declared]:
+def _declared(machine: Machine) -> list[Loss]:
     section = machine.sections.get("losses", {})
     plain = not any(isinstance(value, Mapping) for value in section.values())
     if plain and machine.features.series is not None:
@@ -82,7 +82,7 @@ def _everywhere(machine: Machine) -> Shares:
     return {part.name: part.volume / total for part in heated}
 
 
-def _read(name: str, table: Table, law: Law) -> Declared:
+def _read(name: str, table: Table, law: Law) -> Loss:
     shares = table.shares("at")
     if abs(sum(shares.values()) - 1.0) > 1e-9:
         raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
@@ -100,8 +100,8 @@ def _source(network: Network, name: str, kind: str, parts: Shares, law: Law, pro
         index += p.states.tolist()
         weights += (share * p.b).tolist()
     main = place_of(network, next(iter(parts)))
-    watched = Row(np.array(index), np.array(weights)) if probe == "" else place_of(network, probe).mean
-    return Source(f"loss:{name}", kind, main.part, np.array(index), np.array(weights), law, watched)
+    probe_row = Row(np.array(index), np.array(weights)) if probe == "" else place_of(network, probe).mean
+    return Source(f"loss:{name}", kind, main.part, np.array(index), np.array(weights), law, probe_row)
 
 
 def _spread(network: Network, parts: Shares) -> dict[str, float]:
@@ -125,7 +125,7 @@ def place_of(network: Network, name: str) -> Place:
     return network.places[stem]
 
 
-def _series(machine: Machine, losses: Losses, rated: Mapping[str, float]) -> list[Declared]:
+def _series(machine: Machine, losses: Losses, rated: Mapping[str, float]) -> list[Loss]:
     """The plain numbers of a series-wound machine. rated : "current_A", "speed_rpm" """
     assert machine.features.series is not None
     has = machine.features.series

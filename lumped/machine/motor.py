@@ -103,8 +103,8 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     if around.cooling is not None:
         streams += coolant_streams(machine, network, around.cooling)
     losses = sources(machine, network)
-    own = parameters(machine, network, faces, films, streams, losses)
-    return switched(machine, network.extended([*films, *streams], losses, own))
+    multipliers = parameters(machine, network, faces, films, streams, losses)
+    return switched(machine, network.extended([*films, *streams], losses, multipliers))
 
 
 def _contact(link: Link) -> str:

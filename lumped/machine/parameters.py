@@ -70,12 +70,12 @@ def _flows(machine: Machine, films: Sequence[Link], streams: Sequence[Link]) -> 
     """A flow moves its streams, and the films of the channels it fills."""
     beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
     out = []
-    for name, own in (("fan.flow", True), ("coolant.flow", False)):
-        moved = [s for s in streams if s.name.startswith("stream:fan:") == own]
-        cells = beside if own else {s.places[1] for s in moved}
-        washed = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
-        acts = (*((s.name, 1.0) for s in moved), *washed)
-        if moved:
+    for name, by_fan in (("fan.flow", True), ("coolant.flow", False)):
+        flow_links = [s for s in streams if s.name.startswith("stream:fan:") == by_fan]
+        cells = beside if by_fan else {s.places[1] for s in flow_links}
+        films_there = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
+        acts = (*((s.name, 1.0) for s in flow_links), *films_there)
+        if flow_links:
             out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
     return out
 

@@ -31,10 +31,11 @@ def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dic
 
 def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Identity]:
     """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
-    known = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
-    hung = _hung(known, contacts)
+    identity_of = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
+    hung = _hung(identity_of, contacts)
     return {
-        name: known[name] if known[name].turns is not None else _turned(known[name], name in hung) for name in known
+        name: identity_of[name] if identity_of[name].turns is not None else _turned(identity_of[name], name in hung)
+        for name in identity_of
     }
 
 
@@ -69,9 +70,9 @@ def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset
     """All that hangs on what turns through contacts, without a bearing or a standing part between."""
     pairs = [tuple(name.split("|")) for name in contacts]
     joints = [pair for pair in pairs if all(p in identities and identities[p].turns is not False for p in pair)]
-    turning_parts, reached = {name for name, i in identities.items() if i.turns}, -1
-    while len(turning_parts) > reached:
-        reached = len(turning_parts)
+    turning_parts, count = {name for name, i in identities.items() if i.turns}, -1
+    while len(turning_parts) > count:
+        count = len(turning_parts)
         turning_parts |= {part for pair in joints if turning_parts & set(pair) for part in pair}
     return frozenset(turning_parts)
 

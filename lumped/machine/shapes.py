@@ -71,8 +71,8 @@ def gap_of(machine: Machine) -> Gap | None:
     if not profile.holes:
         return None
     outer, inner = radius(profile.outer), radius(profile.holes[0])
-    declared = machine.features.air_gap
-    return Gap(inner, outer - inner if declared is None else declared)
+    height = machine.features.air_gap
+    return Gap(inner, outer - inner if height is None else height)
 
 
 def gap_fluid(machine: Machine) -> str:

@@ -22,40 +22,40 @@ def identities(network: Network) -> Mapping[str, Identity]:
     """Name of a part, node, fluid or boundary -> what it is, with the evidence where it is a guess."""
     top = Topology(network)
     names = (*top.bodies, *top.fluids, *network.boundaries)
-    if all((known := network.declared.get(n)) is not None and known.role is not None for n in names):
+    if all((identity := network.declared.get(n)) is not None and identity.role is not None for n in names):
         return {**network.declared}
     return _guessed(top, names)
 
 
 def _guessed(top: Topology, names: tuple[str, ...]) -> dict[str, Identity]:
-    declared = top.network.declared
-    turns = turning(top, {n: bool(i.turns) for n, i in declared.items() if i.turns is not None and n in top.bodies})
-    roles = {n: i.role for n, i in declared.items() if i.role is not None}
+    statements = top.network.declared
+    turns = turning(top, {n: bool(i.turns) for n, i in statements.items() if i.turns is not None and n in top.bodies})
+    roles = {n: i.role for n, i in statements.items() if i.role is not None}
     guesses = _boundaries(top, roles)
     guesses |= _fluids(top, {**roles, **{b: role for b, (role, _) in guesses.items()}})
     guesses |= _bodies(top, {b: t for b, (t, _) in turns.items()}, roles)
-    return {n: _one(n, declared.get(n), guesses.get(n), turns.get(n)) for n in names} | {
-        n: i for n, i in declared.items() if n not in names
+    return {n: _one(n, statements.get(n), guesses.get(n), turns.get(n)) for n in names} | {
+        n: i for n, i in statements.items() if n not in names
     }
 
 
-def _one(name: str, declared: Identity | None, guess: Evidence | None, turns: tuple[bool, str] | None) -> Identity:
-    if declared is not None and declared.role is not None:
-        return declared
+def _one(name: str, statement: Identity | None, guess: Evidence | None, turns: tuple[bool, str] | None) -> Identity:
+    if statement is not None and statement.role is not None:
+        return statement
     whys = [why for why in (guess and guess[1], turns and turns[1]) if why and why != "declared"]
     role = guess[0] if guess else None
     return Identity(role, turns[0] if turns else None, ", ".join(dict.fromkeys(whys)) or "nothing tells")
 
 
-def _boundaries(top: Topology, declared: Mapping[str, Role]) -> dict[str, Evidence]:
+def _boundaries(top: Topology, statements: Mapping[str, Role]) -> dict[str, Evidence]:
     """The surroundings are what free convection and most faces meet; an inlet or a strong sink is a coolant."""
-    free = [b for b in top.network.boundaries if b not in declared]
+    free = [b for b in top.network.boundaries if b not in statements]
     out: dict[str, Evidence] = {}
-    if Role.AMBIENT not in declared.values() and free:
+    if Role.AMBIENT not in statements.values() and free:
         air = _ambient(top, free)
         if air is not None:
             out[air[0]] = (Role.AMBIENT, air[1])
-    assigned = [b for b in top.network.boundaries if declared.get(b) == Role.AMBIENT or b in out]
+    assigned = [b for b in top.network.boundaries if statements.get(b) == Role.AMBIENT or b in out]
     usual = max((_sink(top, b) for b in assigned), default=0.0)
     inlets = {x.places[0] for x in top.links if x.kind == "stream"}
     for boundary in free:
@@ -82,15 +82,15 @@ def _sink(top: Topology, boundary: str) -> float:
 def _ambient(top: Topology, free: list[str]) -> tuple[str, str] | None:
     """By films of free convection first, then by faces met, then by how little the strongest joint there conducts."""
     natural = {b: sum(not fixed(x) and not x.law.reads for _, x in top.outer(b)) for b in free}
-    washed = {b: sum(p.fluid == b for p in top.network.places.values()) for b in free}
-    met = {b: len({name for name, _ in top.outer(b)}) for b in free}
-    score = {b: (natural[b], washed[b], met[b], -_sink(top, b)) for b in free if natural[b] or washed[b] or met[b]}
+    faces = {b: sum(p.fluid == b for p in top.network.places.values()) for b in free}
+    bodies = {b: len({name for name, _ in top.outer(b)}) for b in free}
+    score = {b: (natural[b], faces[b], bodies[b], -_sink(top, b)) for b in free if natural[b] or faces[b] or bodies[b]}
     if not score:
         return (free[0], "the only boundary") if len(top.network.boundaries) == 1 else None
     best = max(score, key=lambda b: score[b])
     why = (
         f"{natural[best]} films of still air lead there" if natural[best]
-        else f"{max(washed[best], met[best])} bodies meet it" if max(washed[best], met[best]) > 1 or len(score) == 1
+        else f"{max(faces[best], bodies[best])} bodies meet it" if max(faces[best], bodies[best]) > 1 or len(score) == 1
         else "the weaker sink"
     )  # fmt: skip
     return best, why
@@ -109,10 +109,10 @@ def _fluids(top: Topology, roles: Mapping[str, Role]) -> dict[str, Evidence]:
     return out
 
 
-def _bodies(top: Topology, turns: Mapping[str, bool], declared: Mapping[str, Role]) -> dict[str, Evidence]:
-    by_heat = {b: role for b in top.bodies if b not in declared and (role := _by_heat(top, b, turns)) is not None}
+def _bodies(top: Topology, turns: Mapping[str, bool], statements: Mapping[str, Role]) -> dict[str, Evidence]:
+    by_heat = {b: role for b in top.bodies if b not in statements and (role := _by_heat(top, b, turns)) is not None}
     for _ in range(2):  # the housing first, then what hangs on it
-        roles = {**declared, **{b: role for b, (role, _) in by_heat.items()}}
+        roles = {**statements, **{b: role for b, (role, _) in by_heat.items()}}
         remaining = {b: _by_place(top, b, turns.get(b), roles) for b in top.bodies if b not in roles}
         by_heat |= {b: role for b, role in remaining.items() if role is not None}
     return by_heat
@@ -129,8 +129,8 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
         return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _has_separate_current(
             top, body, turns) else (Role.WINDING, "carries a copper loss")  # fmt: skip
     if body in top.bearings:
-        washed = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
-        return (Role.END_SHIELD, "carries friction and meets the outside") if washed else (
+        outside = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
+        return (Role.END_SHIELD, "carries friction and meets the outside") if outside else (
             Role.BEARING, "carries friction")  # fmt: skip
     if kinds & {"iron", "map", "stray", "measured"}:
         return (Role.ROTOR, "carries a loss of the field and turns") if turning_ else (

@@ -23,10 +23,10 @@ def factor(parameter: Parameter, value: float) -> tuple[float, float]:
 
 def values_of(network: Network, values: Mapping[str, float] | None) -> dict[str, float]:
     """The value of every parameter: the declared one unless given. InputError for a value of no parameter."""
-    declared = {p.name for p in network.parameters}
-    unknown = sorted(set(values or {}) - declared)
+    names = {p.name for p in network.parameters}
+    unknown = sorted(set(values or {}) - names)
     if unknown:
-        raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(declared))}")
+        raise InputError(f"unknown parameter '{unknown[0]}'", network.title, f"known: {', '.join(sorted(names))}")
     return parameter_values(network, values or {})
 
 
@@ -55,10 +55,10 @@ def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tu
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
-    known = _valid_targets(network)
+    targets = _valid_targets(network)
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
-        for target, exponent in _targets(network, p, known):
+        for target, exponent in _targets(network, p, targets):
             out.setdefault(target, []).append((p.name, exponent))
     return out
 
@@ -80,20 +80,20 @@ def slopes(
     if not parameters:
         return []
     now = values_of(network, values)
-    acting, f, declared = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
+    acting, f, by_name = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
     out = []
     for parameter in parameters:
-        if parameter.name not in declared:
+        if parameter.name not in by_name:
             where = network.title
             raise InputError(f"unknown parameter '{parameter.name}'", where, "tangents are of its own parameters")
-        own = declared[parameter.name]
-        df = factor(own, now[own.name])[1]
-        moved = dict.fromkeys(target for target, _ in own.targets if target in acting)
-        out.append({target: _slope(acting[target], f, own.name) * df for target in moved})
+        declaration = by_name[parameter.name]
+        df = factor(declaration, now[declaration.name])[1]
+        targets = dict.fromkeys(target for target, _ in declaration.targets if target in acting)
+        out.append({target: _slope(acting[target], f, declaration.name) * df for target in targets})
     return out
 
 
-def _slope(acting: Sequence[tuple[str, float]], f: Mapping[str, float], own: str) -> float:
+def _slope(acting: Sequence[tuple[str, float]], f: Mapping[str, float], parameter: str) -> float:
     """Derivative of a product of powers by one of its factors."""
-    exponent = sum(e for name, e in acting if name == own)
-    return prod(f[name] ** e for name, e in acting if name != own) * exponent * f[own] ** (exponent - 1.0)
+    exponent = sum(e for name, e in acting if name == parameter)
+    return prod(f[name] ** e for name, e in acting if name != parameter) * exponent * f[parameter] ** (exponent - 1.0)

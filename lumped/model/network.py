@@ -238,10 +238,12 @@ class Network:
     @property
     def heated(self) -> tuple[str, ...]:
         """Nodes into which some source puts heat, by whatever share, in the order of the states; no shapes."""
-        fed = np.zeros(self.size, bool)
+        mask = np.zeros(self.size, bool)
         for source in self.sources:
-            fed[source.index[source.weights != 0.0]] = True
-        return tuple(s for s, heats in zip(self.states, fed[: len(self.states)], strict=True) if heats and "#" not in s)
+            mask[source.index[source.weights != 0.0]] = True
+        return tuple(
+            s for s, heats in zip(self.states, mask[: len(self.states)], strict=True) if heats and "#" not in s
+        )
 
     @property
     def size(self) -> int:
@@ -253,8 +255,8 @@ class Network:
             return self.states.index(name)
         if name in self.boundaries:
             return len(self.states) + self.boundaries.index(name)
-        known = ", ".join([*(s for s in self.states if "#" not in s), *self.boundaries])
-        raise InputError(f"unknown node or boundary '{name}'", self.title, f"known: {known}")
+        nodes = ", ".join([*(s for s in self.states if "#" not in s), *self.boundaries])
+        raise InputError(f"unknown node or boundary '{name}'", self.title, f"known: {nodes}")
 
     def place(self, name: str) -> Place:
         if name not in self.places:

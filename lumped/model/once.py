@@ -16,15 +16,15 @@ def once(work: Callable[[T], R]) -> Callable[[T], R]:
 
     By identity, since a comparison would cost more than the work. Results must not hold their argument.
     """
-    known: dict[int, tuple[ref[T], R]] = {}
+    results: dict[int, tuple[ref[T], R]] = {}
 
     @wraps(work)
     def remembered(of: T) -> R:
-        entry = known.get(id(of))
+        entry = results.get(id(of))
         if entry is not None and entry[0]() is of:
             return entry[1]
         result, key = work(of), id(of)
-        known[key] = ref(of, lambda _: known.pop(key, None)), result
+        results[key] = ref(of, lambda _: results.pop(key, None)), result
         return result
 
     return remembered

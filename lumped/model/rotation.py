@@ -13,18 +13,18 @@ LOOSE = 0.2  # of the strongest joint: what hangs on the rest by less may turn i
 FINEST = 1e6  # the strongest conductance in units of the smallest that the cut tells apart
 
 
-def turning(top: Topology, declared: Mapping[str, bool]) -> dict[str, tuple[bool, str]]:
+def turning(top: Topology, statements: Mapping[str, bool]) -> dict[str, tuple[bool, str]]:
     """Body -> whether it turns, and what shows it; bodies of which nothing is known are left out.
 
-    declared : what is declared
+    statements : body -> whether it is said to turn
     """
-    stand = {b: "declared" for b, turns in declared.items() if not turns} | {
-        b: why for b, why in standing(top).items() if not declared.get(b)
+    stand = {b: "declared" for b, turns in statements.items() if not turns} | {
+        b: why for b, why in standing(top).items() if not statements.get(b)
     }
-    turn = {b: "declared" for b, turns in declared.items() if turns} | {
-        b: why for b, why in seeds(top, stand).items() if declared.get(b) is not False
+    turn = {b: "declared" for b, turns in statements.items() if turns} | {
+        b: why for b, why in seeds(top, stand).items() if statements.get(b) is not False
     }
-    turn = turn or {b: why for b, why in loose(top).items() if b not in declared}
+    turn = turn or {b: why for b, why in loose(top).items() if b not in statements}
     stand = {b: why for b, why in stand.items() if b not in turn}
     out = {b: (False, why) for b, why in stand.items()} | {b: (True, why) for b, why in turn.items()}
     if turn and stand:
@@ -80,8 +80,8 @@ def loose(top: Topology) -> dict[str, str]:
     for (a, b), G in top.joints.items():
         side = _far_side(top, a, b)
         kinds = frozenset().union(*(top.heat.get(x, frozenset()) for x in side))
-        driven = any(top.reads.get((x, kind)) for x in side for kind in kinds)
-        if a not in side and not side & set(anchor) and driven and "copper" not in kinds and best[0] > G:
+        follows = any(top.reads.get((x, kind)) for x in side for kind in kinds)
+        if a not in side and not side & set(anchor) and follows and "copper" not in kinds and best[0] > G:
             best = (G, dict.fromkeys(side, f"hangs on the rest by {G:.3g} W/K alone and has a loss of its own"))
     return best[1]
 
@@ -159,5 +159,5 @@ def cut(top: Topology, turn: Collection[str], stand: Collection[str], bearings: 
     left = graph - maximum_flow(graph, n, n + 1).flow
     left.data = np.where(left.data > 0, left.data, 0)
     left.eliminate_zeros()
-    reached = breadth_first_order(left, n, return_predecessors=False)
-    return {bodies[i] for i in reached if i < n}
+    indices = breadth_first_order(left, n, return_predecessors=False)
+    return {bodies[i] for i in indices if i < n}

@@ -35,25 +35,25 @@ def checked_names(names: Iterable[str], where: str) -> None:
 
 def islands(network: Network) -> Iterator[list[str]]:
     """Groups of nodes that are joined to each other but to no boundary."""
-    joined: dict[int, set[int]] = {i: set() for i in range(network.size)}
+    neighbours: dict[int, set[int]] = {i: set() for i in range(network.size)}
     groups = [sorted({int(i) for i in (*link.rows, *link.cols)}) for link in network.links]
     for place in network.places.values():
         if place.kind == "surface" and place.fluid:  # what washes it may be joined by an effect
             groups.append([*map(int, place.states), network.column(place.fluid)])
     for group in groups:
         for i in group:
-            joined[i] |= set(group)
-    left = set(range(len(network.states))) - _reached(joined, range(len(network.states), network.size))
+            neighbours[i] |= set(group)
+    left = set(range(len(network.states))) - _reached(neighbours, range(len(network.states), network.size))
     while left:
-        island = _reached(joined, [min(left)])
+        island = _reached(neighbours, [min(left)])
         yield [network.states[i] for i in sorted(island)]
         left -= island
 
 
-def _reached(joined: dict[int, set[int]], start: Sequence[int]) -> set[int]:
+def _reached(neighbours: dict[int, set[int]], start: Sequence[int]) -> set[int]:
     out, open_ends = set(start), list(start)
     while open_ends:
-        new = joined[open_ends.pop()] - out
+        new = neighbours[open_ends.pop()] - out
         out |= new
         open_ends += new
     return out

@@ -37,13 +37,13 @@ class Topology:
 
     @cached_property
     def fluids(self) -> tuple[str, ...]:
-        declared = [p.name for p in self.network.places.values() if p.kind == "fluid" and p.name in self.network.states]
+        fluids = [p.name for p in self.network.places.values() if p.kind == "fluid" and p.name in self.network.states]
         passed = [self.part(x.places[1]) for x in self.links if x.kind == "stream"]
-        return tuple(dict.fromkeys((*declared, *(p for p in passed if p in self.network.states))))
+        return tuple(dict.fromkeys((*fluids, *(p for p in passed if p in self.network.states))))
 
     def part(self, place: str) -> str:
-        known_place = self.network.places.get(place)
-        return place if known_place is None or known_place.kind == "fluid" else known_place.part
+        site = self.network.places.get(place)
+        return place if site is None or site.kind == "fluid" else site.part
 
     @cached_property
     def pairs(self) -> tuple[tuple[str, str, Link], ...]:
@@ -140,7 +140,7 @@ def conductance(network: Network, link: Link) -> float:
     if link.law.reads:
         return 0.0
     ends = [network.places[p].states[0] if p in network.places else network.column(p) for p in link.places]
-    own = min(int(i) for i in ends)
-    at = (link.rows == own) & (link.cols == own)
+    state = min(int(i) for i in ends)
+    at = (link.rows == state) & (link.cols == state)
     warm = temperature_value(link.law.temperature, REFERENCE_K + 20.0, 20.0)
     return float(link.vals[at].sum()) * float(link.law.factor({})) * float(warm)

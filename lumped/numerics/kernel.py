@@ -48,7 +48,7 @@ from lumped.numerics.terms import (
     patterns,
 )
 
-KNOT, DONE, STATUS, NODE, FRESH, SAMPLE = range(6)
+KNOT, COUNT, STATUS, NODE, FRESH, SAMPLE = range(6)
 SHARE, FACTORED, NEXT, LOW = range(4)
 FULL, SINGULAR, OUTSIDE, HOT = range(1, 5)
 MOST_TRIES = 12  # from 0.9 of an interval to a millionth of it, and less where the estimate asks for it
@@ -303,10 +303,10 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
     if P.at[FRESH] == 0:
         forced(Q, j, s0, 1.0, a, q)
         flow(T, K0, a.z[0], q.f[0], a.tau[0], a.v[0], q.F[0])
-    known, wanted, last = False, P.clock[NEXT], X.slot[k - 1] if k > 0 else -1
+    has_jacobian, next_h, last = False, P.clock[NEXT], X.slot[k - 1] if k > 0 else -1
     for tries in range(MOST_TRIES + 1):
         rest = (1.0 - s0) * span
-        count = max(1.0, -((-rest * (1.0 - 1e-9)) // wanted))
+        count = max(1.0, -((-rest * (1.0 - 1e-9)) // next_h))
         kind, s1, h = ROSENBROCK, 1.0 if count == 1.0 else s0 + (1.0 - s0) / count, rest / count
         if L.follow[0]:
             kind, s1 = X.kind[k], X.share[k]
@@ -317,10 +317,10 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
             h = P.clock[FACTORED]
         forced(Q, j, s0, s1, a, q)
         changed = Q.renew[j] == 2 or (Q.renew[j] == 1 and s0 == 0.0)
-        build = (changed and not known) or h != P.clock[FACTORED]
-        if build and kind == ROSENBROCK and not known:
+        build = (changed and not has_jacobian) or h != P.clock[FACTORED]
+        if build and kind == ROSENBROCK and not has_jacobian:
             jacobian(T, K0, q.f[0], a.tau[0], a.v[0], q.G)
-            known = True
+            has_jacobian = True
         slot = (last + 1) % len(X.B) if build or kind == EULER or tries > 0 else last
         P.at[STATUS] = 0
         size = _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q)
@@ -331,7 +331,7 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
             return P.at[STATUS] == 0
         if L.follow[0]:
             return False
-        wanted = h * min(max(0.8 * size ** (-1 / 3), 0.05), 0.5)
+        next_h = h * min(max(0.8 * size ** (-1 / 3), 0.05), 0.5)
     return False
 
 
@@ -382,18 +382,18 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
     z (nt or 0, n + nb), y (nt, nr), late (nr,) : states, outputs, largest error of each output (K): filled here
     """
     n, nb = C.size, q.du.size
-    P.at[DONE], P.at[STATUS], P.clock[FACTORED] = 0, 0, -1.0
+    P.at[COUNT], P.at[STATUS], P.clock[FACTORED] = 0, 0, -1.0
     while P.at[KNOT] < Q.time.size:
         j = P.at[KNOT]
         if j > 0 and Q.time[j] > Q.time[j - 1]:
-            if P.at[DONE] == X.h.size:
+            if P.at[COUNT] == X.h.size:
                 P.at[STATUS] = FULL
                 return
-            if not _step(Q, C, K0, T, L, X, P.at[DONE], P, a, q):
+            if not _step(Q, C, K0, T, L, X, P.at[COUNT], P, a, q):
                 return
-            P.at[DONE] += 1
+            P.at[COUNT] += 1
             if P.at[SAMPLE] < Q.first[j + 1]:
-                _within(Q, R, X, P.at[DONE] - 1, P, a, q, z, y, late)
+                _within(Q, R, X, P.at[COUNT] - 1, P, a, q, z, y, late)
             if P.clock[SHARE] < 1.0:
                 continue
         else:

@@ -24,7 +24,7 @@ def _missed(time, value, bulge, line):
 
 
 @inner
-def _follows(time, value, bulge, whole, allowed, line, i, j):
+def _follows(time, value, bulge, whole, tolerance, line, i, j):
     """Whether parabolas from knot i to knot j that keep all integrals are where every curve is.
 
     line[3] : the curve that was missed last, which is looked at first
@@ -34,7 +34,7 @@ def _follows(time, value, bulge, whole, allowed, line, i, j):
         c = (last + k) % count
         f0, f1 = value[c, i], value[c, j]
         line[0], line[1], line[2] = f0, f1 - f0, 1.5 * ((whole[c, j] - whole[c, i]) / span - 0.5 * (f0 + f1))
-        limit = max(allowed[c, 0], allowed[c, 1] * max(abs(f0), abs(f1)))
+        limit = max(tolerance[c, 0], tolerance[c, 1] * max(abs(f0), abs(f1)))
         if _missed(time[i : j + 1], value[c, i : j + 1], bulge[c, i : j + 1], line) > limit:
             line[3] = c
             return False
@@ -42,25 +42,25 @@ def _follows(time, value, bulge, whole, allowed, line, i, j):
 
 
 @inner
-def _reached(time, value, bulge, whole, allowed, line, i, width, last):
+def _reached(time, value, bulge, whole, tolerance, line, i, width, last):
     """The farthest knot found, up to `last`, to which parabolas from knot i follow: at least the next.
 
     width : where to look first
     """
     good, bad = i + 1, last + 1
     while i + width <= last and width > 1:
-        if _follows(time, value, bulge, whole, allowed, line, i, i + width):
+        if _follows(time, value, bulge, whole, tolerance, line, i, i + width):
             good, width = i + width, 2 * width
         else:
             bad = i + width
             break
     if i + width > last and good < last:
-        if _follows(time, value, bulge, whole, allowed, line, i, last):
+        if _follows(time, value, bulge, whole, tolerance, line, i, last):
             return last
         bad = last
     while bad - good > max(1, (good - i) // 16):  # a sixteenth more is not worth another look
         between = (good + bad) // 2
-        if _follows(time, value, bulge, whole, allowed, line, i, between):
+        if _follows(time, value, bulge, whole, tolerance, line, i, between):
             good = between
         else:
             bad = between
@@ -79,11 +79,11 @@ def _integrated(time, value, bulge, whole):
 
 
 @entry
-def needed(time, value, bulge, allowed, whole, line, knot):
+def needed(time, value, bulge, tolerance, whole, line, knot):
     """The knots a run needs, into knot; how many there are.
 
     time (nk,) s;  value (nc, nk) curves at the knots;  bulge (nc, nk) how far each is above the mean of both ends in
-    the middle before a knot;  allowed (nc, 2) what a parabola may miss: at all, as a share
+    the middle before a knot;  tolerance (nc, 2) what a parabola may miss: at all, as a share
     whole (nc, nk) : their integrals from the first knot, filled here;  line (4,) scratch
     """
     _integrated(time, value, bulge, whole)
@@ -92,7 +92,7 @@ def needed(time, value, bulge, allowed, whole, line, knot):
     while i < time.size - 1:
         while jump < time.size and (jump <= i or time[jump] > time[jump - 1]):
             jump += 1
-        j = _reached(time, value, bulge, whole, allowed, line, i, max(width, 2), jump - 1) if jump > i + 1 else i + 1
+        j = _reached(time, value, bulge, whole, tolerance, line, i, max(width, 2), jump - 1) if jump > i + 1 else i + 1
         width, i = j - i, j
         knot[count] = j
         count += 1
@@ -100,13 +100,13 @@ def needed(time, value, bulge, allowed, whole, line, knot):
 
 
 @entry
-def halfway(every, left, far, limits, bulge, looked):
-    """How far a factor bulges halfway between samples, into bulge; the intervals worth a closer look, into looked.
+def halfway(every, left, far, limits, bulge, intervals):
+    """How far a factor bulges halfway between samples, into bulge; the intervals worth a closer look, into intervals.
 
     How many these are, or -1 where the factor never changes.
     every : the factor at the samples, then halfway after those in `left`;  far (nt - 1,) whether an input moves far
     limits (4,) : of the largest factor what is rounding, of an interval's what is flat, what counts at least; and the
-    largest factor, filled here;  bulge, looked (nt,)
+    largest factor, filled here;  bulge, intervals (nt,)
     """
     nt, scale, least, most = bulge.size, 0.0, every[0], every[0]
     for i in range(every.size):
@@ -122,7 +122,7 @@ def halfway(every, left, far, limits, bulge, looked):
     count, small = 0, limits[2] * scale
     for i in range(1, nt):
         if far[i - 1] or abs(bulge[i]) > limits[1] * max(abs(every[i]), small):
-            looked[count] = i - 1
+            intervals[count] = i - 1
             count += 1
     limits[3] = scale
     return count
@@ -144,18 +144,18 @@ def moved(x, far, at_all, is_far):
 
 
 @entry
-def placed(time, knot, chosen, at, first, share):
+def placed(time, knot, indices, at, first, share):
     """Which samples end in the interval before every knot, into first (nk + 1,), and where in it, into share (nt,).
 
-    time (nt,), knot (nk,) s;  at (nt,), chosen (nk,) : which of all knots they are
+    time (nt,), knot (nk,) s;  at (nt,), indices (nk,) : which of all knots they are
     """
     j = 0
     first[0] = 0
     for t in range(time.size):
-        while chosen[j] < at[t]:
+        while indices[j] < at[t]:
             j += 1
             first[j] = t
-        share[t] = 1.0 if chosen[j] == at[t] else (time[t] - knot[j - 1]) / (knot[j] - knot[j - 1])
+        share[t] = 1.0 if indices[j] == at[t] else (time[t] - knot[j - 1]) / (knot[j] - knot[j - 1])
     while j < knot.size:
         j += 1
         first[j] = time.size

@@ -201,8 +201,8 @@ def flow(T, K0, z, f, tau, v, out):
 def spread(T, e, v, by_hot, by_cold, A):
     """A += v (by_hot hot + by_cold cold)' on the columns that A has, for term e."""
     for side in range(2):
-        seen_at, by = T.part[e, COLD if side else HOT], by_cold if side else by_hot
-        for i in range(T.begin[seen_at], T.begin[seen_at + 1]):
+        node, by = T.part[e, COLD if side else HOT], by_cold if side else by_hot
+        for i in range(T.begin[node], T.begin[node + 1]):
             if T.at[i] < A[0].size:
                 for s in range(T.part[e, ROW], T.part[e, END]):
                     A[T.row[s], T.at[i]] += v[s] * (by * T.weight[i])

@@ -75,10 +75,10 @@ class Table:
         self, key: str, value: Any, of: str, low: float | None = None, high: float | None = None
     ) -> float:  # fmt: skip
         table = bounds(of or key)
-        allowed = Bounds(table.low if low is None else max(low, table.low),
+        range_ = Bounds(table.low if low is None else max(low, table.low),
                          table.high if high is None else min(high, table.high), table.whole)  # fmt: skip
-        if not allowed.hold(value):
-            raise self.error(f"{key} = {excerpt(value)} is not possible", f"{allowed.words}{meaning(key)}")
+        if not range_.hold(value):
+            raise self.error(f"{key} = {excerpt(value)} is not possible", f"{range_.words}{meaning(key)}")
         return float(value)
 
     def numbers(self, key: str, default: list[float] | None = None, of: str = "") -> tuple[float, ...]:
@@ -98,9 +98,9 @@ class Table:
             for i, row in enumerate(value)
         ]
 
-    def word(self, key: str, default: str | None = None, allowed: Iterable[str] | None = None) -> str:
+    def word(self, key: str, default: str | None = None, options: Iterable[str] | None = None) -> str:
         value = self._needed(key, default, "a word")
-        choices = None if allowed is None else list(allowed)
+        choices = None if options is None else list(options)
         if not isinstance(value, str) or (choices is not None and value not in choices):
             right = "a word" if choices is None else suggestion(str(value), choices)
             raise self.error(f"{key} = {excerpt(value)} is not possible", f"{right}{meaning(key)}")
@@ -108,9 +108,9 @@ class Table:
             raise self.error(f"{key} = {excerpt(value)} is not possible", f"letters that can be printed{meaning(key)}")
         return value
 
-    def kind(self, key: str, default: str | None, allowed: Iterable[str]) -> str:
+    def kind(self, key: str, default: str | None, options: Iterable[str]) -> str:
         """One of our own words; capitals do not matter."""
-        value, choices = self._needed(key, default, "a word"), {word.lower(): word for word in allowed}
+        value, choices = self._needed(key, default, "a word"), {word.lower(): word for word in options}
         if isinstance(value, str) and value.lower() in choices:
             return choices[value.lower()]
         return self.word(key, default, choices.values())

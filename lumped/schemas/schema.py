@@ -64,9 +64,9 @@ def machine_schema() -> Schema:
     groups: dict[str, dict[str, Schema]] = {}
     for family in families().values():
         for p in family.parameters:
-            known = groups.setdefault(p.group, {})
-            for name, own in _keys(p).items():
-                known[name] = _widest(known[name], own) if name in known else own
+            group = groups.setdefault(p.group, {})
+            for name, key_schema in _keys(p).items():
+                group[name] = _widest(group[name], key_schema) if name in group else key_schema
     geometry = {g: {"type": "object", "properties": keys, "additionalProperties": False} for g, keys in groups.items()}
     tables: dict[str, Schema] = {s: {"type": "object"} for s in SECTIONS}
     header = {"family": {"description": "family of machines", "enum": list(families())}}
@@ -110,9 +110,9 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
     if not isinstance(node, Mapping):
         return node
     if node.get("type") in ("number", "integer"):
-        allowed = bounds(key, table)
-        kind = "integer" if allowed.whole else "number"
-        return {**node, "type": kind, "minimum": allowed.low, "maximum": allowed.high}
+        limits = bounds(key, table)
+        kind = "integer" if limits.whole else "number"
+        return {**node, "type": kind, "minimum": limits.low, "maximum": limits.high}
     out = {name: bounded(inner, key, table) for name, inner in node.items() if name not in INNER}
     if "properties" in node:
         out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
@@ -122,11 +122,11 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
 
 
 INNER = ("properties", "additionalProperties")
-SHARED = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
+COMMON = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
 
 
 def _owned(key: str, table: str) -> tuple[str, str]:
-    return ("shares" if key in SHARED else key), table
+    return ("shares" if key in COMMON else key), table
 
 
 def wanted() -> Iterator[tuple[Path, Schema]]:

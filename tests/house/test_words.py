@@ -23,9 +23,15 @@ PARTICIPLES = {
     "settled",
     "saved",
 }
-REMAINING_PARTICIPLES = {"held": 1, "written": 1}
-REMAINING_PARTICIPLES_LOCALLY = {"drawn": 2, "found": 1, "given": 3, "held": 3, "known": 81, "made": 1,
-                                 "own": 165, "seen": 65, "written": 2}  # fmt: skip
+# More of them, in parameters and variables: a function may be named like sorted(), after what it returns.
+LOCAL_PARTICIPLES = {
+    "allowed", "begun", "built", "chosen", "cored", "declared", "described", "done", "driven", "fed", "grown", "joined",
+    "looked", "moved", "named", "occupied", "ordered", "placed", "ranked", "reached", "shared", "timed", "turned",
+    "used", "wanted", "washed", "watched",
+}  # fmt: skip
+# What is left: pipeline.Built, fields (some of a JSON document), and adjectives such as DRIVEN_MACHINE. A boolean, such
+# as `moved: bool`, is an adjective too and may be added, with its number here.
+REMAINING_PARTICIPLES = {"built": 22, "declared": 7, "driven": 3, "joined": 1, "named": 1, "reached": 1, "watched": 1}
 # In parameters and variables.
 REMAINING_LOCALLY: dict[str, int] = {}
 EVERYDAY = """apart hand asked behind beyond borrowed bridges failing gates kept lowered mixes said shown stood taken
@@ -49,14 +55,20 @@ def public(root):
 
 def local(root):
     """Every parameter and variable, and what begins with an underscore."""
+    yield from variables(root)
+    for file in (f for room in ROOMS for f in sorted((root / room).rglob("*.py"))):
+        names = [n.name for n in ast.walk(ast.parse(file.read_text())) if isinstance(n, ast.FunctionDef | ast.ClassDef)]
+        yield from (name for name in names if name.startswith("_"))
+
+
+def variables(root):
+    """Every parameter and variable, and every field of a class."""
     for file in (f for room in ROOMS for f in sorted((root / room).rglob("*.py"))):
         for n in ast.walk(ast.parse(file.read_text())):
             if isinstance(n, ast.arg):
                 yield n.arg
             elif isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store):
                 yield n.id
-            elif isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name.startswith("_"):
-                yield n.name
 
 
 def words(name):
@@ -79,12 +91,14 @@ def test_no_private_words_in_parameters_and_variables(root):
     assert {word: n for word, n in found.items() if n > REMAINING_LOCALLY.get(word, 0)} == {}
 
 
-@pytest.mark.parametrize(
-    ("names", "remaining"), [(public, REMAINING_PARTICIPLES), (local, REMAINING_PARTICIPLES_LOCALLY)]
-)
-def test_no_participle_is_added_as_a_noun(root, names, remaining):
-    found = counted(names(root), PARTICIPLES)
-    assert {word: n for word, n in found.items() if n > remaining.get(word, 0)} == {}
+@pytest.mark.parametrize("names", [public, local])
+def test_no_participle_is_added_as_a_noun(root, names):
+    assert counted(names(root), PARTICIPLES) == {}
+
+
+def test_no_participle_is_added_as_a_variable(root):
+    found = counted(variables(root), LOCAL_PARTICIPLES)
+    assert {word: n for word, n in found.items() if n > REMAINING_PARTICIPLES.get(word, 0)} == {}
 
 
 def test_no_private_words_on_pages(root):

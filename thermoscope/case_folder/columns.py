@@ -28,17 +28,17 @@ def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
     tests, paths = {t.name: t for t in folder.case.tests}, []
     for entry in folder.settings.tests:
         file, test = _file(entry), tests[entry.name]
-        own = [
+        test_conditions = [
             condition
             for condition in dict.fromkeys(conditions)
             if (condition_event := event(condition)) and test.name in condition_event.spans
         ]
         ours(file)
-        if own:
+        if test_conditions:
             text = io.StringIO()
             rows = csv.writer(text, lineterminator="\n")
-            rows.writerow([TIME, *own])
-            columns = [test.time, *(holds(condition, test) for condition in own)]
+            rows.writerow([TIME, *test_conditions])
+            columns = [test.time, *(holds(condition, test) for condition in test_conditions)]
             rows.writerows([f"{x:.10g}" for x in row] for row in zip(*columns, strict=True))
             paths.append(write_whole(file, text.getvalue()))
         elif file.exists():

@@ -48,12 +48,12 @@ class Cycle:
 
 @dataclass(frozen=True)
 class Series:
-    """wanted (nt,) m/s, slope (nt,) rise over run;  reference_degC : of the machine's resistance"""
+    """target_mps (nt,), slope (nt,) rise over run;  reference_degC : of the machine's resistance"""
 
     machine: SeriesMachine
     vehicle: Vehicle
     controller: Controller
-    wanted: Array
+    target_mps: Array
     slope: Array
     reference_degC: float
 
@@ -82,13 +82,13 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
         if name not in network.boundaries:
             raise top.error(f"no boundary is called '{name}'", suggestion(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, watched, series = _drive(top, network, ratings, time, inputs)
+    drive, places, series = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
     notes = (*(columns.notes if columns is not None else ()), *_unread(network, inputs, drive, str(path)))
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, watched, series, notes)
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, places, series, notes)
     _complete(network, cycle, str(path))
     return cycle
 
@@ -228,9 +228,9 @@ def _series(
         if name not in inputs:
             raise v.error(f"nothing gives '{name}'", f'a column with input = "{name}", or [inputs] {name} = ...')
     slope = inputs["slope_percent"] / 100
-    wanted = inputs.pop("vehicle_speed_mps")
-    drive = series_drive(machine, vehicle, control, time, wanted, slope, reference)
-    series = Series(machine, vehicle, control, np.asarray(wanted, float), np.asarray(slope, float), reference)
+    target_mps = inputs.pop("vehicle_speed_mps")
+    drive = series_drive(machine, vehicle, control, time, target_mps, slope, reference)
+    series = Series(machine, vehicle, control, np.asarray(target_mps, float), np.asarray(slope, float), reference)
     return _mixed(drive, {WINDING: places}), {p: p for p in places}, series
 
 

@@ -41,8 +41,8 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped."""
     columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
-    moves = {n: float(v[seen[-1]] - v[seen[0]]) for n, v in columns.items()
-             if (seen := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
+    moves = {n: float(v[finite[-1]] - v[finite[0]]) for n, v in columns.items()
+             if (finite := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
         if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
@@ -84,12 +84,12 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     """A measured power that cannot have warmed the machine as it did, even if nothing had leaked."""
     rises = [float(np.nanmax(v) - v[np.isfinite(v)][0]) for v in p.temperatures.values() if np.isfinite(v).any()]
     rise, span = float(np.median(rises)) if rises else 0.0, float(p.samples.time[-1])
-    stored = float(network.C.sum()) * rise
+    heat_J = float(network.C.sum()) * rise
     columns = [c for c in p.sheet.columns if c.quantity == "power" and c.feeds in network.inputs]
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
-    if columns and rise > WARM_K and 0.0 < STORED * came < stored:
+    if columns and rise > WARM_K and 0.0 < STORED * came < heat_J:
         names = ", ".join(c.name for c in columns)
-        yield p.finding(names, f"{came:.3g} J came in, {stored:.3g} J would be needed for the rise "
+        yield p.finding(names, f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise "
                       f"of {rise:.0f} K: kW?", 'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
 
 
@@ -109,22 +109,22 @@ def _rates(patients: list[Patient]) -> Iterator[Finding]:
 def _copies(patients: list[Patient]) -> Iterator[Finding]:
     """Tests with the same readings under two names: what is fitted would also be held out."""
     for a, b in combinations(patients, 2):
-        shared = set(a.samples.values) & set(b.samples.values)
-        if shared and all(np.array_equal(a.samples.values[n], b.samples.values[n], equal_nan=True) for n in shared):
+        common = set(a.samples.values) & set(b.samples.values)
+        if common and all(np.array_equal(a.samples.values[n], b.samples.values[n], equal_nan=True) for n in common):
             yield Finding(f"{a.name}, {b.name}", "", "are the same recording under two names", "keep one of them")
 
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that no law reads, and inputs that no test moves."""
     read = network.inputs
-    fed = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
-    fed |= {name: "" for p in patients for name in p.sheet.events}
+    column_of = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
+    column_of |= {name: "" for p in patients for name in p.sheet.events}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
-    for name, column in sorted(fed.items()):
+    for name, column in sorted(column_of.items()):
         if name not in read and column not in squared:
             yield Finding("", name, "no law of the network reads this input; an effect may",
                           "input = the name that a law reads, or leave it for effects", True)  # fmt: skip
-    for name in sorted(n for n in read & set(fed) if fed[n]):
+    for name in sorted(n for n in read & set(column_of) if column_of[n]):
         values = np.concatenate([p.inputs[name] for p in patients if name in p.inputs])
         if np.unique(values[np.isfinite(values)]).size < 2:
             yield Finding("", name, "no test moves this input: what depends on it cannot be told",
@@ -134,9 +134,9 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
     """Inputs that are only ever on or off in a law that raises them to a power: 0 and 1 are the same to any power."""
     for name in sorted(network.inputs):
-        seen = [p.inputs[name] for p in patients if name in p.inputs]
-        seen += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
-        levels = np.unique(np.concatenate(seen)) if seen else np.zeros(0)
+        samples = [p.inputs[name] for p in patients if name in p.inputs]
+        samples += [p.sheet.events[name].value for p in patients if name in p.sheet.events]
+        levels = np.unique(np.concatenate(samples)) if samples else np.zeros(0)
         levels = levels[np.isfinite(levels)]
         if not any(np.array_equal(levels, pair) for pair in SWITCHES):
             continue

@@ -41,16 +41,16 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     """
     case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
     network, values = heat_model(working(case)[0], case.model.values)
-    grown = with_doubts(network, case.doubt)[0]
-    doubted = [p for p in grown.parameters if p.prior_sd > 0]
-    end = simulate(grown, record(test, {}), values, tangents=doubted).end
-    D = end.D[: len(grown.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
-    there = grown.on_parts(nodes.parts, D)
-    late, width = last_fifth(test), len(grown.states) + len(grown.boundaries)
-    seen = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
-    here = np.array([c.row.dense(width)[: len(grown.states)] @ D for c in seen])
-    noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in seen])
-    return seen, interpolated(there, here, np.eye(len(seen)), noise_K)
+    larger = with_doubts(network, case.doubt)[0]
+    doubted = [p for p in larger.parameters if p.prior_sd > 0]
+    end = simulate(larger, record(test, {}), values, tangents=doubted).end
+    D = end.D[: len(larger.states)] * np.array([deviation(p, intervals.get(p.name)) for p in doubted])
+    there = larger.on_parts(nodes.parts, D)
+    late, width = last_fifth(test), len(larger.states) + len(larger.boundaries)
+    channels = tuple(c for c in test.channels if np.isfinite(np.asarray(c.y, float)[late]).any())
+    here = np.array([c.row.dense(width)[: len(larger.states)] @ D for c in channels])
+    noise_K = np.array([np.hypot(c.sigma_K, c.model_K) for c in channels])
+    return channels, interpolated(there, here, np.eye(len(channels)), noise_K)
 
 
 def last_fifth(test: Test) -> slice:

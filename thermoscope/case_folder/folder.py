@@ -92,9 +92,9 @@ class Folder:
 
 def _once(settings: Settings, files: Mapping[str, Path]) -> None:
     """A recording is one test: the same twice would count double, or hold out what was fitted."""
-    seen: dict[Path, Entry] = {}
+    entries: dict[Path, Entry] = {}
     for entry in settings.tests:
-        first = seen.setdefault(files[entry.name].resolve(), entry)
+        first = entries.setdefault(files[entry.name].resolve(), entry)
         if first is not entry:
             what = f"[tests.{first.name}] ({first.role}) and [tests.{entry.name}] ({entry.role}) are one recording"
             raise InputError(what, str(settings.path / "case.toml"), "another file for one of them")

@@ -15,14 +15,16 @@ from validation.case import Test
 
 def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[Test]) -> Network:
     """The network with what its sheets say of the inputs; what network.toml says of them stands."""
-    declared: dict[str, str] = {}
+    by_name: dict[str, str] = {}
     for sheet in sheets:
         columns = {c.name: c.quantity for c in sheet.columns}
-        declared |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
-        declared |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
-    network = replace(network, quantities={**declared, **network.quantities})
-    fitted = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(network, signals={q: own for q in INPUTS if (own := _largest_of(network, fitted, q)) is not None})
+        by_name |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
+        by_name |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
+    network = replace(network, quantities={**by_name, **network.quantities})
+    training = [t for t in tests if t.role != "hold-out"] or list(tests)
+    return replace(
+        network, signals={q: name for q in INPUTS if (name := _largest_of(network, training, q)) is not None}
+    )
 
 
 def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:

@@ -63,8 +63,8 @@ class Patient:
 
 def first_readings(p: Patient) -> dict[str, float]:
     """Column -> what its first readings say (degC)."""
-    seen = {n: v[np.isfinite(v)] for n, v in p.temperatures.items()}
-    return {n: float(np.median(v[:FIRST])) for n, v in seen.items() if v.size}
+    finite = {n: v[np.isfinite(v)] for n, v in p.temperatures.items()}
+    return {n: float(np.median(v[:FIRST])) for n, v in finite.items() if v.size}
 
 
 def _units(p: Patient) -> Iterator[Finding]:
@@ -117,15 +117,15 @@ def _clock(p: Patient) -> Iterator[Finding]:
 def _spikes(p: Patient) -> Iterator[Finding]:
     """Single readings that leap and come back at once."""
     for name, values in p.temperatures.items():
-        seen = np.flatnonzero(np.isfinite(values))
-        if seen.size < 10:
+        finite = np.flatnonzero(np.isfinite(values))
+        if finite.size < 10:
             continue
-        y = values[seen]
+        y = values[finite]
         leap = np.minimum(np.abs(y[1:-1] - y[:-2]), np.abs(y[1:-1] - y[2:]))
         back = np.abs(y[2:] - y[:-2]) < 0.5 * leap
         out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
         if out.size:
-            at = p.samples.time[seen[out[0] + 1]]
+            at = p.samples.time[finite[out[0] + 1]]
             yield p.finding(name, f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at "
                           f"{at:g} s", "empty those cells; look for a loose contact")  # fmt: skip
 

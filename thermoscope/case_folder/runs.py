@@ -41,8 +41,8 @@ def by_interest(folder: Folder) -> list[Test]:
 
 def at_revision(folder: Folder, revision: Revision) -> Case:
     """The case with the model of a revision; asked again it is the same one, with all that is known of it."""
-    for known, case in _of_revisions(folder):
-        if known == revision:
+    for other, case in _of_revisions(folder):
+        if other == revision:
             return case
     _of_revisions(folder).append((revision, _at_revision(folder, revision)))
     return _of_revisions(folder)[-1][1]
@@ -93,16 +93,16 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
     """When something was different in a test, by the model's effects: from and to (s)."""
-    own = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
-    return tuple(span for event in own for span in event.spans.get(test.name, ()))
+    events = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
+    return tuple(span for event in events for span in event.spans.get(test.name, ()))
 
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
     network, run = _run(case, test)
-    chosen = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
-    states = np.asarray(run.z)[chosen, : len(network.states)]
-    return run.time[chosen], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
+    rows = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
+    states = np.asarray(run.z)[rows, : len(network.states)]
+    return run.time[rows], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
 def at_instant(test: Test, time: float) -> str:

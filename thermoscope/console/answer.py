@@ -139,16 +139,16 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
     def line(cells: Sequence[str]) -> str:
         return GAP.join(_padded(cells[j], widths[j], right[j]) for j in columns).rstrip()
 
-    marked = ["bold" if any(c in table.marked for c in row) else "" for row in body]
+    styles = ["bold" if any(c in table.marked for c in row) else "" for row in body]
     head = [*([(folded(table.title, width)[0], "bold")] if table.title else []), (line(list(table.headers)), "dim")]
-    return [*head, *((line(row), style) for row, style in zip(body, marked, strict=True))]
+    return [*head, *((line(row), style) for row, style in zip(body, styles, strict=True))]
 
 
 def _fitting(table: Grid, body: list[list[str]], widths: list[int], width: int) -> list[int]:
     """The columns that are shown: those that say something, less the least important until the rest fits."""
     columns = [j for j in range(len(table.headers)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
-    ranked = [j for j in columns if table.headers[j] in table.keep]
-    order = [*reversed([j for j in columns[1:] if j not in ranked]), *reversed([j for j in ranked if j != 0])]
+    important = [j for j in columns if table.headers[j] in table.keep]
+    order = [*reversed([j for j in columns[1:] if j not in important]), *reversed([j for j in important if j != 0])]
     floor = [w if _numbers(body, j) else min(w, 3 * LEAST) for j, w in enumerate(widths)]
     for j in order:
         if _total(floor, columns) <= width:

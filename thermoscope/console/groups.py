@@ -45,13 +45,13 @@ def narrowed(app: typer.Typer, arguments: Sequence[str]) -> typer.Typer:
     """The app with the one command asked for, where a group has it: reading the options of all takes 0.1 s."""
     group, command = [*arguments, "", ""][:2]
     for part in app.registered_groups:
-        chosen = (
+        commands = (
             [x for x in part.typer_instance.registered_commands if x.name == command] if part.typer_instance else []
         )
-        if part.name == group and chosen:
+        if part.name == group and commands:
             few, one, whole = copy(part.typer_instance), copy(part), copy(app)
             assert few is not None
-            few.registered_commands, one.typer_instance = chosen, few
+            few.registered_commands, one.typer_instance = commands, few
             whole.registered_groups, whole.registered_commands = [one], []
             return whole
     return app

@@ -70,11 +70,11 @@ class ProgressBar:
             return None
         here = self.clock() - self.since if self.now else 0.0
         running = min(here, self.last.get(self.now, 0.0))
-        done = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
+        elapsed = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
                              for s, t in self.last.items() if s in self.took)  # fmt: skip
         spent = here + sum(self.took.values())
-        pace = spent / done if done > self.shortest_s else 1.0
-        return min(done / total, 0.99), max(total - done, 0.0) * pace
+        pace = spent / elapsed if elapsed > self.shortest_s else 1.0
+        return min(elapsed / total, 0.99), max(total - elapsed, 0.0) * pace
 
     def words(self, message: str) -> str:
         """The message with share and time left."""
@@ -121,13 +121,13 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 @contextmanager
 def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
     """Stages that know how long they took the last time; what they take now is kept for the next."""
-    known = _remembered()
-    stages = ProgressBar(known.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
+    durations = _remembered()
+    stages = ProgressBar(durations.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            _remember({**{k: v for k, v in known.items() if k != key}, key: stages.took})
+            _remember({**{k: v for k, v in durations.items() if k != key}, key: stages.took})
     finally:
         stages.leave()
 

@@ -55,34 +55,34 @@ class Condensations:
         return replace(bare, scaling=Scaling(bare.network, machine))
 
     def _on(self, network: Network) -> Problem:
-        grown = network.extended(parameters=design_parameters(network))
-        rows = {n: p.mean for n, p in grown.places.items()}
-        spots = hot_spots(grown, rows, {s.name: s.limit for s in self.problem.spots})
-        inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(grown)}
+        larger = network.extended(parameters=design_parameters(network))
+        rows = {n: p.mean for n, p in larger.places.items()}
+        spots = hot_spots(larger, rows, {s.name: s.limit for s in self.problem.spots})
+        inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(larger)}
         from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
         return replace(
-            self.problem, network=grown, values={}, inputs=inputs, spots=spots, scaling=None, sure=None,
+            self.problem, network=larger, values={}, inputs=inputs, spots=spots, scaling=None, sure=None,
             from_machine=from_machine,
         )  # fmt: skip
 
-    def ratios(self, named: Mapping[str, float]) -> dict[str, float]:
+    def ratios(self, design: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""
         assert self.problem.machine_at is not None
-        machine = self.problem.machine_at(named)
-        scaled = self.reference.judged(named, machine)
-        self.progress("network of " + ", ".join(f"{short_key(n)} {u:.4g}" for n, u in self._geometry(named)))
-        condensed = self._on(coarse_network(self._machine(named), self.progress)).judged(named, machine)
+        machine = self.problem.machine_at(design)
+        scaled = self.reference.judged(design, machine)
+        self.progress("network of " + ", ".join(f"{short_key(n)} {u:.4g}" for n, u in self._geometry(design)))
+        condensed = self._on(coarse_network(self._machine(design), self.progress)).judged(design, machine)
         around = float(np.mean(list(self.problem.boundaries.values())))
         out = {n: (T - around) / (scaled.places[n] - around) for n, T in condensed.places.items()}
         return out | {q: condensed.objectives[q] / scaled.objectives[q] for q in (COPPER, SETTLING)}
 
-    def _machine(self, named: Mapping[str, float]) -> Machine:
+    def _machine(self, design: Mapping[str, float]) -> Machine:
         """Of the geometry alone: films and streams follow the inputs, so that the cache serves every flow."""
         assert self.problem.machine_at is not None
-        return self.problem.machine_at({**self.usual, **dict(self._geometry(named))})
+        return self.problem.machine_at({**self.usual, **dict(self._geometry(design))})
 
-    def _geometry(self, named: Mapping[str, float]) -> list[tuple[str, float]]:
-        return [(v.name, named[v.name]) for v in self.problem.space.variables if v.conducts]
+    def _geometry(self, design: Mapping[str, float]) -> list[tuple[str, float]]:
+        return [(v.name, design[v.name]) for v in self.problem.space.variables if v.conducts]
 
     def learn(self) -> Corrections:
         """One geometry per variable that changes conduction, at its bound that is further away.

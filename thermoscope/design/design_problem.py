@@ -63,17 +63,17 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     series = file is not None and file.machine.features.series is not None
     electrics = electrics_of(series, sections.get("ratings", {}), sections.get("losses", {}))
     inputs = wanted_inputs(op.inputs, request.torque, electrics)
-    grown, sure = _grown(folder, network, request.robust, progress)
+    larger, sure = _grown(folder, network, request.robust, progress)
     rows = named_rows(network, folder)
     limits = places(request.limits, rows, network.identities)
     first = len(places(dict(list(request.limits.items())[:1]), rows, network.identities))
-    driven = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
-    space = Space(tuple(_variables(grown, inputs, file, request.vary or {}, driven)))
-    machine = {} if file is None else _of_machine(grown, file, space, inputs)
-    aimed = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
+    drive = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
+    space = Space(tuple(_variables(larger, inputs, file, request.vary or {}, drive)))
+    machine = {} if file is None else _of_machine(larger, file, space, inputs)
+    objectives = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
     problem = Problem(
-        grown, values, inputs, op.boundaries, space, hot_spots(grown, rows, limits), first, electrics, sure=sure,
-        driven=driven, aimed=aimed, **machine,
+        larger, values, inputs, op.boundaries, space, hot_spots(larger, rows, limits), first, electrics, sure=sure,
+        driven=drive, aimed=objectives, **machine,
     )  # fmt: skip
     _refuse_hot_at_no_load(problem, op.loads)
     if file is not None and any(v.conducts for v in space.variables):
@@ -86,18 +86,18 @@ def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -
     if not robust:
         return network.extended(parameters=design_parameters(network)), None
     of = posterior_of(folder, progress)
-    grown = thermal(of.network)
-    grown = grown.extended(parameters=design_parameters(grown))
-    return grown, AtRest(of, grown)
+    larger = thermal(of.network)
+    larger = larger.extended(parameters=design_parameters(larger))
+    return larger, AtRest(of, larger)
 
 
 def _variables(
     network: Network, inputs: Mapping[str, float], file: MachineFile | None, vary: Mapping[str, Any],
-    driven: Driven | None,
+    drive: Driven | None,
 ) -> list[Variable]:  # fmt: skip
     if not vary:
         usual = file.usual() if file is not None else [_input(n, inputs, None) for n in flows(network, inputs)]
-        usual += [] if driven is None else [_gain(key, driven, None) for key in GAINS]
+        usual += [] if drive is None else [_gain(key, drive, None) for key in GAINS]
         if not usual:
             raise InputError("nothing that a design could change", "--vary", "--vary NAME=LOW:HIGH")
         return usual
@@ -105,14 +105,14 @@ def _variables(
     for name, bounds in vary.items():
         if file is not None and file.knows(name):
             out.append(file.variable(name, bounds))
-        elif driven is not None and name in GAINS:
-            out.append(_gain(name, driven, bounds))
+        elif drive is not None and name in GAINS:
+            out.append(_gain(name, drive, bounds))
         elif name in inputs:
             out.append(_input(name, inputs, bounds))
         else:
             here = [
                 *inputs,
-                *(GAINS if driven is not None else ()),
+                *(GAINS if drive is not None else ()),
                 *([v.name for v in file.usual()] if file is not None else []),
             ]
             raise InputError(f"'{name}' is nothing that a design could change", "--vary", suggestion(name, here))
@@ -124,9 +124,9 @@ def _input(name: str, inputs: Mapping[str, float], bounds: tuple[float, float] |
     return Variable(name, low, high, inputs[name])
 
 
-def _gain(key: str, driven: Driven, bounds: tuple[float, float] | None) -> Variable:
-    low, high = bounds or tuple(share * driven.usual(key) for share in GAIN_RANGE)
-    return Variable(key, low, high, driven.usual(key))
+def _gain(key: str, drive: Driven, bounds: tuple[float, float] | None) -> Variable:
+    low, high = bounds or tuple(share * drive.usual(key) for share in GAIN_RANGE)
+    return Variable(key, low, high, drive.usual(key))
 
 
 def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
@@ -137,8 +137,8 @@ def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: M
     s = cycle.series
     if s is None:
         raise InputError("the cycle has no controller", f"--cycle {request.cycle}", "a cycle with [vehicle]")
-    driven = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.wanted, s.slope)
-    return driven.at(next(iter(request.limits.values())), s.reference_degC)
+    drive = Driven(s.machine, s.vehicle, s.controller, np.asarray(cycle.record.time, float), s.target_mps, s.slope)
+    return drive.at(next(iter(request.limits.values())), s.reference_degC)
 
 
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:

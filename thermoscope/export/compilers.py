@@ -57,8 +57,8 @@ def compiler(target: Platform) -> list[str]:
 
     Raises MissingDependency where none is at hand.
     """
-    own = target == here()
-    for name in ("gcc", "clang") if own else ():
+    native = target == here()
+    for name in ("gcc", "clang") if native else ():
         if shutil.which(name):
             return [name]
     if has_zig():
@@ -74,9 +74,9 @@ def library(files: Mapping[str, str], target: Platform, extra: Sequence[str] = (
             Path(folder, name).write_text(text, encoding="utf-8")
         out = f"model{target.ending}"
         sources = [n for n in files if Path(n).suffix == ".c"]
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, *FLAGS, *extra, "-o", out, *sources, "-lm"], cwd=folder, capture_output=True, text=True
         )
-        if done.returncode:
-            raise ThermoscopeError(f"{command[0]} for {target.fmi3} fails: {done.stderr.strip()[:500]}")
+        if process.returncode:
+            raise ThermoscopeError(f"{command[0]} for {target.fmi3} fails: {process.stderr.strip()[:500]}")
         return Path(folder, out).read_bytes()

@@ -44,10 +44,10 @@ def _output(o: Output) -> dict[str, Any]:
 def _term(model: Model, e: int) -> dict[str, Any]:
     T = model.terms
     first, end = T.part[e, [ROW, END]]
-    own = slice(T.begin[first], T.begin[end])
+    entries = slice(T.begin[first], T.begin[end])
     return {
         "name": model.term_names[e], "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
-        "col": T.at[own], "val": T.weight[own],
+        "col": T.at[entries], "val": T.weight[entries],
         "hot": _weighted_sum(T, T.part[e, HOT]), "cold": _weighted_sum(T, T.part[e, COLD]),
         "law": _law(T, e), "factor": factor(model.factors[e]),
     }  # fmt: skip

@@ -84,8 +84,8 @@ def sources(model: Model, version: int) -> dict[str, str]:
         f"static const double START_NODE[] = {{{', '.join([f'{model.initial_degC:.17g}'] * states.size)}}};",
         f"static const int NODE_STATE[] = {{{', '.join(map(str, states))}}};",
     ]  # fmt: skip
-    own = ("fmu.h", f"fmi{version}.c")
-    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in own}
+    runtime_files = ("fmu.h", f"fmi{version}.c")
+    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in runtime_files}
     return {**c_files(model), **fixed, "thermal_network_fmu.h": "\n".join([*lines, ""])}
 
 
@@ -94,7 +94,7 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
 
     Raises MissingDependency where there is none for this computer.
     """
-    files, name, done = sources(model, version), identifier(model), []
+    files, name, folders = sources(model, version), identifier(model), []
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         _put(archive, "modelDescription.xml", description(model, version))
@@ -107,13 +107,13 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
                 continue
             folder = target.fmi2 if version == 2 else target.fmi3
             _put(archive, f"binaries/{folder}/{name}{target.ending}", code)
-            done.append(folder)
+            folders.append(folder)
         for file, text in files.items():
             _put(archive, f"sources/{file}", text)
         if version == 3:
             _put(archive, "sources/buildDescription.xml", _build(name, files))
         _put(archive, "documentation/README.txt", "\n".join([*heading(model), ""]))
-    return out.getvalue(), done
+    return out.getvalue(), folders
 
 
 def _put(archive: zipfile.ZipFile, name: str, content: str | bytes) -> None:
@@ -145,19 +145,19 @@ def description(model: Model, version: int) -> bytes:
         description=heading(model)[0], variableNamingConvention="flat", **key,
     )  # fmt: skip
     _co_simulation(root, model, version)
-    own = variables(model)
+    fmi_variables = variables(model)
     units = SubElement(root, "UnitDefinitions")
-    for unit in dict.fromkeys(v.unit for v in own if v.unit):
+    for unit in dict.fromkeys(v.unit for v in fmi_variables if v.unit):
         SubElement(units, "Unit", name=unit)
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="3600", stepSize=f"{STEP_S:g}")
-    _variables(root, own if version == 3 else own[:-1], version)
-    structure, outputs = SubElement(root, "ModelStructure"), range(len(own))
-    results = [i for i in outputs if own[i].causality == "output"]
+    _variables(root, fmi_variables if version == 3 else fmi_variables[:-1], version)
+    structure, outputs = SubElement(root, "ModelStructure"), range(len(fmi_variables))
+    results = [i for i in outputs if fmi_variables[i].causality == "output"]
     if version == 2:
         for group in ("Outputs", "InitialUnknowns"):
-            listed = SubElement(structure, group)
+            element = SubElement(structure, group)
             for i in results:
-                SubElement(listed, "Unknown", index=str(i + 1))
+                SubElement(element, "Unknown", index=str(i + 1))
     else:
         for group in ("Output", "InitialUnknown"):
             for i in results:
@@ -176,14 +176,14 @@ def _co_simulation(root: Element, model: Model, version: int) -> None:
         can |= {"canInterpolateInputs": "true", "canNotUseMemoryManagementFunctions": "true"}
     element = SubElement(root, "CoSimulation", modelIdentifier=identifier(model), **can)
     if version == 2:
-        listed = SubElement(element, "SourceFiles")
+        files = SubElement(element, "SourceFiles")
         for file in sources(model, 2):
             if file.endswith(".c"):
-                SubElement(listed, "File", name=file)
+                SubElement(files, "File", name=file)
 
 
 def _variables(root: Element, variables: Sequence[Variable], version: int) -> None:
-    listed = SubElement(root, "ModelVariables")
+    element = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables):
         attributes: Attributes = {"name": v.name, "valueReference": str(reference), "causality": v.causality}
         attributes["variability"] = "fixed" if v.causality == "parameter" else "continuous"
@@ -195,6 +195,6 @@ def _variables(root: Element, variables: Sequence[Variable], version: int) -> No
             attributes["initial"] = "exact"
         value: Attributes = {"unit": v.unit} | ({} if v.start is None else {"start": f"{v.start:.17g}"})
         if version == 2:
-            SubElement(SubElement(listed, "ScalarVariable", **attributes), "Real", **value)
+            SubElement(SubElement(element, "ScalarVariable", **attributes), "Real", **value)
         else:
-            SubElement(listed, "Float64", **attributes, **value)
+            SubElement(element, "Float64", **attributes, **value)

@@ -26,8 +26,8 @@ def heading(model: Model) -> list[str]:
 
 
 def _input(s: Signal) -> str:
-    seen = "range not known" if s.low is None or s.high is None else f"{s.low:.5g} to {s.high:.5g}"
-    return f"{s.name} ({s.unit}), {seen}"
+    limits = "range not known" if s.low is None or s.high is None else f"{s.low:.5g} to {s.high:.5g}"
+    return f"{s.name} ({s.unit}), {limits}"
 
 
 def _output(o: Output) -> str:

@@ -128,8 +128,8 @@ def _reaches(tests: Sequence[Test], names: Sequence[str]) -> Ranges:
 
 
 def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
-    chosen = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
-    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in chosen]
+    pairs = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
+    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in pairs]
 
 
 def _times(one: Product, by: float) -> Product:
@@ -137,10 +137,10 @@ def _times(one: Product, by: float) -> Product:
 
 
 def _range(tests: Sequence[Test], name: str) -> tuple[float | None, float | None]:
-    seen = [np.asarray(u, float) for t in tests for n, u in {**t.inputs, **t.boundaries}.items() if n == name]
-    if not seen:
+    series = [np.asarray(u, float) for t in tests for n, u in {**t.inputs, **t.boundaries}.items() if n == name]
+    if not series:
         return None, None
-    return min(float(u.min()) for u in seen), max(float(u.max()) for u in seen)
+    return min(float(u.min()) for u in series), max(float(u.max()) for u in series)
 
 
 def unit_of(network: Network, name: str) -> str:
@@ -173,7 +173,7 @@ def _errors(folder: Folder) -> dict[str, tuple[float | None, str]]:
     out: dict[str, tuple[float | None, str]] = {}
     for role in ("calibrate", "validate", "hold-out"):
         for name in dict.fromkeys(c.channel for r, c in rows if r == role):
-            own = [c for r, c in rows if r == role and c.channel == name]
-            square = np.average([c.rmse_K**2 for c in own], weights=[c.n for c in own])
+            channels = [c for r, c in rows if r == role and c.channel == name]
+            square = np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])
             out[f"sensor {name}"] = float(np.sqrt(square)), role
     return out

@@ -116,8 +116,8 @@ def _data(of: ObserverModel) -> str:
         "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": CORRELATION_S, "START_K": USUAL["start"],
         "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
         "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
-        "MOVED_SD": faults.MOVED, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
-        "DOUBT_SD": tests_of.ALLOWED, "TEMPER_BY": TEMPER["temper"].share,
+        "MOVED_SD": faults.MOTION, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
+        "DOUBT_SD": tests_of.TOLERANCE, "TEMPER_BY": TEMPER["temper"].share,
         "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
     }  # fmt: skip
     m = len(of.process.bodies)
@@ -134,5 +134,5 @@ def _data(of: ObserverModel) -> str:
         ints("SENSOR_STATE", [of.process.state(c) for c in of.sensors]), reals("SENSOR_SD", sigma),
         reals("SENSOR_BIAS", of.bias),
         reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
-        reals("ALLOWED_SD", odds.allowed), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
+        reals("ALLOWED_SD", odds.tolerance), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
     ])  # fmt: skip

@@ -38,8 +38,8 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
     if isinstance(law, ExponentError):
         turn = _line(name, ExponentRatio(law), law.input, ranges)
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
-    known = expanded(law)
-    return _table(name, law, ranges) if isinstance(known, Unknown) else known
+    expansion = expanded(law)
+    return _table(name, law, ranges) if isinstance(expansion, Unknown) else expansion
 
 
 def _refused(what: str) -> InputError:

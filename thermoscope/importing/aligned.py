@@ -45,13 +45,13 @@ class Recording:
 def shift(first: Recording, other: Recording) -> tuple[float, str]:
     """Seconds to add to the other's clock, and by what. InputError for clocks that never overlap or show no onset."""
     if first.clock.start is not None and other.clock.start is not None:
-        moved = other.clock.start - first.clock.start
-        _overlapping(first, other, moved)
-        return moved, "both clocks show dates"
+        shift_s = other.clock.start - first.clock.start
+        _overlapping(first, other, shift_s)
+        return shift_s, "both clocks show dates"
     (a, by), (b, of) = onset(first), onset(other)
-    moved = a - b
-    _overlapping(first, other, moved)
-    return moved, f"onset of '{by}' and '{of}', +- {first.step_s + other.step_s:.2g} s"
+    shift_s = a - b
+    _overlapping(first, other, shift_s)
+    return shift_s, f"onset of '{by}' and '{of}', +- {first.step_s + other.step_s:.2g} s"
 
 
 def common(
@@ -74,12 +74,13 @@ def common(
     return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
 
 
-def _overlapping(first: Recording, other: Recording, moved: float) -> None:
+def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:
     end, theirs = first.clock.end_s, other.clock.end_s
-    if moved > end or moved + theirs < 0.0:
-        late = "after the end" if moved > 0 else "before the start"
-        raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(moved):.6g} s {late} of it",
-                         str(other.source.file), "two recordings of one test, or one command each")  # fmt: skip
+    if shift_s > end or shift_s + theirs < 0.0:
+        late = "after the end" if shift_s > 0 else "before the start"
+        raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(shift_s):.6g} s {late} "
+                         "of it", str(other.source.file),
+                         "two recordings of one test, or one command each")  # fmt: skip
 
 
 def onset(record: Recording) -> tuple[float, str]:
@@ -97,8 +98,8 @@ def onset(record: Recording) -> tuple[float, str]:
 
 def column_onset(time: Array, values: Array) -> float | None:
     """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
-    seen = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
-    t, y = time[seen], values[seen]
+    finite = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
+    t, y = time[finite], values[finite]
     if y.size < 4 * STILL:
         return None
     away = np.abs(y - np.median(y[:STILL]))

@@ -29,7 +29,7 @@ INSTANT = re.compile(
 DAY_S = 86400.0
 UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
 SHARE = 0.9  # of the cells of a column that is a clock
-LOOKED_AT = 200  # cells that tell what a column is
+SAMPLE = 200  # cells that tell what a column is
 
 
 @dataclass(frozen=True)
@@ -64,17 +64,17 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
 def checked(clock: Clock, source: Source) -> Clock:
     """A clock that never runs back; from zero."""
     t, where = clock.seconds, f"{source.file} column '{', '.join(clock.columns)}'"
-    known = np.isfinite(t)
-    if known.sum() < 3:
+    finite = np.isfinite(t)
+    if finite.sum() < 3:
         raise InputError("fewer than three rows have a time", where, "a time in every row")
-    back = np.flatnonzero(np.diff(t[known]) < 0)
+    back = np.flatnonzero(np.diff(t[finite]) < 0)
     if back.size:
-        step = float(np.diff(t[known])[back[0]])
+        step = float(np.diff(t[finite])[back[0]])
         summer = abs(step + 3600) < 120
         right = "a clock in UTC, or with its zone" if summer else "rows in the order of time"
         raise InputError(f"the clock runs back by {-step:g} s in row {int(back[0]) + 2} of the readings"
                          + (": summer time ended?" if summer else ""), where, right)  # fmt: skip
-    first = float(t[known][0])
+    first = float(t[finite][0])
     start = None if clock.start is None else clock.start + first
     return Clock(t - first, start, clock.columns, clock.words, clock.sure)
 
@@ -96,14 +96,14 @@ def _guessed_clock(source: Source) -> Clock | None:
 def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return bool(test is is_date)
-    seen = [c for c in cells[:LOOKED_AT] if c is not None and str(c).strip()]
-    return bool(seen) and sum(test(c) for c in seen) >= SHARE * len(seen)
+    nonempty = [c for c in cells[:SAMPLE] if c is not None and str(c).strip()]
+    return bool(nonempty) and sum(test(c) for c in nonempty) >= SHARE * len(nonempty)
 
 
 def _has_time(cells: Sequence[Any]) -> bool:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return True
-    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) for c in cells[:LOOKED_AT])
+    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) for c in cells[:SAMPLE])
 
 
 def _day(cell: Any) -> str:
@@ -120,8 +120,8 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...]) -> Clock:
     day_first = points or any(len(m["a"]) < 4 and int(m["a"]) > 12 for m in read)
     zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
     seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
-    named = day_first or any(len(m["a"]) < 4 for m in read)
-    order = "day before month, " if day_first else "month before day, " if named else ""
+    clear = day_first or any(len(m["a"]) < 4 for m in read)
+    order = "day before month, " if day_first else "month before day, " if clear else ""
     return _since_first(seconds, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
 
 
@@ -156,9 +156,9 @@ def _of_day(cells: Sequence[Any], column: str) -> Clock:
     parsed = [_parts(c) for c in cells]
     two = all(len(p) == 2 for p in parsed if p)
     seconds = np.array([_total(p, two) for p in parsed])
-    known = np.flatnonzero(np.isfinite(seconds))
+    finite = np.flatnonzero(np.isfinite(seconds))
     turns = np.zeros(seconds.size)
-    turns[known[1:]] = np.cumsum(np.diff(seconds[known]) < -DAY_S / 2)
+    turns[finite[1:]] = np.cumsum(np.diff(seconds[finite]) < -DAY_S / 2)
     words = "minutes:seconds" if two else "hours:minutes:seconds"
     return Clock(seconds + DAY_S * turns, None, (column,), words, not two or any("." in str(c) for c in cells[:9]))
 
@@ -185,14 +185,14 @@ def _total(parts: list[float], two: bool) -> float:
 def _numeric(source: Source) -> Clock | None:
     """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
     numeric = [c for c in source.cells if source.is_numeric(c)]
-    named = [c for c in numeric if is_time(source.labels[c])]
-    timed = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
-    own = [c for c in (*named, *timed) if c != TIME]
-    counted = source.file.suffix.lower() == ".tdms" and TIME in named and _counts(source.numbers(TIME))
-    if TIME in named and source.file.suffix.lower() in BINARY and not (own and counted):
+    by_name = [c for c in numeric if is_time(source.labels[c])]
+    by_unit = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
+    candidates = [c for c in (*by_name, *by_unit) if c != TIME]
+    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
-    if own or TIME in named:
-        return _scaled(source, own[0] if own else TIME)
+    if candidates or TIME in by_name:
+        return _scaled(source, candidates[0] if candidates else TIME)
     return _scaled(source, numeric[0]) if source.unnamed and rises(source, numeric[0]) else None
 
 
@@ -207,8 +207,8 @@ def rises(source: Source, column: str) -> bool:
     if not source.is_numeric(column):
         return False
     values = source.numbers(column)
-    known = values[np.isfinite(values)]
-    return known.size > 2 and bool((np.diff(known) >= 0).all()) and bool(known[-1] > known[0])
+    finite = values[np.isfinite(values)]
+    return finite.size > 2 and bool((np.diff(finite) >= 0).all()) and bool(finite[-1] > finite[0])
 
 
 def _unit_of_time(source: Source, column: str) -> str:

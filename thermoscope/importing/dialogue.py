@@ -13,7 +13,7 @@ from thermoscope.importing.draft import Draft, coldest_start, missing_boundaries
 from thermoscope.importing.guess import Guess
 from thermoscope.importing.source import Source
 from thermoscope.importing.target import Target
-from thermoscope.importing.words import WANTED, tokens
+from thermoscope.importing.words import SETPOINT, tokens
 from thermoscope.recordings.units import QUANTITIES
 
 
@@ -46,7 +46,7 @@ class Dialogue:
         return out
 
     def _completed(self, g: Guess, label: str) -> Guess:
-        if g.quantity == "temperature" and not g.place and not WANTED & set(tokens(label)):
+        if g.quantity == "temperature" and not g.place and not SETPOINT & set(tokens(label)):
             places = [*self.target.places, *self.target.boundaries]
             return replace(g, place=self._choice(f"Where is '{g.column}'? (a place; Enter leaves it out)", "", places))
         if g.used and g.doubt.startswith("no unit"):

@@ -52,9 +52,9 @@ class Draft:
 
 def squares_of(guesses: Sequence[Guess], target: Target) -> dict[str, tuple[str, ...]]:
     """A current that the model reads and nobody recorded, from the two components that were."""
-    fed = {g.feeds for g in guesses}
+    names = {g.feeds for g in guesses}
     out = {}
-    for name in (n for n, q in target.inputs.items() if q == "current" and n not in fed):
+    for name in (n for n, q in target.inputs.items() if q == "current" and n not in names):
         for axes in AXES:
             parts = {next(iter(axes & set(tokens(g.column)))): g.column for g in guesses
                      if g.feeds and axes & set(tokens(g.column))}  # fmt: skip
@@ -65,13 +65,13 @@ def squares_of(guesses: Sequence[Guess], target: Target) -> dict[str, tuple[str,
 
 def missing_inputs(draft: Draft, target: Target) -> list[str]:
     """Inputs that the model reads and nothing gives."""
-    fed = {g.feeds for g in draft.guesses} | set(draft.constants) | set(draft.squares)
-    return [name for name in target.inputs if name not in fed]
+    available = {g.feeds for g in draft.guesses} | set(draft.constants) | set(draft.squares)
+    return [name for name in target.inputs if name not in available]
 
 
 def missing_boundaries(draft: Draft, target: Target) -> list[str]:
-    fed = {g.place for g in draft.guesses} | set(draft.boundaries)
-    return [name for name in target.boundaries if name not in fed]
+    available = {g.place for g in draft.guesses} | set(draft.boundaries)
+    return [name for name in target.boundaries if name not in available]
 
 
 def coldest_start(draft: Draft) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from thermoscope.importing.cells import unit_of
 from thermoscope.importing.source import Source
 from thermoscope.importing.target import Target
-from thermoscope.importing.words import READ, WANTED, quantities_of, roles_of, tokens
+from thermoscope.importing.words import READ, SETPOINT, quantities_of, roles_of, tokens
 from thermoscope.recordings.units import QUANTITIES, converted
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
@@ -81,16 +81,16 @@ def _counts_on(source: Source, column: str) -> bool:
 def _quantity(label: str, unit: str, target: Target) -> tuple[str, str]:
     """By the unit where one quantity has it, then by name, then by what the model reads or where it has places."""
     of_unit = [q for q in FIRST if unit in QUANTITIES[q].units] if unit else []
-    named = quantities_of(label)
-    both = [q for q in of_unit if q in named]
+    by_name = quantities_of(label)
+    both = [q for q in of_unit if q in by_name]
     if of_unit:
         return (both or of_unit)[0], "unit" if not both else "unit and name"
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]):
         return quantity, f"name like the input {feeds}"
-    if roles_of(label) and named in ([], ["temperature"], ["vehicle_speed"]):
+    if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
         return "temperature", "name of a part"
-    if named:
-        return named[0], "name"
+    if by_name:
+        return by_name[0], "name"
     place, _ = target.place_of(label)
     return ("temperature", f"name like the place {place}") if place else ("", "")
 
@@ -119,13 +119,13 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:
-    if WANTED & set(tokens(label)):
+    if SETPOINT & set(tokens(label)):
         return base.without("a set point, not a reading")
     place, other = target.place_of(label)
     if not place:
         return base.without("no place of the model fits its name")
-    shared = set(tokens(label)) & set(tokens(place))
-    weak = bool(shared) and all(w.isdigit() for w in shared) and not roles_of(label)
+    common = set(tokens(label)) & set(tokens(place))
+    weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
     doubt = f"or {other}" if other else "place by its number only" if weak else base.doubt
     return replace(base, place=place, doubt=doubt)
 
@@ -133,24 +133,24 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
 def _fed(base: Guess, label: str, target: Target) -> Guess:
     if base.quantity in ELSEWHERE:
         return base.without(f"a {base.quantity} needs more than its unit: docs/how-to/thermal-test.md")
-    named = target.input_of(label, base.quantity)
-    return replace(base, feeds=named or QUANTITIES[base.quantity].feeds)
+    name = target.input_of(label, base.quantity)
+    return replace(base, feeds=name or QUANTITIES[base.quantity].feeds)
 
 
 def single(guesses: list[Guess], target: Target) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
-    used: dict[str, str] = {}
+    owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
-    for g in sorted(guesses, key=lambda g: (bool(WANTED & set(tokens(g.column))), not READ & set(tokens(g.column)))):
+    for g in sorted(guesses, key=lambda g: (bool(SETPOINT & set(tokens(g.column))), not READ & set(tokens(g.column)))):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
         if not key:
             continue
-        if key not in used:
-            used[key] = g.column
-        elif g.feeds and g.feeds not in target.inputs and not WANTED & set(tokens(g.column)):
+        if key not in owner:
+            owner[key] = g.column
+        elif g.feeds and g.feeds not in target.inputs and not SETPOINT & set(tokens(g.column)):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
-            out[g.column] = g.without(f"{used[key]} gives {key} already")
+            out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]
 
 

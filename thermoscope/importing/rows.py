@@ -11,7 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from thermoscope.importing.cells import is_reading, is_unit, number
 
-LOOKED_AT = 2000  # rows that are enough to find the table
+SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.5  # share of a row's cells that are readings
 
@@ -34,8 +34,8 @@ class Layout:
 
 def layout(rows: Sequence[Row], where: str) -> Layout:
     """InputError where no table of at least two columns stands in the rows."""
-    seen = rows[:LOOKED_AT]
-    widths = Counter(len(trimmed(row)) for row in seen if _readings(row))
+    head = rows[:SAMPLE]
+    widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
         raise InputError("no rows of readings in it: it is no record", where,
                          "columns of numbers, with a header or without")  # fmt: skip
@@ -43,7 +43,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     if width < 2:
         raise InputError("the file has one column only", where,
                          "a time or an input, and at least one temperature")  # fmt: skip
-    first = _first(seen, width, where)
+    first = _first(head, width, where)
     above = [i for i in range(first) if any(str(c).strip() for c in rows[i] if c is not None)]
     return _headed(rows, above[-2:], first, width)
 

@@ -16,7 +16,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from thermoscope.importing.guess import Guess, in_memory
 from thermoscope.importing.source import Source
-from thermoscope.importing.words import QUANTITY, WANTED, roles_of, tokens
+from thermoscope.importing.words import QUANTITY, SETPOINT, roles_of, tokens
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
@@ -32,14 +32,14 @@ Columns = Sequence[tuple[Source, Guess]]
 
 def starter(columns: Columns, name: str, span_s: float) -> str:
     """The text of network.toml. InputError where no column is a temperature of a machine."""
-    placed = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
-    hot = [(source, g, place) for source, g, place in placed if place and place not in BOUNDARIES.values()]
+    places = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
+    hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         raise InputError("no column is a temperature of a machine", files,
                          "a column with degC or K, or a name such as T_winding")  # fmt: skip
     nodes = list(dict.fromkeys(place for *_, place in hot))
-    boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in placed) else [])]
+    boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
     heat, watts = _heat(columns, max(rises, key=lambda place: rises[place]))
     G = watts / max(*rises.values(), 1.0)
@@ -51,36 +51,38 @@ BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is no temperature."""
-    if g.quantity != "temperature" or WANTED & set(tokens(label)):
+    if g.quantity != "temperature" or SETPOINT & set(tokens(label)):
         return ""
     words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
     role = next(iter(roles_of(label)), None)
-    named = "-".join(words) if any(not w.isdigit() for w in words) else "-".join(["part", *words])
-    return BOUNDARIES.get(role, named) if role is not None else named
+    name = "-".join(words) if any(not w.isdigit() for w in words) else "-".join(["part", *words])
+    return BOUNDARIES.get(role, name) if role is not None else name
 
 
 def rise(source: Source, g: Guess) -> float:
     """Largest reading less the first (K)."""
     values = in_memory(source, g)
-    seen = values[np.isfinite(values)]
-    return float(np.max(seen) - seen[0])
+    finite = values[np.isfinite(values)]
+    return float(np.max(finite) - finite[0])
 
 
 def _heat(columns: Columns, at: str) -> tuple[str, float]:
     """The losses as lines of TOML, and their mean (W)."""
     through = {g.feeds for s, g in columns if g.feeds and not _heats(s, g)}
-    fed = {q: [(s, g) for s, g in columns if g.quantity == q and g.feeds and g.feeds not in through] for q in HEATS}
-    kind = next((q for q in HEATS if fed[q]), "")
+    by_quantity = {
+        q: [(s, g) for s, g in columns if g.quantity == q and g.feeds and g.feeds not in through] for q in HEATS
+    }
+    kind = next((q for q in HEATS if by_quantity[q]), "")
     if not kind:
         return _loss("heat", at, ASSUMED_W, ""), ASSUMED_W
-    sources = {g.feeds: (s, g) for s, g in reversed(fed[kind])}
-    chosen = list(sources.items()) if kind == "share" else list(sources.items())[-1:]
+    sources = {g.feeds: (s, g) for s, g in reversed(by_quantity[kind])}
+    selection = list(sources.items()) if kind == "share" else list(sources.items())[-1:]
     lines, total = [], 0.0
-    for i, (feeds, (source, g)) in enumerate(chosen, 1):
+    for i, (feeds, (source, g)) in enumerate(selection, 1):
         mean = float(np.sqrt(np.nanmean(np.square(in_memory(source, g))))) or 1.0
         watts = mean if kind == "power" else ASSUMED_W
         of = f"of = {{ input = {json.dumps(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
-        lines.append(_loss(f"heat-{i}" if len(chosen) > 1 else "heat", at, watts, of))
+        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, of))
         total += watts
     return "\n".join(lines), total
 

@@ -28,18 +28,18 @@ SIDES = (
 class Target:
     """places : where a sensor may sit -> what it is;  boundaries, inputs alike (inputs -> what they measure)
 
-    known : header without its unit -> its place, of a network that was made from the headers
+    places_by_header : header without its unit -> its place, of a network that was made from the headers
     """
 
     places: Mapping[str, Role | None] = field(default_factory=dict)
     boundaries: Mapping[str, Role | None] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
-    known: Mapping[str, str] = field(default_factory=dict)
+    places_by_header: Mapping[str, str] = field(default_factory=dict)
 
     def place_of(self, label: str) -> tuple[str, str]:
         """The place or boundary a name means and what it could be as well, "" where nothing fits."""
-        if label in self.known:
-            return self.known[label], ""
+        if label in self.places_by_header:
+            return self.places_by_header[label], ""
         return _best({n: _likeness(label, n, role) for n, role in {**self.places, **self.boundaries}.items()})
 
     def input_of(self, label: str, quantity: str) -> str:

@@ -44,7 +44,9 @@ ROLES: Mapping[Role, frozenset[str]] = {
     Role.TEST_BED: frozenset({"bench", "bed", "plate", "prüfstand", "pruefstand"}),
 }  # fmt: skip
 
-WANTED = frozenset({"ref", "set", "setpoint", "soll", "sp", "target", "cmd", "demand", "command", "sollwert", "limit"})
+SETPOINT = frozenset(
+    {"ref", "set", "setpoint", "soll", "sp", "target", "cmd", "demand", "command", "sollwert", "limit"}
+)
 READ = frozenset({"fbk", "act", "actual", "ist", "meas", "measured", "feedback", "mess", "istwert"})
 INLET = frozenset({"inlet", "in", "vorlauf", "supply"})
 SHORTEST = 4  # letters of a word that may be looked for inside another
@@ -63,7 +65,7 @@ def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front."""
     words = tokens(name)
     return [
-        q for q, known in QUANTITY.items() if any(w in known and (len(w) > 1 or i == 0) for i, w in enumerate(words))
+        q for q, terms in QUANTITY.items() if any(w in terms and (len(w) > 1 or i == 0) for i, w in enumerate(words))
     ]
 
 
@@ -71,8 +73,8 @@ def roles_of(name: str) -> list[Role]:
     """Roles whose words stand in a name, whole words first, then in their order; long words also inside others."""
     words = tokens(name)
     hits = {}
-    for role, known in ROLES.items():
-        at = [(w not in known, i) for i, w in enumerate(words) if w in known or _inside(w, known)]
+    for role, terms in ROLES.items():
+        at = [(w not in terms, i) for i, w in enumerate(words) if w in terms or _inside(w, terms)]
         if at:
             hits[role] = min(at)
     return sorted(hits, key=lambda role: hits[role])

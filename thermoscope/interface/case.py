@@ -153,8 +153,8 @@ class Case:
 
         if test is not None and test not in self.tests:
             raise InputError(f"no test '{test}'", f"case '{self.name}'", f"one of {', '.join(self.tests)}")
-        chosen = by_interest(self.folder)[0] if test is None else self.tests[test]
-        return measured_and_model(comparison_of(self.folder, chosen), png=png)
+        subject = by_interest(self.folder)[0] if test is None else self.tests[test]
+        return measured_and_model(comparison_of(self.folder, subject), png=png)
 
     def _after(self, step: Revision) -> Case:
         from thermoscope.commands.model.revise import evidence, recorded

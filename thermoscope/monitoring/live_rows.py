@@ -80,30 +80,30 @@ class LiveTable:
 
     def sensors(self) -> list[str]:
         """Sensors of the machine that the stream has."""
-        own = [c.name for c in self._own() if c.is_temperature and c.place not in self.network.boundaries]
+        names = [c.name for c in self._columns() if c.is_temperature and c.place not in self.network.boundaries]
         inside = {name for mean in self.sheet.means for name in mean.of}
-        means = [m.name for m in self.sheet.means if set(m.of) <= set(own)]
-        return [*(name for name in own if name not in inside), *means]
+        means = [m.name for m in self.sheet.means if set(m.of) <= set(names)]
+        return [*(name for name in names if name not in inside), *means]
 
-    def _own(self) -> list[Column]:
+    def _columns(self) -> list[Column]:
         return [c for c in self.sheet.columns if c.header in self.header]
 
     def rows(self, lines: Sequence[Sequence[str]]) -> Rows:
         """Some lines, checked and converted; inputs and boundaries hold where nothing was read."""
-        own, first = self._own(), self.line + 1
+        columns, first = self._columns(), self.line + 1
         self.line += len(lines)
-        values = {c.name: self._values(c, lines, first) for c in own}
-        values |= {c.name: self._held(c.name, values[c.name], first) for c in own if self._outside(c)}
+        values = {c.name: self._values(c, lines, first) for c in columns}
+        values |= {c.name: self._forward_fill(c.name, values[c.name], first) for c in columns if self._outside(c)}
         time = self._times(lines, first)
         inputs = {n: np.full(time.size, v) for n, v in self.sheet.inputs.items()}
         inputs |= {n: events.mean(time, 0.0) for n, events in self.sheet.events.items()}
-        inputs |= {c.feeds: values[c.name] for c in own if not c.is_temperature}
+        inputs |= {c.feeds: values[c.name] for c in columns if not c.is_temperature}
         for name, of in self.sheet.squares.items():
             parts = [inputs[feeds] for feeds in self._feeds(of) if feeds in inputs]
             if len(parts) == len(of):
                 inputs[name] = np.sqrt(np.sum(np.square(parts), axis=0))
         air = {n: np.full(time.size, v) for n, v in self.sheet.boundaries.items()}
-        air |= {c.place: values[c.name] for c in own if c.is_temperature and c.place in self.network.boundaries}
+        air |= {c.place: values[c.name] for c in columns if c.is_temperature and c.place in self.network.boundaries}
         readings = {n: values[n] for n in self.sensors() if n in values}
         means = [m for m in self.sheet.means if m.name in self.sensors()]
         readings |= {m.name: np.mean([values[n] for n in m.of], axis=0) for m in means}
@@ -128,7 +128,7 @@ class LiveTable:
                 f"'{text[:40]}' is no number", f"{self.where} line {number}, column '{name}'", "a number, or nothing"
             ) from None
 
-    def _held(self, name: str, values: Array, first: int) -> Array:
+    def _forward_fill(self, name: str, values: Array, first: int) -> Array:
         if not np.isfinite(values[0]):
             if name not in self.last:
                 raise InputError(f"column '{name}' begins with no number", f"{self.where} line {first}",

@@ -66,15 +66,15 @@ def started(design: Design, sensors: Sequence[Channel], first: Rows) -> Observer
     return design.started(sensors, readings, {n: float(u[0]) for n, u in first.boundaries.items()})
 
 
-def chosen(here: Sequence[Channel], wanted: Sequence[str], where: str) -> list[Channel]:
+def chosen(here: Sequence[Channel], sensors: Sequence[str], where: str) -> list[Channel]:
     """The sensors that are asked for, by default all that are there."""
     names = [c.name for c in here]
-    for name in wanted:
+    for name in sensors:
         if name not in names:
             raise InputError(f"no sensor '{name}'", "--sensor", suggestion(name, names or ["no sensor in the rows"]))
     if not here:
         raise InputError("no sensor of the machine", where, "a temperature column that the test's sheet knows")
-    return [c for c in here if c.name in wanted or not wanted]
+    return [c for c in here if c.name in sensors or not sensors]
 
 
 def record_of(rows: Rows, folder: Folder) -> Record:

@@ -46,9 +46,9 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
 def _unread(sheet: Sheet, network: Network) -> Iterator[str]:
     """Notes on constants that no law reads; a slip of a name that one does read is refused."""
     read, usual = network.inputs, {quantity.feeds for quantity in QUANTITIES.values()}
-    fed = {c.feeds for c in sheet.columns}
+    names = {c.feeds for c in sheet.columns}
     for name in set(sheet.inputs) - read - usual:
-        near = difflib.get_close_matches(name, sorted(read - fed - set(sheet.inputs)), n=1, cutoff=NEAR)
+        near = difflib.get_close_matches(name, sorted(read - names - set(sheet.inputs)), n=1, cutoff=NEAR)
         if near:
             raise InputError(f"no law reads the input '{name}'", f"{sheet.where} [inputs]", suggestion(name, read))
         yield f"{sheet.where} [inputs]: no law of the model reads '{name}'"

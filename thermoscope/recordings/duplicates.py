@@ -20,14 +20,14 @@ def twice(names: Iterable[str]) -> list[str]:
 
 def declared_once(sheet: Sheet) -> None:
     """InputError for an input fed twice, a sensor declared twice, a mean that takes a column's name."""
-    fed = [c.feeds for c in sheet.columns if c.feeds]
-    if CLOCK in (*fed, *sheet.inputs, *sheet.squares, *sheet.events):
+    inputs = [c.feeds for c in sheet.columns if c.feeds]
+    if CLOCK in (*inputs, *sheet.inputs, *sheet.squares, *sheet.events):
         raise InputError(f"input '{CLOCK}' is the clock of the test itself", sheet.where, "another name for it")
-    for name in twice([*fed, *sheet.inputs, *sheet.squares, *sheet.events]):
+    for name in twice([*inputs, *sheet.inputs, *sheet.squares, *sheet.events]):
         raise InputError(f"input '{name}' is fed twice", sheet.where, "one column or constant per input: "
                          "use = false for the others")  # fmt: skip
     for header in twice(c.header for c in sheet.columns if c.is_temperature):
-        own = " and ".join(f"[columns.{c.name}]" for c in sheet.columns if c.header == header and c.is_temperature)
-        raise InputError(f"{own} are one column, '{header}'", sheet.where, "one table per sensor")
+        tables = " and ".join(f"[columns.{c.name}]" for c in sheet.columns if c.header == header and c.is_temperature)
+        raise InputError(f"{tables} are one column, '{header}'", sheet.where, "one table per sensor")
     for name in twice([*(c.name for c in sheet.columns), *(m.name for m in sheet.means)]):
         raise InputError(f"'{name}' is a column and a mean", sheet.where, "a name of its own for the mean")

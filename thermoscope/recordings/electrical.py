@@ -99,8 +99,8 @@ class Electrical:
 
 def _where_read(values: Array, temperature: Callable[[Array], Array]) -> Array:
     out = np.full(values.size, np.nan)
-    seen = np.isfinite(values)
-    out[seen] = temperature(values[seen])
+    finite = np.isfinite(values)
+    out[finite] = temperature(values[finite])
     return out
 
 

@@ -52,10 +52,10 @@ def recording(path: Path) -> Path:
     if twins:
         return twins[0]
     beside = [p.name for p in here if _suffix(p) or (p.stem == stem and p.suffix != ".toml")]
-    named = path if _suffix(path) else path.with_name(f"{path.name}.csv")
+    file = path if _suffix(path) else path.with_name(f"{path.name}.csv")
     raise InputError(
         "no such file",
-        str(named),
+        str(file),
         f"one of {', '.join(SUFFIXES)}; found there: {', '.join(beside) or 'no recording at all'}",
     )
 

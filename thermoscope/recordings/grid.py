@@ -21,15 +21,15 @@ def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]
     Raises InputError for a test too short to compare or too long to be one: mostly a wrong time unit.
     """
     usual, span = float(np.median(np.diff(samples.time))), float(samples.time[-1])
-    used = max(step, usual)
-    count = span / used + 1
+    interval = max(step, usual)
+    count = span / interval + 1
     if not LEAST <= count <= MOST or span > LONGEST_S:
         raise InputError(f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of "
-                         f"{used:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
+                         f"{interval:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
                          "right, and sample_s of case.toml?")  # fmt: skip
     coarse = usual > COARSE * step
     note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
-    return np.arange(0.0, span + ROUNDING * used, used), [note] if coarse else []
+    return np.arange(0.0, span + ROUNDING * interval, interval), [note] if coarse else []
 
 
 def averaged(time: Array, values: Array, grid: Array) -> Array:
@@ -42,9 +42,9 @@ def averaged(time: Array, values: Array, grid: Array) -> Array:
     at = np.round(time / (grid[1] - grid[0]), 9)
     count, total = np.zeros(grid.size), np.zeros(grid.size)
     for cell in (np.ceil(at - 0.5).astype(np.int64), np.floor(at + 0.5).astype(np.int64)):
-        seen = np.isfinite(values) & (cell >= 0) & (cell < grid.size)
-        count += np.bincount(cell[seen], minlength=grid.size)
-        total += np.bincount(cell[seen], values[seen], minlength=grid.size)
+        inside = np.isfinite(values) & (cell >= 0) & (cell < grid.size)
+        count += np.bincount(cell[inside], minlength=grid.size)
+        total += np.bincount(cell[inside], values[inside], minlength=grid.size)
     return np.where(count > 1, total / np.maximum(count, 1), np.nan)
 
 
@@ -66,10 +66,10 @@ def rms(time: Array, values: Array, grid: Array) -> Array:
 
 def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[Array, list[str]]:
     """An input or boundary with short holes drawn straight across; a longer one is refused."""
-    seen = np.flatnonzero(np.isfinite(values))
-    if seen.size == grid.size:
+    finite = np.flatnonzero(np.isfinite(values))
+    if finite.size == grid.size:
         return values, []
-    edges = np.concatenate([[0.0], grid[seen], [grid[-1]]])
+    edges = np.concatenate([[0.0], grid[finite], [grid[-1]]])
     worst = int(np.argmax(np.diff(edges)))
     if edges[worst + 1] - edges[worst] > max(max_gap_s, 2 * (grid[1] - grid[0])):
         raise InputError(
@@ -77,4 +77,4 @@ def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[A
             where,
             f"gaps of {max_gap_s:g} s at most: split the test there, or raise max_gap_s in its sheet",
         )
-    return np.interp(grid, grid[seen], values[seen]), [f"{where}: {grid.size - seen.size} instants interpolated"]
+    return np.interp(grid, grid[finite], values[finite]), [f"{where}: {grid.size - finite.size} instants interpolated"]

@@ -74,8 +74,8 @@ def _recorded(sheet: Sheet, samples: Samples) -> dict[str, Array]:
     out |= {n: events.mean(samples.time, samples.start_s) for n, events in sheet.events.items()}
     for c in sheet.columns:
         if not c.is_temperature:
-            seen = np.isfinite(samples.values[c.name])
-            out[c.feeds] = np.interp(samples.time, samples.time[seen], samples.values[c.name][seen])
+            finite = np.isfinite(samples.values[c.name])
+            out[c.feeds] = np.interp(samples.time, samples.time[finite], samples.values[c.name][finite])
     return out | {name: _root_sum_square(name, of, sheet, out) for name, of in sheet.squares.items()}
 
 
@@ -86,8 +86,8 @@ def _step(
     """The step that the sensors do not feel."""
     around = {**start, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
     level = max(float(np.nanmax(samples.values[c])) for s in sensors for c in s.columns)
-    seen = [(s.channel.name, s.channel.row, s.channel.sigma_K, s.channel.lag_s) for s in sensors]
-    return sample_step(network, samples.time, {**fine, CLOCK: samples.time}, around, seen, level, wished)
+    channels = [(s.channel.name, s.channel.row, s.channel.sigma_K, s.channel.lag_s) for s in sensors]
+    return sample_step(network, samples.time, {**fine, CLOCK: samples.time}, around, channels, level, wished)
 
 
 def _on_grid(
@@ -120,8 +120,8 @@ def _finer(
         return None
     currents = {c.feeds for c in sheet.columns if c.quantity == "current"}
     swinging = {n for n in currents if np.mean(fine[n][1:] * fine[n][:-1] < 0.0) > ALTERNATING}
-    seen = {n: u for n, u in inputs.items() if n not in swinging}
-    return Recorded(samples.time, {n: fine[n] for n in seen}, grid, seen)
+    smooth = {n: u for n, u in inputs.items() if n not in swinging}
+    return Recorded(samples.time, {n: fine[n] for n in smooth}, grid, smooth)
 
 
 def _root_sum_square(name: str, of: tuple[str, ...], sheet: Sheet, inputs: Mapping[str, Array]) -> Array:
@@ -184,14 +184,14 @@ def _channels(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
 
 
 def _means(sheet: Sheet, network: Network) -> list[Sensor]:
-    named: dict[str, Column] = {
+    column_of: dict[str, Column] = {
         c.name: c for c in sheet.columns if c.is_temperature and c.place not in network.boundaries
     }
     for mean in sheet.means:
         for name in mean.of:
-            if name not in named:
+            if name not in column_of:
                 what = f"averages '{name}', which is no temperature column of the machine"
-                raise InputError(what, mean.where, suggestion(name, named))
+                raise InputError(what, mean.where, suggestion(name, column_of))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)
         for m in sheet.means

@@ -40,7 +40,7 @@ class Column:
     """One column of the recording; `feeds` is the network input it drives, "" for a temperature.
 
     sigma_K, lag_s : of the sensor;  position_mm : (x, y, z) on the machine where known;  where : its table in the file
-    written : its name in the recording;  electrical : how a resistance or a voltage becomes a temperature
+    label : its name in the recording;  electrical : how a resistance or a voltage becomes a temperature
     sigma : standard deviation in `unit`, of a sensor that does not read degC;  settings : what the sheet says of that
     """
 
@@ -53,7 +53,7 @@ class Column:
     lag_s: float
     position_mm: tuple[float, ...]
     where: str
-    written: str = ""
+    label: str = ""
     electrical: Electrical | None = None
     sigma: float = 0.0
     settings: Mapping[str, float] = field(default_factory=dict)
@@ -74,7 +74,7 @@ class Column:
     @property
     def header(self) -> str:
         """The column's name in the recording."""
-        return self.written or self.name
+        return self.label or self.name
 
 
 def of_temperature(quantity: str) -> bool:
@@ -145,8 +145,8 @@ def load_sheet(path: Path) -> Sheet:
     data = read_toml(path, "a sheet with [test] and [columns.NAME]")
     other = Table(data.get("test", {}), f"{path} [test]").word("columns_of", "")
     if other:
-        shared = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
-        data = {**{key: shared[key] for key in ("columns", "means", "root_sum_square") if key in shared}, **data}
+        template = read_toml(path.parent / other, f"the sheet that {path} takes its columns from")
+        data = {**{key: template[key] for key in ("columns", "means", "root_sum_square") if key in template}, **data}
     return read_sheet(data, str(path), path.parent)
 
 

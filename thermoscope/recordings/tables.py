@@ -68,9 +68,9 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:
             raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
                              "numbers, or another column")  # fmt: skip
-        values[column.name], own = _in_memory(column, raw, file)
-        if own is not None:
-            sigma[column.name] = own
+        values[column.name], sensor_sigma = _in_memory(column, raw, file)
+        if sensor_sigma is not None:
+            sigma[column.name] = sensor_sigma
         notes += _look(column, values[column.name], file, rows.start)
     return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
 

@@ -56,10 +56,10 @@ def _films(rows: Mapping[str, PartRow], field: FieldModel, films: Mapping[str, f
     cells: dict[str, list[str]] = {}
     for cell in field.films:
         cells.setdefault(stem(cell), []).append(cell)
-    for face, own in cells.items():
-        exact = rows[field.films[own[0]].trace.part].faces.get(face, 0.0)
-        areas = np.array([field.films[cell].trace.area for cell in own])
-        G = float(areas @ [films.get(cell, 0.0) for cell in own])
+    for face, face_cells in cells.items():
+        exact = rows[field.films[face_cells[0]].trace.part].faces.get(face, 0.0)
+        areas = np.array([field.films[cell].trace.area for cell in face_cells])
+        G = float(areas @ [films.get(cell, 0.0) for cell in face_cells])
         if G > 0 and exact > 0:
             yield AnalyticalCheck(f"film:{face}", "1/(h A)", areas.sum() / (G * exact), 1 / G)
 

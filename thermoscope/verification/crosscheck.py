@@ -67,8 +67,8 @@ class CrossCheck:
 
     def responsible(self, part: str) -> LinkCheck | None:
         """Of the links of a part the one whose heat differs most between field and network."""
-        own = [link for link in self.links if part in link.parts]
-        return max(own, key=lambda link: link.percent_of_heat, default=None)
+        links = [link for link in self.links if part in link.parts]
+        return max(links, key=lambda link: link.percent_of_heat, default=None)
 
 
 @dataclass(frozen=True)
@@ -196,8 +196,8 @@ def through(
     """Heat through every contact and film of the field, beside the network's, largest difference first."""
     scale, out = max(full.injected, 1e-300), []
 
-    def add(name: str, parts: tuple[str, ...], fem: float, own: float) -> None:
-        out.append(LinkCheck(name, parts, fem, own, 100.0 * abs(fem - own) / scale))
+    def add(name: str, parts: tuple[str, ...], fem: float, network_W: float) -> None:
+        out.append(LinkCheck(name, parts, fem, network_W, 100.0 * abs(fem - network_W) / scale))
 
     for link in network.links:
         if link.kind == "contact":
@@ -208,8 +208,8 @@ def through(
     for face, film in field.films.items():
         place, h, t = network.places[face], c.films.get(face, 0.0), film.trace
         fem = h * float(t.b @ full.T[t.dofs] - t.area * u[film.fluid])
-        own = h * t.area * (_at(z, place.mean) - float(z[network.column(film.fluid)]))
-        add(f"film:{face}", (t.part,), fem, own)
+        network_W = h * t.area * (_at(z, place.mean) - float(z[network.column(film.fluid)]))
+        add(f"film:{face}", (t.part,), fem, network_W)
     return tuple(sorted(out, key=lambda link: -link.percent_of_heat))
 
 
@@ -221,10 +221,10 @@ def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambien
     out = []
     for part, block in field.blocks.items():
         mean, hot = float(field.mean(part) @ full.T), float(full.T[block.dofs].max())
-        seen, peak = float(x[network.states.index(part)]), float(T[block.dofs].max())
+        network_mean, peak = float(x[network.states.index(part)]), float(T[block.dofs].max())
         off = max(
-            abs(seen - mean) / max(abs(mean - ambient), FLOOR * largest),
+            abs(network_mean - mean) / max(abs(mean - ambient), FLOOR * largest),
             abs(peak - hot) / max(hot - ambient, FLOOR * largest),
         )
-        out.append(PartCheck(part, mean, seen, hot, peak, 100.0 * off))
+        out.append(PartCheck(part, mean, network_mean, hot, peak, 100.0 * off))
     return tuple(out)

@@ -70,13 +70,13 @@ def model_of(folder: Folder) -> tuple[Network, dict[str, float]]:
 def _of_run(
     network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], rated: Rated | None
 ) -> ErrorBudget:
-    done = simulate(network, run, values, list(rows.values()))
-    time_K = getattr(done, "time_error_K", None)
+    course = simulate(network, run, values, list(rows.values()))
+    time_K = getattr(course, "time_error_K", None)
     late = dict.fromkeys(rows) if time_K is None else dict(zip(rows, np.asarray(time_K, float).tolist(), strict=True))
     if rated is None:
         return ErrorBudget(tuple(PlaceError(name, None, None, late[name]) for name in rows))
     around = np.min([np.broadcast_to(u, run.time.shape) for u in run.boundaries.values()], axis=0)
-    warm = float(np.abs(done.y - around[:, None]).max()) / rated.rise_K
+    warm = float(np.abs(course.y - around[:, None]).max()) / rated.rise_K
     return ErrorBudget(tuple(
         PlaceError(name, warm * rated.mesh_K[name], warm * rated.condensation_K[name], late[name]) for name in rows
     ))  # fmt: skip

@@ -42,7 +42,7 @@ def fluid_rises(
     columns = [list(system.fluid).index(network.column(name)) for name in fluids]
     streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
     G = film_columns(reduction.field, reduction.films, fluids)[1] + streams
-    own = np.array([[rated.get(fluid, 0.0)] for fluid in fluids])
+    fluid_losses = np.array([[rated.get(fluid, 0.0)] for fluid in fluids])
     inverse = np.linalg.inv(system.A)
-    _, u = coupled(lambda y: inverse @ y, np.reshape(load, (-1, 1)), system.B[:, columns], G, own)
+    _, u = coupled(lambda y: inverse @ y, np.reshape(load, (-1, 1)), system.B[:, columns], G, fluid_losses)
     return dict(zip(fluids, u[:, 0].tolist(), strict=True))

@@ -35,7 +35,7 @@ class NetworkSize:
 
     built: Built
     reduction: Reduction
-    allowed: Accuracy
+    limit: Accuracy
     sizes: tuple[Size, ...]
     enrichment: Enrichment | None
     mesh: MeshChoice | None = None
@@ -48,7 +48,7 @@ class NetworkSize:
         """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
         rounds = () if self.enrichment is None else self.enrichment.rounds
         return {
-            "wish_percent": {"mean": self.allowed.mean, "hot": self.allowed.hot, "point": self.allowed.point},
+            "wish_percent": {"mean": self.limit.mean, "hot": self.limit.hot, "point": self.limit.point},
             "met": self.met,
             "states": len(self.built.network.states),
             "sizes": [size.document() for size in self.sizes],
@@ -87,18 +87,18 @@ def smallest_network(
     ready = prepared(machine, size_m, segments, progress, axial_m, across)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
-    cases, allowed = load_cases(machine, reduction), accuracy_of(accuracy)
+    cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
     guides = [reduction.random_point(k) for k in range(points_each)]
     points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
     points += [reduction.joined_point(factor) for factor in contact_factors]
-    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, allowed) for requested in SIZES)
+    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
-    enrichment = None if good else enrich(reduction, cases, allowed, rounds, points, guides, tell=progress)
+    enrichment = None if good else enrich(reduction, cases, limit, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
     last = reduction if enrichment is None else enrichment.reduction
     built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
-    return NetworkSize(built, last, allowed, table, enrichment)
+    return NetworkSize(built, last, limit, table, enrichment)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

@@ -87,8 +87,8 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     T = point.of_field(field)
     fine, other = reader.read(T), rough.read(point.of_field(coarse))
     left = {name: 0.0 for name in fine}
-    for exact, own in chain([(T, point.of_network(network, field))], _elsewhere(point, field, network)):
-        for name, off in reader.differences(exact, own).items():
+    for exact, approximation in chain([(T, point.of_network(network, field))], _elsewhere(point, field, network)):
+        for name, off in reader.differences(exact, approximation).items():
             left[name] = max(left[name], off)
     nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in point.watts}
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
@@ -97,8 +97,8 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
 def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
     """The step of loss, and a steady state at other coefficients; field and network."""
     yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
-    moved = point.moved(SPREAD)
-    yield moved.of_field(field), moved.of_network(network, field)
+    variant = point.moved(SPREAD)
+    yield variant.of_field(field), variant.of_network(network, field)
 
 
 @dataclass(frozen=True)

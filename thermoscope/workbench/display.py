@@ -52,8 +52,8 @@ class Display:
         self.state.effects, self.state.revision = list(last.effects), last.number
         self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
-        (test, sensor), known = rows.largest(look), self._scale
-        self._scale = max(test, known[0]), max(sensor, known[1])
+        (test, sensor), scale = rows.largest(look), self._scale
+        self._scale = max(test, scale[0]), max(sensor, scale[1])
         self.state.tests = rows.tests(look, self._scale[0], {name: a for name, (a, _) in last.rmse_K.items()})
         self.choose_test()
 

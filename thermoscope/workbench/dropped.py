@@ -51,12 +51,12 @@ class Dropped:
         single = to in self.target.inputs or to in self.target.boundaries
         records = []
         for j, r in enumerate(self.records):
-            own = [
+            new_guesses = [
                 dragged(g, r, to, self.target) if (j, g.column) == (i, column)
                 else g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g
                 for g in r.guesses
             ]  # fmt: skip
-            records.append(replace(r, guesses=own))
+            records.append(replace(r, guesses=new_guesses))
         return replace(self, records=tuple(records))
 
     def constant(self, name: str, text: str) -> Dropped:
@@ -84,8 +84,8 @@ class Dropped:
             goes.setdefault(row["goes"], []).append(row["name"])
         kinds = (("part", self.target.places), ("surroundings", self.target.boundaries), ("input", self.target.inputs))
         parts = [{"name": n, "kind": kind, "columns": goes.get(n, [])} for kind, names in kinds for n in names]
-        known = [p["name"] for p in parts]
-        others = [{"name": n, "kind": "input", "columns": c} for n, c in goes.items() if n and n not in known]
+        part_names = [p["name"] for p in parts]
+        others = [{"name": n, "kind": "input", "columns": c} for n, c in goes.items() if n and n not in part_names]
         return {"files": ", ".join(r.name for r in self.records), "columns": self.rows, "parts": [*parts, *others],
                 "missing": self.missing, "constants": {n: f"{v:g}" for n, v in self.constants.items()}}  # fmt: skip
 
@@ -111,16 +111,16 @@ def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
     if not record.source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
     if to in target.places or to in target.boundaries:
-        wanted = "temperature"
+        quantity = "temperature"
     elif to in target.inputs:
-        wanted = target.inputs[to] or g.quantity
+        quantity = target.inputs[to] or g.quantity
     else:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
-    if g.quantity and wanted != g.quantity:
-        raise InputError(f"is a {g.quantity}, '{to}' wants a {wanted}".replace("_", " "), g.column, "another column")
-    unit = g.unit or ("degC" if wanted == "temperature" else next(iter(QUANTITIES[wanted].units), ""))
-    place, feeds = (to, "") if wanted == "temperature" and to not in target.inputs else ("", to)
-    return replace(g, quantity=wanted, unit=unit, place=place, feeds=feeds, doubt="")
+    if g.quantity and quantity != g.quantity:
+        raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
+    unit = g.unit or ("degC" if quantity == "temperature" else next(iter(QUANTITIES[quantity].units), ""))
+    place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
+    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
 
 
 def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:

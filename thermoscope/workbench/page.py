@@ -116,7 +116,7 @@ def _machine(session: Session) -> None:
         if session.bench.why_flat:
             html.P("{{ why_flat }}", classes="flat")
             return
-        chosen = [
+        attributes = [
             ':data-test="test"',
             ':data-sensor="sensor"',
             ':data-dark="dark"',
@@ -124,7 +124,7 @@ def _machine(session: Session) -> None:
             ":title=\"'the machine: ' + test\"",
         ]
         html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer",
-                    raw_attrs=[*chosen, "@pick=\"trigger('pick', [$event.detail])\""])  # fmt: skip
+                    raw_attrs=[*attributes, "@pick=\"trigger('pick', [$event.detail])\""])  # fmt: skip
         html.Div(v_if=("!viewer",), classes="view waiting", **aria("aria-hidden", "true"))
 
 
@@ -236,13 +236,16 @@ def _recordings(session: Session) -> None:
 
 def _channels() -> None:
     """Every column of the files, to drag, with a list of where it can go."""
-    moved = "@change=\"trigger('edit_dropped', ['move', c.key, $event.target.value])\""
+    on_change = "@change=\"trigger('edit_dropped', ['move', c.key, $event.target.value])\""
     with html.Div(classes="scroll"), html.Table(), html.Tbody(), html.Tr(v_for="c in drop.columns", key="c.key"):
         with html.Td():
             html.Span("{{ c.name }}", classes="chip", id=("'column-' + c.name",), raw_attrs=[
                 'draggable="true"', "@dragstart=\"dragged = c.key; $event.dataTransfer.setData('text/plain', c.key)\""
             ])  # fmt: skip
-        with html.Td(), html.Select(raw_attrs=[':value="c.goes"', ":aria-label=\"'where ' + c.name + ' is'\"", moved]):
+        with (
+            html.Td(),
+            html.Select(raw_attrs=[':value="c.goes"', ":aria-label=\"'where ' + c.name + ' is'\"", on_change]),
+        ):
             html.Option("left out", value="")
             html.Option("{{ p.name }}", v_for="p in drop.parts", key="p.name", value=("p.name",))
         html.Td("{{ c.quantity }} {{ c.unit }}")

@@ -71,8 +71,8 @@ class Session:
 
     async def step(self, action: str, effect: str = "") -> None:
         """Add or remove an effect, or calibrate; what is not accepted waits for `keep_anyway`."""
-        allowed = {"add": {c["effect"] for c in self.state.candidates}, "remove": set(self.history.last.effects)}
-        if effect not in allowed.get(action, {""}):
+        effects = {"add": {c["effect"] for c in self.state.candidates}, "remove": set(self.history.last.effects)}
+        if effect not in effects.get(action, {""}):
             return
         title = f"{TITLES[action]} {effect}".strip()
         result = await self._calculate(title, steps.stepped, self.folder, action, effect)

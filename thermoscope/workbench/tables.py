@@ -43,11 +43,11 @@ def channels(look: Appearance, test: str, scale: float) -> list[Row]:
 
 def worst(look: Appearance) -> tuple[str, str]:
     """(test, channel) with the largest error against its limit, never-used tests first."""
-    ranked = [
+    errors = [
         (t["role"] == "hold-out", c["rmse_K"] / c["limit_K"], t["name"], c["channel"])
         for t in look.errors["tests"] for c in t["channels"]
     ]  # fmt: skip
-    return max(ranked)[2:]
+    return max(errors)[2:]
 
 
 def largest(look: Appearance) -> tuple[float, float]:

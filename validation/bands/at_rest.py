@@ -47,8 +47,8 @@ class AtRest:
     @cached_property
     def _thermal(self) -> set[str]:
         """Parameters that move a rest: neither a sensor's nor a start's."""
-        known = {*self.of.names, *self.of.doubts}
-        return {p.name for p in self.network.parameters if p.name in known and head(p) == "thermal"}
+        names = {*self.of.names, *self.of.doubts}
+        return {p.name for p in self.network.parameters if p.name in names and head(p) == "thermal"}
 
     def _moved(
         self, inputs: Mapping[str, float], boundaries: Mapping[str, float]

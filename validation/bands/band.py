@@ -65,15 +65,17 @@ def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> D
     network, free, size = acting(of, virtual)
     now = {**values_of(network, None), **of.values}
     plain = predict(network, virtual, now).y
-    moved = {name: predict(network, other, now).y - plain for name, other in moved_inputs(network, virtual, of.doubt)}
-    known = {p.targets[0][0] for p in free if head(p) == "boundary"}
+    responses = {
+        name: predict(network, other, now).y - plain for name, other in moved_inputs(network, virtual, of.doubt)
+    }
+    boundary_names = {p.targets[0][0] for p in free if head(p) == "boundary"}
     for name, other in moved_boundaries(virtual, of.doubt):
-        if name not in known:
-            moved[name] = predict(network, other, now).y - plain
+        if name not in boundary_names:
+            responses[name] = predict(network, other, now).y - plain
     sd = np.array([p.prior_sd for p in free]) / size
-    names = [*(p.name for p in free), *moved]
-    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(moved))])), of.offsets(names)
-    beside = np.stack([*moved.values()], axis=2) if moved else np.zeros((*plain.shape, 0))
+    names = [*(p.name for p in free), *responses]
+    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(responses))])), of.offsets(names)
+    beside = np.stack([*responses.values()], axis=2) if responses else np.zeros((*plain.shape, 0))
     return Deviations(plain, Watch(network, virtual, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
 
 

@@ -59,8 +59,8 @@ class ParameterPosterior:
 
     def offsets(self, names: Sequence[str]) -> Array:
         """(k,) of some names; those that it does not know have none."""
-        known = dict(zip(self.names, self.offset)) if self.offset.size else {}
-        return np.array([known.get(name, 0.0) for name in names])
+        offset_of = dict(zip(self.names, self.offset)) if self.offset.size else {}
+        return np.array([offset_of.get(name, 0.0) for name in names])
 
     def slow(self, row: Row) -> float:
         """Share of its rise by which a temperature is off for reasons that no parameter has.
@@ -69,16 +69,16 @@ class ParameterPosterior:
         as a thermocouple's has; a mean or point of a field is what it says.
         """
         alike = any(np.array_equal(row.index, r.index) and np.allclose(row.weights, r.weights) for r in self.read)
-        known = alike or self.network.recovery is not None
-        return self.doubt["slow"] if known else float(np.hypot(self.doubt["slow"], self.doubt["gain"]))
+        representative = alike or self.network.recovery is not None
+        return self.doubt["slow"] if representative else float(np.hypot(self.doubt["slow"], self.doubt["gain"]))
 
     def of(self, names: Sequence[str], sd: Array) -> Array:
         """(k, k) covariance of some names; those that it does not know are independent with the given deviations."""
         at = {name: i for i, name in enumerate(self.names)}
-        known = np.array([name in at for name in names], bool)
+        estimated = np.array([name in at for name in names], bool)
         index = [at[name] for name in names if name in at]
-        out = np.diag(np.where(known, 0.0, sd) ** 2)
-        out[np.ix_(known, known)] += self.covariance[np.ix_(index, index)]
+        out = np.diag(np.where(estimated, 0.0, sd) ** 2)
+        out[np.ix_(estimated, estimated)] += self.covariance[np.ix_(index, index)]
         return out
 
 
@@ -93,21 +93,29 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     values = parameter_values(network, case.model.values)
     roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
     tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
-    grown, doubts = with_doubts(network, case.doubt, tests or case.tests)
+    larger, doubts = with_doubts(network, case.doubt, tests or case.tests)
     of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
-        return ParameterPosterior(grown, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
+        return ParameterPosterior(larger, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
     plain = minimise(network, tests, unknowns, start, None, values, 0, CachedSegments(parts, nearby=False))
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
-    names = (*unknowns.names, *uncertain_names(grown, doubts, tests[0], values, fit, case.doubt), *inputs)
+    names = (*unknowns.names, *uncertain_names(larger, doubts, tests[0], values, fit, case.doubt), *inputs)
     covariance, offset = joint(fit, inputs)
     return ParameterPosterior(
-        grown, values, names, covariance, of_network, tuple(t.name for t in tests), case.doubt, rows_read(tests), offset
+        larger,
+        values,
+        names,
+        covariance,
+        of_network,
+        tuple(t.name for t in tests),
+        case.doubt,
+        rows_read(tests),
+        offset,
     )
 
 
@@ -125,9 +133,9 @@ def input_columns(
     """
     out: dict[str, list[Array]] = {}
     for test in tests:
-        for name, moved in moved_inputs(network, test, doubt):
+        for name, variant in moved_inputs(network, test, doubt):
             if name not in FLOWS.values():
-                change = {s.channel: s for s in segments(network, [moved], values)}
+                change = {s.channel: s for s in segments(network, [variant], values)}
                 column = out.setdefault(name, [np.zeros_like(s.r) for s in plain])
                 for i, s in enumerate(plain):
                     if s.test == test.name:
@@ -136,11 +144,11 @@ def input_columns(
 
 
 def uncertain_names(
-    grown: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
+    larger: Network, doubts: Sequence[Parameter], test: Test, values: dict[str, float], fit: Fit, doubt: Doubt
 ) -> list[str]:
     """A name for every column of the model error: links and capacities, cores, placements, flows."""
-    cored = with_cores(grown, test, values, doubt)
-    first = [p.name for p in (*doubts, *cored.parameters[len(grown.parameters) :])]
+    with_core = with_cores(larger, test, values, doubt)
+    first = [p.name for p in (*doubts, *with_core.parameters[len(larger.parameters) :])]
     assert fit.error is not None
     rest = fit.error.size - len(first)
     return [*first, *(f"placement {i}" for i in range(rest - 2)), "flow of air", "flow of liquid"]
@@ -164,11 +172,13 @@ def joint(fit: Fit, inputs: Mapping[str, Sequence[Array]]) -> tuple[Array, Array
 def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter, ...], Array]:
     """The network with the cores that a record gives its nodes; all in it that is uncertain but sensors; for each of
     these the size of one deviation where it is a doubt, else 1."""
-    cored = with_cores(of.network, test, of.values, of.doubt)
-    cores = {p.name for p in cored.parameters[len(of.network.parameters) :]}
+    with_core = with_cores(of.network, test, of.values, of.doubt)
+    cores = {p.name for p in with_core.parameters[len(of.network.parameters) :]}
     doubts = cores | set(of.doubts)
-    free = tuple(p for p in cored.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test)))
-    return cored, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
+    free = tuple(
+        p for p in with_core.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test))
+    )
+    return with_core, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
 
 
 def _of_sensor(p: Parameter, test: Test) -> bool:

@@ -154,9 +154,9 @@ def minimise(
     iterate = Iterate(network, tests, unknowns, fixed, theta, noise, cache, draft, centre, worth, error)
     for iteration in range(iterations):
         progress(f"calibration step {iteration + 1}, objective {iterate.objective:.4g}")
-        done = iterate.step()
+        finished = iterate.step()
         keep(unknowns.values(iterate.theta))
-        if done:
+        if finished:
             break
     return iterate.fit()
 
@@ -315,13 +315,13 @@ class InnerProduct:
         """Whitened D, and 1 + D'D factored: once for all fits under one noise."""
         from scipy.linalg import cho_factor
 
-        own = [(s.test, s.channel, s.time.size) for s in self.parts]
-        for noise, known, of, D, factor in tuple(_WHITENED):
-            if noise is self.noise and known is error and of == own:
+        samples = [(s.test, s.channel, s.time.size) for s in self.parts]
+        for noise, cached_error, of, D, factor in tuple(_WHITENED):
+            if noise is self.noise and cached_error is error and of == samples:
                 return D, factor
         D = self.white([error.of(s) for s in self.parts])
         factor = cho_factor(np.eye(error.size) + sum(d.T @ d for d in D))
-        _WHITENED.append((self.noise, error, own, D, factor))
+        _WHITENED.append((self.noise, error, samples, D, factor))
         return D, factor
 
     def _solved(self, Y: Array) -> Array:

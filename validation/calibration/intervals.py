@@ -59,7 +59,7 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
     """Values with intervals from the covariance, model error in it, never wider than the prior's."""
     correlation = correlations(fit)
     partner = np.argmax(np.abs(correlation), axis=1)
-    known = profiles or {}
+    profile_of = profiles or {}
     out = []
     for i, p in enumerate(fit.unknowns.parameters):
         trades = abs(correlation[i, partner[i]]) > TRADES
@@ -67,7 +67,7 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
             Estimate(
                 p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
                 bool(fit.sd[i] <= UNINFORMED * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
-                bool(fit.at_bound[i]), known.get(p.name), of_measurement(p),
+                bool(fit.at_bound[i]), profile_of.get(p.name), of_measurement(p),
             )
         )  # fmt: skip
     return tuple(out)

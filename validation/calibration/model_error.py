@@ -83,8 +83,8 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
 
 
 def _constant_film(network: Network, link: Link) -> bool:
-    own = is_film(network, link) and link.kind != "stream" and not link.origin
-    return own and isinstance(link.law.temperature, Constant)
+    film = is_film(network, link) and link.kind != "stream" and not link.origin
+    return film and isinstance(link.law.temperature, Constant)
 
 
 def _amplitude(name: str, target: str, sd: float, unit: str) -> Parameter:
@@ -97,35 +97,35 @@ def _log(target: str, sd: float) -> Parameter:
 
 def alone(network: Network) -> set[str]:
     """Links, losses and capacities that a parameter moves by themselves, or with what an exponent adds to them."""
-    added = {x.name for x in network.links if x.origin} | {x.name for x in network.sources if x.origin}
-    own = [[t for t, _ in p.targets if t not in added] for p in network.parameters if p.mapping == "log"]
-    return {targets[0] for targets in own if len(targets) == 1}
+    extras = {x.name for x in network.links if x.origin} | {x.name for x in network.sources if x.origin}
+    groups = [[t for t, _ in p.targets if t not in extras] for p in network.parameters if p.mapping == "log"]
+    return {targets[0] for targets in groups if len(targets) == 1}
 
 
 def _each_link(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     """A link that shares its parameter with others, or has none, may differ from them."""
-    single, own = alone(network), _shared(network)
+    single, common = alone(network), _shared(network)
     pairs = joints(network)
     for x in network.links:
         if x.name not in single and x.kind != "stream" and not x.origin:
             alike = "joint" if x.name in pairs else "group"
-            yield _log(x.name, doubt[alike if x.name in own or is_film(network, x) else "conductivity"])
+            yield _log(x.name, doubt[alike if x.name in common or is_film(network, x) else "conductivity"])
 
 
 def _each_loss(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     """Bearings of one parameter differ more than the parts of one loss."""
-    single, own = alone(network), _shared(network)
+    single, common = alone(network), _shared(network)
     for s in network.sources:
         if s.name not in single and not s.origin:
-            yield _log(s.name, doubt["bearing" if s.kind in FRICTION and s.name in own else "split"])
+            yield _log(s.name, doubt["bearing" if s.kind in FRICTION and s.name in common else "split"])
 
 
 def _under_load(network: Network, tests: Sequence[Test]) -> Iterator[tuple[Source, SquareOf]]:
     """Losses that may follow the load although their laws do not say so, with the load; copper's follow it anyway."""
     load = SquareOf.of(network, tests, ("current", "torque"))
     for s in network.sources:
-        known = s.origin or s.kind in EXACT_LOSSES or s.law.looks_at_all
-        if load is not None and not known and not set(load.inputs) & set(s.law.reads):
+        exempt = s.origin or s.kind in EXACT_LOSSES or s.law.looks_at_all
+        if load is not None and not exempt and not set(load.inputs) & set(s.law.reads):
             yield s, load
 
 
@@ -137,10 +137,10 @@ def _shared(network: Network) -> set[str]:
 def joints(network: Network) -> set[str]:
     """Constant links between bodies that share a parameter with one between two others: contacts of one drawing."""
     bodies = {p.name for p in solid(network)}
-    own = {x.name: frozenset(x.places) for x in network.links if _is_constant(x) and bodies >= set(x.places)}
+    pair_of = {x.name: frozenset(x.places) for x in network.links if _is_constant(x) and bodies >= set(x.places)}
     out: set[str] = set()
     for p in network.parameters:
-        mine = {t: own[t] for t, _ in p.targets if t in own}
+        mine = {t: pair_of[t] for t, _ in p.targets if t in pair_of}
         if len(set(mine.values())) > 1:
             out |= set(mine)
     return out
@@ -152,7 +152,7 @@ def _is_constant(link: Link) -> bool:
 
 def _each_capacity(network: Network, doubt: Doubt) -> Iterator[Parameter]:
     single, groups = alone(network), network.capacity_group or network.states
-    mass = {g: sum(C for C, own in zip(network.C, groups) if own == g) for g in groups}
+    mass = {g: sum(C for C, group in zip(network.C, groups) if group == g) for g in groups}
     for g in dict.fromkeys(groups):
         if f"capacity:{g}" not in single and mass[g] > 0:
             yield _log(f"capacity:{g}", doubt["capacity"])
@@ -201,13 +201,13 @@ def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt:
     A share of the node's capacity follows it with a time constant tau: its heat is C * share (dT/dt - dT_core/dt).
     """
     sources, parameters = [], []
-    own = solid(network)
-    if not own:  # parts from a field have their inner temperatures as states
+    places = solid(network)
+    if not places:  # parts from a field have their inner temperatures as states
         return network
-    T = nodes(network, test, values, own)
+    T = nodes(network, test, values, places)
     core = T.copy()
-    lag(test.time, core, np.full(len(own), doubt["core time"]))
-    for i, place in enumerate(own):
+    lag(test.time, core, np.full(len(places), doubt["core time"]))
+    for i, place in enumerate(places):
         C = float(network.C[place.states[0]])
         q = doubt["core"] * C * np.gradient(T[:, i] - core[:, i], test.time)
         name = f"core:{place.name}"
@@ -260,12 +260,12 @@ def model_error(
 
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
-    grown, doubts = with_doubts(network, doubt, sensed or tests)
+    larger, doubts = with_doubts(network, doubt, sensed or tests)
 
     def of_test(test: Test) -> tuple[tuple[Parameter, ...], dict[tuple[str, str], Array]]:
-        cored = with_cores(grown, test, values, doubt)
-        every = (*doubts, *cored.parameters[len(grown.parameters) :])
-        parts = segments(cored, [test], values, every)
+        with_core = with_cores(larger, test, values, doubt)
+        every = (*doubts, *with_core.parameters[len(larger.parameters) :])
+        parts = segments(with_core, [test], values, every)
         scale = np.array([p.prior_sd for p in every])
         beside = placements(network, test, values, doubt, sensed or tests)
         flow = of_inputs(network, test, values, doubt, parts)
@@ -279,9 +279,9 @@ def model_error(
 
 def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]) -> tuple[str, ...]:
     """What each column stands for."""
-    own = [p.name.removeprefix("doubt:") for p in doubts]
+    names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
-    return (*own, *beside, "flow of air", "flow of liquid", "jumps between samples")
+    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples")
 
 
 def of_inputs(
@@ -292,8 +292,11 @@ def of_inputs(
     plain : the test as recorded
     """
     columns = []
-    for own in (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt)):
-        more = segments(network, [test.scaled(own)], values) if own else plain
+    for scale in (
+        *(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)),
+        jumps(network, test, doubt),
+    ):
+        more = segments(network, [test.scaled(scale)], values) if scale else plain
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
     return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}
 
@@ -326,9 +329,9 @@ def placements(
     pairs = sensed_beside(network, tests, doubt)
     here = {c.name: c for c in test.channels}
     virtual = [_virtual(here[c], network.places[n].mean, f"{i}:{c}") for i, (c, n, _) in enumerate(pairs) if c in here]
-    own = [_virtual(c, c.row, c.name) for c in test.channels]
+    sensors = [_virtual(c, c.row, c.name) for c in test.channels]
     plain, now = heat_model(network, values)
-    parts = {s.channel: s for s in segments(plain, [replace(test, channels=(*own, *virtual))], now)}
+    parts = {s.channel: s for s in segments(plain, [replace(test, channels=(*sensors, *virtual))], now)}
     return {c.name: _beside(c.name, pairs, parts) for c in test.channels if c.name in parts}
 
 

@@ -29,19 +29,19 @@ def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> On
     """
     from scipy.optimize import minimize_scalar
 
-    known = {p.name: p.value for p in case.model.network.parameters}
-    if parameter not in known:
-        raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(known))}")
+    nominal = {p.name: p.value for p in case.model.network.parameters}
+    if parameter not in nominal:
+        raise InputError(f"unknown parameter '{parameter}'", case.name, f"known: {', '.join(sorted(nominal))}")
     now = dict(case.model.values)
-    start = now.get(parameter, known[parameter])
+    start = now.get(parameter, nominal[parameter])
 
     def moved(log_factor: float) -> dict[str, float]:
         return {**now, parameter: start * float(np.exp(log_factor))}
 
-    watched = replace(case, tests=tuple(t for t in case.tests if t.role == "validate"))
+    validation_case = replace(case, tests=tuple(t for t in case.tests if t.role == "validate"))
 
     def error(log_factor: float) -> float:
-        tests = errors(watched, moved(log_factor)).tests
+        tests = errors(validation_case, moved(log_factor)).tests
         return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
 
     best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})

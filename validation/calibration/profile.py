@@ -97,6 +97,6 @@ def _next(
     if np.isfinite(outer[1]):
         share = (target - inner[1]) / (outer[1] - inner[1])
         return inner[0] + float(np.clip(share, 0.05, 0.95)) * (outer[0] - inner[0])
-    grown = target / inner[1] if inner[1] > 0 else 2.0
+    growth = target / inner[1] if inner[1] > 0 else 2.0
     reach = inner[0] - start if inner[0] != start else 2.0 * sd
-    return start + min(1.05 * grown, 3.0) * reach
+    return start + min(1.05 * growth, 3.0) * reach

@@ -46,9 +46,9 @@ def fit_stages(case: Case, tests: Sequence[Test], unknowns: Unknowns) -> list[St
     left, out = {p.name for p in unknowns.parameters if not of_measurement(p)}, []
     for test in tests:
         if test.frees:
-            own = {n for n in left if any(belongs(n, g) for g in _freed_groups(case, test, left))}
-            out.append(Stage((test,), frozenset(own)))
-            left -= own
+            names = {n for n in left if any(belongs(n, g) for g in _freed_groups(case, test, left))}
+            out.append(Stage((test,), frozenset(names)))
+            left -= names
     together = tuple(t for t in tests if not t.frees)
     return [*out, Stage(together, frozenset(left))] if together else out
 
@@ -76,8 +76,8 @@ def staged_fit(
     values, fits = {**start, **search.begin}, []
     for stage in fit_stages(case, tests, unknowns):
         names = {p.name for p in unknowns.parameters if p.name in stage.free or _measured_in(p, stage.tests)}
-        own = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
-        fits.append(_one(network, stage.tests, own, values, search, progress))
+        free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
+        fits.append(_one(network, stage.tests, free, values, search, progress))
         values |= fits[-1].values
     return fits
 

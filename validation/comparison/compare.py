@@ -118,7 +118,7 @@ class Comparison:
     def limits(self) -> dict[str, dict[str, float]]:
         """Test -> channel -> the largest error that counts as agreement (K)."""
         rows = {t.name: t.channels for t in self.tests}
-        return {name: {c.channel: c.limit_K for c in own if c.limit_K is not None} for name, own in rows.items()}
+        return {name: {c.channel: c.limit_K for c in of if c.limit_K is not None} for name, of in rows.items()}
 
     @property
     def agrees(self) -> bool:
@@ -190,9 +190,9 @@ def judged_error(
 ) -> TestError:
     """The errors of a test, each with the expanded uncertainty it is held against."""
     y = _checked(network, test, values)
-    known = uncertainties(network, test, values, doubt, budget, y)
-    rows = tuple(_against(row, u) for row, u in zip(_rows(test, y), known, strict=True))
-    return TestError(test.name, test.role, rows, tuple(known))
+    uncertainty = uncertainties(network, test, values, doubt, budget, y)
+    rows = tuple(_against(row, u) for row, u in zip(_rows(test, y), uncertainty, strict=True))
+    return TestError(test.name, test.role, rows, tuple(uncertainty))
 
 
 def test_error(network: Network, test: Test, values: Mapping[str, float]) -> TestError:
@@ -230,8 +230,8 @@ def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
 
 def rise_K(channel: Channel) -> float:
     """How far a sensor went from its first reading (K); 0 where it was never read."""
-    seen = channel.y[np.isfinite(channel.y)]
-    return float(np.max(np.abs(seen - seen[0]))) if seen.size else 0.0
+    finite = channel.y[np.isfinite(channel.y)]
+    return float(np.max(np.abs(finite - finite[0]))) if finite.size else 0.0
 
 
 test_error.__test__ = False  # type: ignore[attr-defined]

@@ -78,12 +78,14 @@ def _of_test(
     watch, start = Watch(network, test, values, tangents, FIT), groups(n, instants)
     means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
     for first in range(0, n, length):
-        own = slice(first, min(first + length, n))
-        seen = watch.until(own.stop)
+        rows = slice(first, min(first + length, n))
+        model = watch.until(rows.stop)
         for j, c in enumerate(test.channels):
-            r = np.nan_to_num(c.y[own]) - seen.y[:, j]
-            means[j].add(first, np.column_stack([test.time[own], r, seen.J[:, j]]), np.isfinite(c.y[own]).astype(float))
-        del seen  # before the next stretch takes as much
+            r = np.nan_to_num(c.y[rows]) - model.y[:, j]
+            means[j].add(
+                first, np.column_stack([test.time[rows], r, model.J[:, j]]), np.isfinite(c.y[rows]).astype(float)
+            )
+        del model  # before the next stretch takes as much
     read = [(c, b.means()) for c, b in zip(test.channels, means, strict=True) if np.isfinite(c.y).sum() >= 3]
     return [Segment(test.name, c.name, m[:, 0], m[:, 1], m[:, 2:], c.sigma_K, allowed(c)) for c, m in read]
 

@@ -53,8 +53,8 @@ def thermal(network: Network) -> Network:
 def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, dict[str, float]]:
     """That network, and those of the values that act on it."""
     bare = thermal(network)
-    known = {p.name for p in bare.parameters}
-    return bare, {k: v for k, v in values.items() if k in known}
+    names = {p.name for p in bare.parameters}
+    return bare, {k: v for k, v in values.items() if k in names}
 
 
 def predict(
@@ -163,9 +163,9 @@ class Watch:
         (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]
         each = list(enumerate(zip(tangents, self.heads, strict=True)))
         hot = [i for i, (_, kind) in each if kind == "thermal"]
-        moved_by = {i: _shift(network, test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
-        self.hot = [*hot, *moved_by]
-        moving = [tangents[i] for i in hot], list(moved_by.values())
+        shift_of = {i: _shift(network, test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
+        self.hot = [*hot, *shift_of]
+        moving = [tangents[i] for i in hot], list(shift_of.values())
         self.course = Course(bare, test, heat, self.now, *moving, precision)
         self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
 

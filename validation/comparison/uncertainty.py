@@ -62,9 +62,9 @@ class Uncertainty:
         return self.error_K <= self.limit_K
 
     def document(self) -> dict:
-        own = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
+        components = {"reading_K": self.reading_K, "input_K": self.input_K, "numeric_K": self.numeric_K}
         total = {"u_val_K": self.u_val_K, "error_K": self.error_K, "explained": self.explained}
-        return {"test": self.test, "channel": self.channel, **own, **total, "inputs": dict(self.inputs)}
+        return {"test": self.test, "channel": self.channel, **components, **total, "inputs": dict(self.inputs)}
 
 
 def uncertainties(
@@ -77,16 +77,16 @@ def uncertainties(
     y : (n_time, n_channel) degC, the prediction where it is known already
     """
     plain = predict(network, test, values).y if y is None else y
-    moved = dict(_contributions(network, test, values, doubt, plain))
+    contributions = dict(_contributions(network, test, values, doubt, plain))
     numeric = _time_steps(network, test, values) if budget is None else budget
     out = []
     for j, c in enumerate(test.channels):
         read = np.isfinite(c.y)
         if read.any():
-            inputs = {name: float(u[j]) for name, u in moved.items()}
+            inputs = {name: float(u[j]) for name, u in contributions.items()}
             # estimates of discretisation errors are bounds, as Roache's factor of 3 makes them: expanded uncertainties
-            own = numeric.get(c.name, 0.0) / COVERAGE
-            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, own, _rms((c.y - plain[:, j])[read])))
+            numeric_K = numeric.get(c.name, 0.0) / COVERAGE
+            out.append(Uncertainty(test.name, c.name, c.sigma_K, inputs, numeric_K, _rms((c.y - plain[:, j])[read])))
     return out
 
 

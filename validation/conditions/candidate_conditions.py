@@ -12,16 +12,19 @@ IN_WHOLE_TESTS = ("ambient.offset", "input.offset")
 
 def temporary_effects(scene: Scene) -> tuple[Effect, ...]:
     """Effects that can hold for a while."""
-    known, network = kinds(), scene.network
+    table, network = kinds(), scene.network
     nodes = [p.name for p in network.places.values() if p.kind in ("part", "node", "fluid")]
     everywhere = [k for k in EVERYWHERE if k != "convection.constant" or ambient(network)]
     everyday = [
-        known[k](place) for k in everywhere for place in nodes if network.C[network.places[place].states[0]] > 0
+        table[k](place) for k in everywhere for place in nodes if network.C[network.places[place].states[0]] > 0
     ]
-    return (*everyday, *(known[k](place) for k in AS_DECLARED for place in known[k].places(scene)))
+    return (*everyday, *(table[k](place) for k in AS_DECLARED for place in table[k].places(scene)))
 
 
 def single_test_effects(scene: Scene) -> tuple[Effect, ...]:
     """Effects that can hold in one test: those, and a thermometer of a boundary that was elsewhere."""
-    known = kinds()
-    return (*temporary_effects(scene), *(known[k](place) for k in IN_WHOLE_TESTS for place in known[k].places(scene)))
+    table = kinds()
+    return (
+        *temporary_effects(scene),
+        *(table[k](place) for k in IN_WHOLE_TESTS for place in table[k].places(scene)),
+    )

@@ -34,7 +34,7 @@ from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 TESTS, EVENTS, EACH = 16, 4, 6  # conditions of whole tests, events, and explanations of each that join the others
-TIMED = 3  # of these have ends of their own: a film that changes bends a record later than heat does
+FEW = 3  # of these have ends of their own: a film that changes bends a record later than heat does
 SPANS = 4  # of an event, beyond which its explanations share their ends: each span costs thirty runs
 FEW_TESTS = 6  # whose sets are all tried: of more each must stand for itself
 HOPELESS = 5.0  # nats below nothing, prior included: what has less cannot carry weight
@@ -49,27 +49,27 @@ class Condition:
 
 
 def conditions(
-    evidence: Evidence, case: Case, looked: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
+    evidence: Evidence, case: Case, heat_scan: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
     progress: Callable[[str], None] = no_progress,
 ) -> list[During]:  # fmt: skip
     """The conditions that could carry weight, most probable first.  only : kinds, None for all"""
-    known = {**case.model.values, **evidence.fit.values}
+    values = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
     bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
     if not bases:
         return []
     progress("looking for what held in one test or for a while")
     whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
-    chosen, events = best(single_test_conditions(evidence, whole, known), TESTS), []
-    intervals = likely_intervals(evidence, looked, heat, known, len(bases))
-    for timed, own in side_by_side(lambda s: explained(evidence, bases, s, looked, known), intervals):
-        events.append(timed)
-        chosen += best(own, EACH)
+    selection, events = best(single_test_conditions(evidence, whole, values), TESTS), []
+    intervals = likely_intervals(evidence, heat_scan, heat, values, len(bases))
+    for occurrence, candidates in side_by_side(lambda s: explained(evidence, bases, s, heat_scan, values), intervals):
+        events.append(occurrence)
+        selection += best(candidates, EACH)
     for name, share in declared_conditions(case, evidence, events):
         effects = [During.of(base, name, share / len(bases)) for base in bases]
-        chosen += best(scored_in(evidence, effects, known, odds_against_nothing(share / len(bases))), EACH)
-    ordered = sorted(chosen, key=lambda c: -c.worth)
-    once = {c.effect.name: c.effect for c in reversed(ordered)}  # two stretches may come to the same ends
+        selection += best(scored_in(evidence, effects, values, odds_against_nothing(share / len(bases))), EACH)
+    by_worth = sorted(selection, key=lambda c: -c.worth)
+    once = {c.effect.name: c.effect for c in reversed(by_worth)}  # two stretches may come to the same ends
     return list(reversed(once.values()))
 
 
@@ -108,15 +108,15 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
     scores = score(per_test(projected(evidence.fit, parts)), theta, sd, sign)
     usual = np.array([q.prior_sd for q in parameters])
     every, out = sets_of(len(names)), []
-    for chosen in every:
-        own, seen = together(scores, len(bases), chosen)
-        one = len(chosen) == 1
+    for subset in every:
+        joint, visibility = together(scores, len(bases), subset)
+        one = len(subset) == 1
         form = FORM["one whole test" if one else "several whole tests"]
         share = form / (len(bases) * (len(names) if one else len(every) - len(names)))
-        name = condition_of([evidence.tests[t] for t in chosen])
+        name = condition_of([evidence.tests[t] for t in subset])
         out += [
             Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))
-            for base, b, visible in zip(bases, log_bayes_of(own, usual), seen, strict=True) if visible
+            for base, b, visible in zip(bases, log_bayes_of(joint, usual), visibility, strict=True) if visible
         ]  # fmt: skip
     return out
 
@@ -127,17 +127,17 @@ def sets_of(tests: int) -> list[tuple[int, ...]]:
     return [c for n in range(1, most + 1) for c in combinations(range(tests), n)]
 
 
-def together(scores: Score, bases: int, chosen: Sequence[int]) -> tuple[Score, NDArray[np.bool_]]:
+def together(scores: Score, bases: int, subset: Sequence[int]) -> tuple[Score, NDArray[np.bool_]]:
     """The score of every effect with one amplitude in some tests, and whether it is felt in each of them.
 
     scores : of every effect in every test, test by test
     """
-    rows = np.array([[t * bases + k for t in chosen] for k in range(bases)])
+    rows = np.array([[t * bases + k for t in subset] for k in range(bases)])
     u = scores.u[rows].sum(axis=1)
     V = scores.V[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
     raw = scores.raw[rows].sum(axis=1)
-    own = Score(u, np.diag(np.maximum(V, 0.0)), raw, scores.sign[:bases], np.zeros(bases, int))
-    return own, scores.visible[rows].all(axis=1)
+    joint = Score(u, np.diag(np.maximum(V, 0.0)), raw, scores.sign[:bases], np.zeros(bases, int))
+    return joint, scores.visible[rows].all(axis=1)
 
 
 def condition_of(tests: Sequence[Test]) -> str:
@@ -148,43 +148,43 @@ def condition_of(tests: Sequence[Test]) -> str:
 
 
 def likely_intervals(
-    evidence: Evidence, looked: Scan, heat: Sequence[MissingHeat], values: Mapping[str, float], laws: int
+    evidence: Evidence, heat_scan: Scan, heat: Sequence[MissingHeat], values: Mapping[str, float], laws: int
 ) -> list[Interval]:
     """The stretches that could carry weight once the price of when, what and where is paid."""
-    scores = hat_scores(evidence, looked, values)
+    scores = hat_scores(evidence, heat_scan, values)
     limit = -HOPELESS - odds_against_nothing(0.5 / (laws * len(evidence.tests)))
-    ordered = stretches(scores, heat, neighbours(evidence.fit.network))
-    return [s for s in distinct(ordered, EVENTS) if worth(scores, s) > limit]
+    by_worth = stretches(scores, heat, neighbours(evidence.fit.network))
+    return [s for s in distinct(by_worth, EVENTS) if worth(scores, s) > limit]
 
 
 def explained(
-    evidence: Evidence, bases: Sequence[Effect], s: Interval, looked: Scan, values: Mapping[str, float]
+    evidence: Evidence, bases: Sequence[Effect], s: Interval, heat_scan: Scan, values: Mapping[str, float]
 ) -> tuple[Event, list[Condition]]:
     """An event with its ends at the samples, and all that it may have been, exactly run; the most probable ones with
     ends of their own."""
-    far = reach(looked)
+    far = reach(heat_scan)
     price = 0.5 / (len(bases) * len(evidence.tests))
     like = likeness(evidence, bases, s, values)
-    timed = refined(evidence, like, repeats(evidence, like, s.event, values), far, values)
-    every = best(timed_by(evidence, bases, timed, price, values), EACH)
-    few = TIMED if len(timed.event.every) <= SPANS else 0
-    own = [refined(evidence, c.effect.base, timed.event, far, values) for c in every[:few]]
-    again = [timed_by(evidence, [c.effect.base], t, price, values) for c, t in zip(every, own)]
+    occurrence = refined(evidence, like, repeats(evidence, like, s.event, values), far, values)
+    every = best(timed_by(evidence, bases, occurrence, price, values), EACH)
+    few = FEW if len(occurrence.event.every) <= SPANS else 0
+    intervals = [refined(evidence, c.effect.base, occurrence.event, far, values) for c in every[:few]]
+    again = [timed_by(evidence, [c.effect.base], t, price, values) for c, t in zip(every, intervals)]
     again += [[]] * (len(every) - len(again))
-    return timed.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, again, strict=True)]
+    return occurrence.event, [max([c, *new], key=lambda x: x.worth) for c, new in zip(every, again, strict=True)]
 
 
-def reach(looked: Scan) -> dict[str, float]:
+def reach(heat_scan: Scan) -> dict[str, float]:
     """Test -> how far (s) an end may lie from where knots of heat put it."""
-    return {t: 1.5 * float(knots[1] - knots[0]) for t, knots in looked.knots.items()}
+    return {t: 1.5 * float(knots[1] - knots[0]) for t, knots in heat_scan.knots.items()}
 
 
 def timed_by(
-    evidence: Evidence, bases: Sequence[Effect], timed: TimedEvent, price: float, values: Mapping[str, float]
+    evidence: Evidence, bases: Sequence[Effect], occurrence: TimedEvent, price: float, values: Mapping[str, float]
 ) -> list[Condition]:
     """All that an event may have been.  price : share of what and in which test"""
-    share = price * float(np.exp(max(timed.log_share, -600.0)))
-    effects = [During.of(base, timed.event.name, share) for base in bases]
+    share = price * float(np.exp(max(occurrence.log_share, -600.0)))
+    effects = [During.of(base, occurrence.event.name, share) for base in bases]
     return scored_in(evidence, effects, values, odds_against_nothing(share))
 
 
@@ -204,6 +204,6 @@ def scored_in(
     parts = columns(evidence, effects, values)
     scores = score(total(projected(evidence.fit, parts)), theta, sd, np.array([q.sign for q in parameters], int))
     bayes = log_bayes_of(scores, np.array([q.prior_sd for q in parameters]))
-    moved = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
-    clear = scores.visible & (moved * np.abs(scores.amplitude) > USUAL["excursion"])
-    return [Condition(e, float(b) + prior) for e, b, seen in zip(effects, bayes, clear, strict=True) if seen]
+    excursion = np.max([np.max(np.abs(s.J[:, evidence.p :]), axis=0) / s.weight for s in parts], axis=0)
+    clear = scores.visible & (excursion * np.abs(scores.amplitude) > USUAL["excursion"])
+    return [Condition(e, float(b) + prior) for e, b, visible in zip(effects, bayes, clear, strict=True) if visible]

@@ -85,8 +85,8 @@ def differences(fit: Fit) -> list[Difference]:
     scores = score(per_test(grams), theta, sd, np.zeros(p * len(grams), int))
     each = [(q, test) for test in grams for q in parameters]
     rows = zip(each, fit.theta.tolist() * len(grams), scores.amplitude, scores.sd, scores.visible, strict=True)
-    return [_row(fit.network, q, test, x, float(a), float(s)) for (q, test), x, a, s, seen in rows
-            if seen and felt_elsewhere(q)]  # fmt: skip
+    return [_row(fit.network, q, test, x, float(a), float(s)) for (q, test), x, a, s, visible in rows
+            if visible and felt_elsewhere(q)]  # fmt: skip
 
 
 def felt_elsewhere(q: Parameter) -> bool:
@@ -123,9 +123,9 @@ def sentence(sure: Sequence[Difference], tests: int) -> str:
     """Which test stands against the others, what it would need that cannot be, and what can."""
     if not sure:
         return f"the {tests} tests agree: no calibrated parameter would have to differ between them"
-    own = [d for d in sure if d.test == sure[0].test]
-    fixed = max((d for d in own if not d.possible), key=lambda d: abs(d.sd), default=None)
-    able = max((d for d in own if d.possible), key=lambda d: d.nats, default=None)
+    of_test = [d for d in sure if d.test == sure[0].test]
+    fixed = max((d for d in of_test if not d.possible), key=lambda d: abs(d.sd), default=None)
+    able = max((d for d in of_test if d.possible), key=lambda d: d.nats, default=None)
     clauses = []
     if fixed:
         clauses.append(

@@ -21,16 +21,16 @@ def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:
     for h, p in zip(posterior.hypotheses, P, strict=True):
         share[list(h.members)] += p
     nats = {k: h.log_bayes for k, h in posterior.single.items()}
-    timed = {k: x.event for k, x in enumerate(effects) if isinstance(x, During) and x.event}
+    event_of = {k: x.event for k, x in enumerate(effects) if isinstance(x, During) and x.event}
     groups: list[list[int]] = []
-    for k in sorted(timed, key=lambda k: (-share[k], -nats[k])):
-        group = next((g for g in groups if timed[g[0]].overlap(timed[k]) >= ALIKE), None)
+    for k in sorted(event_of, key=lambda k: (-share[k], -nats[k])):
+        group = next((g for g in groups if event_of[g[0]].overlap(event_of[k]) >= ALIKE), None)
         if group is None:
             groups.append([k])
         else:
             group.append(k)
     probability = [sum(float(p) for h, p in zip(posterior.hypotheses, P) if set(g) & set(h.members)) for g in groups]
-    rows = [_row(posterior, g[0], timed[g[0]], p) for g, p in zip(groups, probability, strict=True)]
+    rows = [_row(posterior, g[0], event_of[g[0]], p) for g, p in zip(groups, probability, strict=True)]
     return tuple(sorted(rows, key=lambda r: -r.probability))
 
 

@@ -63,15 +63,15 @@ class HatScores:
 
     def paths(self, near: Mapping[str, set[str]]) -> list[Path]:
         """Heat at every place, and conduction from there to everything near it."""
-        known = next(iter(self.T.values()))
-        return [Path(a, b) for a in self.places for b in ("", *sorted(near.get(a, set()))) if not b or b in known]
+        places = next(iter(self.T.values()))
+        return [Path(a, b) for a in self.places for b in ("", *sorted(near.get(a, set()))) if not b or b in places]
 
     def ends(self, path: Path, test: str) -> list[tuple[NDArray[np.int64], Array]]:
         """Of either end of a path that has hats: their indices, and the heat (m,) that one unit brings there."""
         m, T = self.knots[test].size, self.T[test]
         away = T[path.place] - T[path.other] if path.other else -np.ones(m)
-        own = [(p, s * away) for p, s in ((path.place, -1.0), (path.other, 1.0)) if p in self.places]
-        return [(self.start[test] + self.places.index(p) * m + np.arange(m), heat) for p, heat in own]
+        signs = [(p, s * away) for p, s in ((path.place, -1.0), (path.other, 1.0)) if p in self.places]
+        return [(self.start[test] + self.places.index(p) * m + np.arange(m), heat) for p, heat in signs]
 
     def at_knots(self, path: Path, test: str) -> tuple[Array, Array]:
         """Score (m,) and covariance (m, m) of a path that is open at single knots."""
@@ -99,27 +99,29 @@ class HatScores:
         return Interval(event, path, float(log_bayes(np.array([u]), np.array([V]), self.usual(path))[0]))
 
 
-def hat_scores(evidence: Evidence, looked: Scan, values: Mapping[str, float]) -> HatScores:
+def hat_scores(evidence: Evidence, heat_scan: Scan, values: Mapping[str, float]) -> HatScores:
     """The scan as an efficient score: calibration and model error projected out."""
     fit, network = evidence.fit, evidence.fit.network
     left = {(s.test, s.channel): s.r for s in fit.parts}
-    grams = projected(fit, [replace(s, r=left[s.test, s.channel]) for s in looked.parts])
+    grams = projected(fit, [replace(s, r=left[s.test, s.channel]) for s in heat_scan.parts])
     start, count = {}, 0
     for name, g in grams.items():
         start[name], count = count, count + g.Zr.size
     theta, sd = extended_prior(fit)
     scores = score(per_test(grams), theta, sd, np.zeros(count, int))
-    T = {t.name: temperatures(evidence, t, looked.knots[t.name], values) for t in evidence.tests}
-    return HatScores(looked.places, looked.knots, start, T, scores, power_scale(network), conductance_scale(network))
+    T = {t.name: temperatures(evidence, t, heat_scan.knots[t.name], values) for t in evidence.tests}
+    return HatScores(
+        heat_scan.places, heat_scan.knots, start, T, scores, power_scale(network), conductance_scale(network)
+    )
 
 
 def temperatures(evidence: Evidence, test: Test, at: Array, values: Mapping[str, float]) -> dict[str, Array]:
     """Place or boundary -> degC at some times of a test, by the fitted model."""
     network = evidence.fit.network
-    own = [p for p in network.places.values() if p.kind in ("part", "node", "fluid")]
-    y = nodes(network, test, values, own)
+    places = [p for p in network.places.values() if p.kind in ("part", "node", "fluid")]
+    y = nodes(network, test, values, places)
     around = {b: np.broadcast_to(np.asarray(test.boundaries[b], float), test.time.shape) for b in network.boundaries}
-    courses = {**{p.name: y[:, i] for i, p in enumerate(own)}, **around}
+    courses = {**{p.name: y[:, i] for i, p in enumerate(places)}, **around}
     return {name: np.interp(at, test.time, course) for name, course in courses.items()}
 
 

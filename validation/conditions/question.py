@@ -48,12 +48,12 @@ def concerns(effect: Effect, about: str) -> bool:
     """Would the answer be yes if this effect were there?"""
     if not isinstance(effect, During):
         return effect.name == about
-    named_event = event(about)
-    if named_event is None:
+    subject = event(about)
+    if subject is None:
         return about in effect.tests or about == effect.condition
     if effect.event is None:
-        return effect.condition in named_event.tests
-    return effect.event.overlap(named_event) > LIKE
+        return effect.condition in subject.tests
+    return effect.event.overlap(subject) > LIKE
 
 
 def best_question(posterior: Posterior) -> Question | None:

@@ -42,14 +42,14 @@ class TimedEvent:
 
 def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], values: Values) -> TimedEvent:
     """Ends of every span in turn, the others where they are.  reach_s : test -> how far an end may move"""
-    spans, log_share = {t: list(own) for t, own in event.spans.items()}, 0.0
+    spans, log_share = {t: list(pairs) for t, pairs in event.spans.items()}, 0.0
     ends: list[tuple[Span, Span]] = []
     usual = float(np.mean([b - a for a, b in event.every]))
     tests = {t.name: t for t in evidence.tests}
-    for test, own in event.spans.items():
-        for i in range(len(own)):
+    for test, pairs in event.spans.items():
+        for i in range(len(pairs)):
             others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-            one = moved(evidence, base, tests[test], own[i], others, reach_s[test], values, usual if ends else None)
+            one = moved(evidence, base, tests[test], pairs[i], others, reach_s[test], values, usual if ends else None)
             spans[test][i] = one.event.spans[test][0]
             log_share += one.log_share
             ends += one.ends
@@ -81,8 +81,8 @@ def moved(
 def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[Array, Array]:
     """Score and variance of what begins at a and ends at b, with the last column beside it."""
     rest = u.size - 1
-    own = V[a, a] + V[b, b] - 2.0 * V[a, b]
-    return u[a] - u[b] + u[rest], own + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
+    variance = V[a, a] + V[b, b] - 2.0 * V[a, b]
+    return u[a] - u[b] + u[rest], variance + V[rest, rest] + 2.0 * (V[a, rest] - V[b, rest])
 
 
 def repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:
@@ -90,7 +90,7 @@ def repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> E
 
     Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
     """
-    every = [(t, span) for t, own in event.spans.items() for span in own]
+    every = [(t, span) for t, pairs in event.spans.items() for span in pairs]
     if len(every) < 2:
         return event
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
@@ -149,7 +149,7 @@ def steps(
     """Efficient score of an effect that begins at each of some instants of a test, and last that of the other spans."""
     last = float(test.time[-1]) + 1.0
     events = [Event.of({test.name: [(t, last)]}) for t in at]
-    rest = Event.of({t: own for t, own in others.items() if own})
+    rest = Event.of({t: pairs for t, pairs in others.items() if pairs})
     effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
     parts = columns(evidence, effects, values)
     theta, sd = extended_prior(evidence.fit)
@@ -162,12 +162,12 @@ def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) 
     """The segments with the columns of calibration and of some effects; only tests are run in which one acts."""
     fit, p = evidence.fit, evidence.p
     network = extended(fit.network, effects)
-    own = network.parameters[-len(effects) :]
+    amplitudes = network.parameters[-len(effects) :]
     values = {**parameter_values(network, base_values), **fit.values}
-    parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, own)
+    parts = segments(network, [t for t in evidence.tests if any(acts_in(e, t) for e in effects)], values, amplitudes)
     new = {(s.test, s.channel): s.J for s in parts}
     return [
-        replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(own))))]))
+        replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(amplitudes))))]))
         for s in evidence.parts
     ]  # fmt: skip
 

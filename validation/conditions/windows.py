@@ -51,9 +51,9 @@ def best_stretch(scores: HatScores, path: Path, test: str, beside: Event | None 
     i, j = np.triu_indices(u.size + 1, 1)
     U, P = U[j] - U[i], P[j, j] - P[i, j] - P[j, i] + P[i, i]
     if beside:
-        own, square, cross = scores.sums(beside, path, test)
+        linear, square, cross = scores.sums(beside, path, test)
         cross = np.concatenate([[0.0], np.cumsum(cross)])
-        U, P = U + own, P + square + 2.0 * (cross[j] - cross[i])
+        U, P = U + linear, P + square + 2.0 * (cross[j] - cross[i])
     bayes = log_bayes(U, P, scores.usual(path))
     if beside:
         covered = np.concatenate([[0.0], np.cumsum(overlap(knots, beside.spans.get(test, ())) > 0)])
@@ -68,7 +68,7 @@ def repeated(scores: HatScores, first: Interval) -> Interval:
     for _ in range(REPEATS):
         more = max((best_stretch(scores, first.path, t, best.event) for t in scores.knots), key=lambda s: s.log_bayes)
         spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in scores.knots}
-        both = Interval(Event.of({t: own for t, own in spans.items() if own}), first.path, more.log_bayes)
+        both = Interval(Event.of({t: pairs for t, pairs in spans.items() if pairs}), first.path, more.log_bayes)
         if not np.isfinite(more.log_bayes) or worth(scores, both) <= worth(scores, best):
             break
         best = both
@@ -83,10 +83,10 @@ def span_of(knots: Array, first: int, stop: int) -> Span:
 
 def turns(one: MissingHeat) -> list[Event]:
     """Each pulse of a place's curves, and those of one sign together, test by test and in all."""
-    own = {test: pulses(*curve) for test, curve in one.heat_W.items()}
-    events = [Event.of({test: [span]}) for test, every in own.items() for span, _ in every]
+    pulses_of = {test: pulses(*curve) for test, curve in one.heat_W.items()}
+    events = [Event.of({test: [span]}) for test, every in pulses_of.items() for span, _ in every]
     for sign in (1.0, -1.0):
-        alike = {t: [span for span, level in every if level * sign > 0] for t, every in own.items()}
+        alike = {t: [span for span, level in every if level * sign > 0] for t, every in pulses_of.items()}
         events += [Event.of({t: spans}) for t, spans in alike.items() if len(spans) > 1]
         if sum(len(spans) > 0 for spans in alike.values()) > 1:
             events.append(Event.of({t: spans for t, spans in alike.items() if spans}))
@@ -130,9 +130,9 @@ def worth(scores: HatScores, s: Interval) -> float:
     """Evidence less the price of when: the log of how many stretches there are among the knots."""
     first, price = True, 0.0
     usual = float(np.mean([b - a for a, b in s.event.every]))
-    for test, own in s.event.spans.items():
+    for test, pairs in s.event.spans.items():
         knots = scores.knots[test]
-        for _ in own:
+        for _ in pairs:
             price += float(np.log(ways(knots.size, None if first else usual / float(knots[1] - knots[0]))))
             first = False
     return s.log_bayes - price
@@ -144,10 +144,10 @@ def ways(n: int, usual: float | None) -> float:
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
 
 
-def distinct(ordered: Sequence[Interval], most: int) -> list[Interval]:
+def distinct(by_worth: Sequence[Interval], most: int) -> list[Interval]:
     """The first of those that overlap."""
     out: list[Interval] = []
-    for s in ordered:
+    for s in by_worth:
         if len(out) < most and all(s.event.overlap(t.event) < ALIKE for t in out):
             out.append(s)
     return out

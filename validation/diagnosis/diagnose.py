@@ -44,7 +44,7 @@ from validation.inference.posterior import (
     unknown_heat,
     weights,
 )
-from validation.inference.refits import NOWHERE, Begun, finely, noise_of_refits, refitted
+from validation.inference.refits import NOWHERE, WarmFits, finely, noise_of_refits, refitted
 from validation.inference.result import Diagnosis
 from validation.inference.several import further
 from validation.inference.steadiness import steady
@@ -115,35 +115,37 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     calm = quiet(evidence)
     against = contradiction(calm.fit, evidence.tests)
     progress("looking for where heat is missing")
-    looked = scan(evidence.fit, evidence.tests)
-    heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    chosen = conditions(calm, case, looked, heat, kinds, progress)
-    known = {**case.model.values, **evidence.fit.values}
-    law_errors = laws(evidence, known) if kinds is None or KIND in kinds else []
+    heat_scan = scan(evidence.fit, evidence.tests)
+    heat = heat_scan.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
+    selection = conditions(calm, case, heat_scan, heat, kinds, progress)
+    values = {**case.model.values, **evidence.fit.values}
+    law_errors = laws(evidence, values) if kinds is None or KIND in kinds else []
     first = len(evidence.effects)
-    evidence = converged(sharpened(joined(evidence, [*chosen, *law_errors], known), range(first, first + len(chosen))))
-    hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress)
-    timed, noise = retimed(evidence, hypotheses, reach(looked)), noise_of_refits(hypotheses)
-    if noise is not None or timed is not evidence:
-        evidence = converged(under(timed, noise or timed.fit.noise))
-        begun = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-        hypotheses, heat = weighed(case, evidence, looked, fit.noise, progress, begun)
+    evidence = converged(
+        sharpened(joined(evidence, [*selection, *law_errors], values), range(first, first + len(selection)))
+    )
+    hypotheses, heat = weighed(case, evidence, heat_scan, fit.noise, progress)
+    update, noise = retimed(evidence, hypotheses, reach(heat_scan)), noise_of_refits(hypotheses)
+    if noise is not None or update is not evidence:
+        evidence = converged(under(update, noise or update.fit.noise))
+        warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
+        hypotheses, heat = weighed(case, evidence, heat_scan, fit.noise, progress, warm_fits)
     every = further(case, evidence, finely(evidence, hypotheses), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
 def weighed(
-    case: Case, evidence: Evidence, looked: Scan, loudest: Noise, progress: Progress, begun: Begun = NOWHERE
+    case: Case, evidence: Evidence, heat_scan: Scan, loudest: Noise, progress: Progress, warm_fits: WarmFits = NOWHERE
 ) -> tuple[list[Hypothesis], list[MissingHeat]]:
     """All hypotheses, those that carry weight refitted, and where heat is missing.
 
-    loudest : the noise that nothing asks for;  begun : members -> a refit of theirs that may go on
+    loudest : the noise that nothing asks for;  warm_fits : members -> a refit of theirs that may go on
     """
-    heat = looked.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
+    heat = heat_scan.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     loud, ones = under(evidence, loudest), singles(evidence)
     every = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
     every = averaged(every, loud, log_evidence(loud) - log_evidence(evidence))
-    return refitted(evidence, answered(evidence, every, case.answers), progress, begun), heat
+    return refitted(evidence, answered(evidence, every, case.answers), progress, warm_fits), heat
 
 
 def sharpened(evidence: Evidence, also: Sequence[int] = (), rounds: int = 2) -> Evidence:

@@ -118,13 +118,13 @@ def odds(posterior: Posterior, sure: tuple[str, ...] = ()) -> tuple[Odds, ...]:
 
 def _odds(e: Evidence, h: Hypothesis, p: float, sure: tuple[str, ...]) -> Odds:
     """A hypothesis with when it held."""
-    own = tuple(e.names[k] for k in h.members)
-    name = " + ".join((*sure, *([h.name(e)] if own or h.heat or not sure else [])))
+    names = tuple(e.names[k] for k in h.members)
+    name = " + ".join((*sure, *([h.name(e)] if names or h.heat or not sure else [])))
     conditions = [x for k in h.members if isinstance(x := e.effects[k], During)]
     tests = tuple(dict.fromkeys(t for x in conditions for t in x.tests))
     spans = [s for x in conditions if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
-    return Odds(name, (*sure, *own), p, h.nats, tests, begin, end)
+    return Odds(name, (*sure, *names), p, h.nats, tests, begin, end)
 
 
 def candidates(
@@ -133,34 +133,34 @@ def candidates(
     """The groups' members, then the others by probability."""
     e = posterior.evidence
     share = inclusion(posterior.hypotheses, len(e.effects))
-    chosen = [k for g in choice.groups for k in g]
-    order = [*chosen, *(int(k) for k in np.argsort(-share, kind="stable") if k not in chosen)]
+    members = [k for g in choice.groups for k in g]
+    order = [*members, *(int(k) for k in np.argsort(-share, kind="stable") if k not in members)]
     size, limit = smallest(e), thresholds(e)
-    lead = single[chosen[0]].fit if chosen else e.fit
+    lead = single[members[0]].fit if members else e.fit
     beside = Beside.of(case, posterior, lead)
     few = order[:ROWS]
     P = probabilities(posterior.hypotheses)
-    fitted = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
-    within = {k: next((h.fit for h in fitted if k in h.members), single[k].fit) for k in few}
-    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in chosen[:1])
+    refits = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
+    within = {k: next((h.fit for h in refits if k in h.members), single[k].fit) for k in few}
+    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in members[:1])
             for k in few]  # fmt: skip
     return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
                  for r, k in zip(rows, few, strict=True))  # fmt: skip
 
 
 def _decided(row: Candidate, k: int, choice: Decision, verdict: Verdict) -> Decided:
-    own = next((g for g in choice.groups if k in g), ())
-    if not own:
+    group = next((g for g in choice.groups if k in g), ())
+    if not group:
         return "cannot-tell" if row.absorbed > 0.995 else "no"
     if verdict in ("outside", "absorbed"):
         return "cannot-tell"
-    return "named" if len(own) == 1 else "group"
+    return "named" if len(group) == 1 else "group"
 
 
 def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
-    own = next((g for g in choice.groups if k in g), ())
-    if own:
-        return tuple(e.names[m] for m in own if m != k)
+    group = next((g for g in choice.groups if k in g), ())
+    if group:
+        return tuple(e.names[m] for m in group if m != k)
     like = np.abs(e.score.cosine[k])
     return tuple(e.names[m] for m in np.argsort(-like) if m != k and like[m] > 0.9)[:5]
 
@@ -168,18 +168,18 @@ def _others(e: Evidence, k: int, choice: Decision) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class Beside:
     """What every refit is set beside.  lead : deviance of each record with the leading effect, empty without one
-    temper : what divides log evidence;  tests, held : the held-out tests and what the model without it leaves there"""
+    temper : what divides log evidence;  tests, hold_out : held-out tests and what the model without it leaves there"""
 
     lead: Mapping[tuple[str, str], float]
     temper: float
     tests: tuple[Test, ...]
-    held: tuple[Segment, ...]
+    hold_out: tuple[Segment, ...]
 
     @classmethod
     def of(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Beside:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
         e, share = posterior.evidence, tempered_by(posterior.hypotheses)
-        return cls(deviance(e, lead) if lead else {}, share, tests, held_out_residuals(tests, e.fit))
+        return cls(deviance(e, lead) if lead else {}, share, tests, hold_out_residuals(tests, e.fit))
 
 
 def _row(
@@ -202,9 +202,9 @@ def _row(
         j = within.unknowns.names.index(e.names[k])
         a = float(within.theta[j])
         row = replace(row, value=a, ci95=interval(a, wide * float(within.sd[j]), scatter(e, k)))
-    new = held_out_residuals(beside.tests, h.fit)
-    hold_out = (rmse(beside.held), rmse(new)) if beside.tests else None
-    tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.held, new, True))
+    new = hold_out_residuals(beside.tests, h.fit)
+    hold_out = (rmse(beside.hold_out), rmse(new)) if beside.tests else None
+    tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.hold_out, new, True))
     return replace(
         row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=hold_out, tests=tests,
         note=against(e, h.fit, beside) if beside.lead and not leads else "",
@@ -228,24 +228,24 @@ def scatter(e: Evidence, k: int) -> float:
 
 def against(e: Evidence, fit: Fit, beside: Beside) -> str:
     """The record in which a rival fits worst beside the leading one."""
-    own = deviance(e, fit)
-    worse = {key: 0.5 * (own[key] - beside.lead[key]) for key in own}
+    rival = deviance(e, fit)
+    worse = {key: 0.5 * (rival[key] - beside.lead[key]) for key in rival}
     (test, channel), nats = max(worse.items(), key=lambda x: x[1])
     return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
 
 
-def held_out_residuals(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
+def hold_out_residuals(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
     """What a fit leaves on tests that nothing was fitted to."""
     return tuple(segments(fit.network, tests, fit.values)) if tests else ()
 
 
 def by_test(
-    before: Sequence[Segment], after: Sequence[Segment], held_out: bool
+    before: Sequence[Segment], after: Sequence[Segment], is_hold_out: bool
 ) -> tuple[tuple[str, float, float, bool], ...]:
     """Name, error (K) before and after, and whether nothing was fitted to it, of each test."""
     names = dict.fromkeys(s.test for s in before)
-    own = [[[s for s in parts if s.test == name] for parts in (before, after)] for name in names]
-    return tuple((name, rmse(old), rmse(new), held_out) for name, (old, new) in zip(names, own, strict=True))
+    pairs = [[[s for s in parts if s.test == name] for parts in (before, after)] for name in names]
+    return tuple((name, rmse(old), rmse(new), is_hold_out) for name, (old, new) in zip(names, pairs, strict=True))
 
 
 def hidden_effects(e: Evidence) -> tuple[DetectionLimit, ...]:
@@ -276,8 +276,8 @@ def contenders(e: Evidence, choice: Decision, single: dict[int, Hypothesis]) -> 
 
 def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:
     """Cosines between the traces of some candidates."""
-    known = {n: k for k, n in enumerate(e.names)}
-    return {a: {b: float(e.score.cosine[known[a], known[b]]) for b in names} for a in names}
+    index = {n: k for k, n in enumerate(e.names)}
+    return {a: {b: float(e.score.cosine[index[a], index[b]]) for b in names} for a in names}
 
 
 def sentence(
@@ -326,8 +326,8 @@ def _group(posterior: Posterior, group: tuple[int, ...], rows: Sequence[Candidat
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}"
         return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
-    known = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
-    likely = [f"{e.names[k]} {percent(p)}" for k, p in known.items() if p >= LEAST_MEMBER or k in group[:2]]
+    probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
+    likely = [f"{e.names[k]} {percent(p)}" for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
     others = f" or {len(group) - len(likely)} less likely ones" if len(group) > len(likely) else ""
     return f"one of {', '.join(likely)}{others}; these tests and sensors cannot tell them apart"
 

@@ -77,10 +77,10 @@ class Above(Effect):
 
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()
-        known: list[Link | Source] = [*network.links, *network.sources]
-        followed = [x for x in known if x.name == target and not x.origin]
+        items: list[Link | Source] = [*network.links, *network.sources]
+        followed = [x for x in items if x.name == target and not x.origin]
         if not followed:
-            names = ", ".join(x.name for x in known if not x.origin)
+            names = ", ".join(x.name for x in items if not x.origin)
             raise InputError(f"no loss or link '{target}'", f"effect '{self.name}'", f"one of {names}")
         law = Shaped(followed[0].law, Ramp(name, level), followed[0].law.temperature, (name,))
         if isinstance(followed[0], Link):

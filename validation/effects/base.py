@@ -28,8 +28,8 @@ class Scene:
     @property
     def recorded(self) -> frozenset[str]:
         """What of the machine is recorded: "speed", "current", ..., and "time"."""
-        known = frozenset(q for q in INPUTS if self.network.signal(q) in self.inputs)
-        return known | ({"time"} if CLOCK in self.inputs else set())
+        quantities = frozenset(q for q in INPUTS if self.network.signal(q) in self.inputs)
+        return quantities | ({"time"} if CLOCK in self.inputs else set())
 
 
 @dataclass(frozen=True)

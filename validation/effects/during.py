@@ -59,13 +59,13 @@ class During(Effect):
         return ()
 
     def extend(self, network: Network) -> Network:
-        grown = self.base.extend(network)
-        own = replace(grown.parameters[-1], prior_sd=USUAL["switched"] * grown.parameters[-1].prior_sd)
-        if own.mapping == "amplitude":
-            return self._conditional(network, grown, own)
-        if own.mapping == "offset":
-            return with_parameter(network, replace(own, name=self.name, targets=self._in_test(own)))
-        return self._copied(network, own)
+        larger = self.base.extend(network)
+        amplitude = replace(larger.parameters[-1], prior_sd=USUAL["switched"] * larger.parameters[-1].prior_sd)
+        if amplitude.mapping == "amplitude":
+            return self._conditional(network, larger, amplitude)
+        if amplitude.mapping == "offset":
+            return with_parameter(network, replace(amplitude, name=self.name, targets=self._in_test(amplitude)))
+        return self._copied(network, amplitude)
 
     def _in_test(self, parameter: Parameter) -> tuple[tuple[str, float], ...]:
         """A boundary alone can be off in a test, and all through it (`lasts`); no sensor, and no clock."""
@@ -80,15 +80,15 @@ class During(Effect):
     def _law(self, law: Law, factor: float = 1.0) -> Law:
         return Shaped(law, TimeWindow(self.condition, factor), law.temperature, (CLOCK,))
 
-    def _conditional(self, network: Network, grown: Network, parameter: Parameter) -> Network:
+    def _conditional(self, network: Network, larger: Network, parameter: Parameter) -> Network:
         """What the other effect adds, times the condition."""
-        links, sources = grown.links[len(network.links) :], grown.sources[len(network.sources) :]
+        links, sources = larger.links[len(network.links) :], larger.sources[len(network.sources) :]
         items: list[Link | Source] = [*links, *sources]
         new = {x.name: f"{x.name}{IN}{self.condition}" for x in items}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
             if any(t in new for t, _ in p.targets) else p
-            for p in (*grown.parameters[:-1], replace(parameter, name=self.name))
+            for p in (*larger.parameters[:-1], replace(parameter, name=self.name))
         )  # fmt: skip
         return replace(
             network, parameters=parameters,

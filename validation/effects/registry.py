@@ -33,15 +33,15 @@ def kinds() -> dict[str, type[Effect]]:
         import_module(module.name)
     root: Any = Effect
     classes = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
-    own = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
-    return dict(sorted(own.items())) | {c.kind: c for c in plugins("effects").values()}
+    builtin = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
+    return dict(sorted(builtin.items())) | {c.kind: c for c in plugins("effects").values()}
 
 
 def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
     """All effects that can sit somewhere in the scene; `only` restricts the kinds."""
-    known = kinds()
-    chosen = [_of(kind, known, "the kinds to look for") for kind in (known if only is None else only)]
-    return tuple(cls(place) for cls in chosen for place in cls.places(scene))
+    table = kinds()
+    classes = [_of(kind, table, "the kinds to look for") for kind in (table if only is None else only)]
+    return tuple(cls(place) for cls in classes for place in cls.places(scene))
 
 
 def _of(kind: str, classes: Mapping[str, type[Effect]], where: str) -> type[Effect]:
@@ -75,8 +75,8 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
 def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
     """The condition, if the scene has what it speaks of."""
     if scene is not None and condition not in scene.inputs:
-        timed_event = event(condition)
-        for test in timed_event.tests if timed_event else (condition,):
+        window = event(condition)
+        for test in window.tests if window else (condition,):
             if test not in scene.tests:
                 raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
                                  f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip
@@ -85,7 +85,7 @@ def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:
     """The network with several effects at zero amplitude. They sit by what the network is without them."""
-    grown = replace(network, declared=network.identities)
+    larger = replace(network, declared=network.identities)
     for one in effects:
-        grown = one.extend(grown)
-    return replace(grown, declared=network.declared)
+        larger = one.extend(larger)
+    return replace(larger, declared=network.declared)

@@ -16,8 +16,8 @@ NOBODY = Identity(why="nothing tells")
 
 def identity(network: Network, place: str) -> Identity:
     """What a place, or the part it belongs to, is."""
-    known = network.identities
-    return known.get(place) or known.get(part_of(network, place), NOBODY)
+    identities = network.identities
+    return identities.get(place) or identities.get(part_of(network, place), NOBODY)
 
 
 def role(network: Network, place: str) -> Role | None:
@@ -122,8 +122,8 @@ def commutators(network: Network) -> list[str]:
 
 def heated(network: Network, kind: str, others: Collection[str]) -> list[str]:
     """Places that carry a loss of this kind, else the others."""
-    own = {s.place: None for s in network.sources if s.kind == kind and not s.origin and s.place in network.places}
-    return list(own) or list(others)
+    places = {s.place: None for s in network.sources if s.kind == kind and not s.origin and s.place in network.places}
+    return list(places) or list(others)
 
 
 def across_air(network: Network, a: str, b: str) -> bool:

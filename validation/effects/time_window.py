@@ -33,12 +33,12 @@ class Event:
 
     @classmethod
     def of(cls, spans: Mapping[str, Iterable[Span]]) -> Event:
-        return cls({t: tuple(sorted((float(a), float(b)) for a, b in own)) for t, own in spans.items()})
+        return cls({t: tuple(sorted((float(a), float(b)) for a, b in pairs)) for t, pairs in spans.items()})
 
     @property
     def name(self) -> str:
         """ "day:600-900,1300-1600s": what reads it back is `event`."""
-        pieces = [f"{t}:{','.join(f'{a:.10g}-{b:.10g}' for a, b in own)}s" for t, own in self.spans.items()]
+        pieces = [f"{t}:{','.join(f'{a:.10g}-{b:.10g}' for a, b in pairs)}s" for t, pairs in self.spans.items()]
         return AND.join(pieces)
 
     @property
@@ -47,7 +47,7 @@ class Event:
 
     @property
     def every(self) -> list[Span]:
-        return [s for own in self.spans.values() for s in own]
+        return [s for pairs in self.spans.values() for s in pairs]
 
     @property
     def words(self) -> str:
@@ -68,7 +68,7 @@ class Event:
         return both / max(every - both, 1e-12)
 
     def document(self) -> dict:
-        spans = [{"test": t, "begin_s": a, "end_s": b} for t, own in self.spans.items() for a, b in own]
+        spans = [{"test": t, "begin_s": a, "end_s": b} for t, pairs in self.spans.items() for a, b in pairs]
         return {"event": self.name, "words": self.words, "spans": spans}
 
 
@@ -79,9 +79,9 @@ def event(name: str) -> Event | None:
     return Event.of(dict(spans)) if len(spans) == len(pieces) else None  # type: ignore[arg-type]
 
 
-def checked(timed: Event, test: str, first: float, last: float, where: str) -> None:
+def checked(occurrence: Event, test: str, first: float, last: float, where: str) -> None:
     """Spans run forwards, lie inside the record and do not overlap."""
-    for begin, end in timed.spans[test]:
+    for begin, end in occurrence.spans[test]:
         if not begin < end:
             raise InputError(
                 f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
@@ -89,7 +89,7 @@ def checked(timed: Event, test: str, first: float, last: float, where: str) -> N
         if begin < first or end > last:
             raise InputError(f"an event from {begin:g} to {end:g} s is outside the record", where,
                              f"{first:g} to {last:g} s")  # fmt: skip
-    for (a, b), (c, d) in pairwise(timed.spans[test]):
+    for (a, b), (c, d) in pairwise(occurrence.spans[test]):
         if c < b:
             raise InputError(f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s", where,
                              "spans that follow one another, or two events")  # fmt: skip
@@ -111,19 +111,19 @@ class TimeWindow:
     factor: float = 1.0
 
     def __call__(self, inputs: Inputs) -> Array:
-        time, timed = np.asarray(inputs[CLOCK], float), event(self.name)
+        time, occurrence = np.asarray(inputs[CLOCK], float), event(self.name)
         if self.name in inputs:
             return self.factor * np.asarray(inputs[self.name], float)
-        if timed is None:
+        if occurrence is None:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
-        here = [own for test, own in timed.spans.items() if f"{RUNNING}{test}" in inputs]
+        here = [pairs for test, pairs in occurrence.spans.items() if f"{RUNNING}{test}" in inputs]
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
 
 
 def lasts(condition: str, test: Test) -> bool:
     """Is a condition this test, or an event from its first sample to its last?  An event's name rounds its times."""
-    timed, slack = event(condition), 0.5 * test.step_s
-    spans = timed.spans.get(test.name, ()) if timed else ()
+    occurrence, slack = event(condition), 0.5 * test.step_s
+    spans = occurrence.spans.get(test.name, ()) if occurrence else ()
     first, last = float(test.time[0]) + slack, float(test.time[-1]) - slack
     return condition == test.name or any(a <= first and b >= last for a, b in spans)
 

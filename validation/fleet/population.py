@@ -132,16 +132,16 @@ def population(units: Sequence[UnitHistory]) -> Population:
     moments, weights = _converged_moments(np.array(H), np.array(eta), prior)
     p, (m, P) = len(names), moments.posterior()
     sd = np.sqrt(np.einsum("uii->ui", P))
-    own = _mean_sd(moments, weights)
-    own[p:] = _mean_sd(moments, weights / weights.sum())[p:]
+    error = _mean_sd(moments, weights)
+    error[p:] = _mean_sd(moments, weights / weights.sum())[p:]
     later = {} if not drifts else {
-        "drift": moments.mean[p:], "drift_sd": own[p:], "drift_spread": np.sqrt(moments.variance[p:]),
+        "drift": moments.mean[p:], "drift_sd": error[p:], "drift_spread": np.sqrt(moments.variance[p:]),
         "unit_drift": m[:, p:], "unit_drift_sd": sd[:, p:],
     }  # fmt: skip
     labels = tuple(u.name for u in units)
     return Population(
-        names, moments.mean[:p], own[:p], np.sqrt(moments.variance[:p]), _equal(moments, weights, p), labels, m[:, :p],
-        sd[:, :p], tuple(_outliers(moments, labels, names)), middle, **later,
+        names, moments.mean[:p], error[:p], np.sqrt(moments.variance[:p]), _equal(moments, weights, p), labels,
+        m[:, :p], sd[:, :p], tuple(_outliers(moments, labels, names)), middle, **later,
     )  # fmt: skip
 
 
@@ -165,10 +165,10 @@ def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments,
         m, P = now.posterior()
         around = (m - now.mean) ** 2 + np.einsum("uii->ui", P)
         variance = np.maximum(np.average(around, axis=0, weights=weights), LOWEST)
-        moved = float(np.max(np.abs(np.log(variance / now.variance))))
+        change = float(np.max(np.abs(np.log(variance / now.variance))))
         now = replace(now, variance=variance).with_mean(weights)
         weights = now.weights()
-        if moved < TOLERANCE:
+        if change < TOLERANCE:
             break
     return now, weights
 

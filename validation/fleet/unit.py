@@ -68,16 +68,16 @@ def statistics(case: Case, test: Test) -> Statistics:
     values = parameter_values(network, case.model.values)
     start = np.array([to_coordinate(p, values[p.name]) for p in unknowns.parameters])
     fit = minimise(network, one.tests, unknowns, start, None, values, ITERATIONS)
-    own = np.array([p.name in free for p in unknowns.parameters], bool)
+    unit = np.array([p.name in free for p in unknowns.parameters], bool)
     information, eta = fit.H.copy(), fit.H @ fit.theta
-    information[own, own] -= unknowns.sd[own] ** -2.0
-    share = np.linalg.solve(information[np.ix_(~own, ~own)], information[np.ix_(~own, own)]).T
-    H = information[np.ix_(own, own)] - share @ information[np.ix_(~own, own)]
+    information[unit, unit] -= unknowns.sd[unit] ** -2.0
+    share = np.linalg.solve(information[np.ix_(~unit, ~unit)], information[np.ix_(~unit, unit)]).T
+    H = information[np.ix_(unit, unit)] - share @ information[np.ix_(~unit, unit)]
     names = tuple(p.name for p in unknowns.parameters if p.name in free)
     r = np.concatenate([s.r for s in fit.parts])
-    ages = np.array([_drift_sd(network, p) for p in unknowns.parameters])[own]
+    ages = np.array([_drift_sd(network, p) for p in unknowns.parameters])[unit]
     rmse = float(np.sqrt(np.mean(r**2)))
-    return Statistics(names, unknowns.sd[own], ages, 0.5 * (H + H.T), eta[own] - share @ eta[~own], rmse, r.size)
+    return Statistics(names, unknowns.sd[unit], ages, 0.5 * (H + H.T), eta[unit] - share @ eta[~unit], rmse, r.size)
 
 
 def _drift_sd(network: Network, p: Parameter) -> float:

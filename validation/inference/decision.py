@@ -84,11 +84,11 @@ def beside(
     """What is missing beside the leads of the groups so far, if to keep silent about it costs more than to say it."""
     lead, last = frozenset(g[0] for g in groups), groups[-1]
     others = lead - set(last)
-    known = [
+    compatible = [
         (h, p) for h, p in zip(hypotheses, P, strict=True) if others <= set(h.members) and set(h.members) & set(last)
     ]
-    both = [(h, p) for h, p in known if len(h.members) > len(groups)]
-    if sum(p for _, p in both) < (1.0 - SILENT) * sum(p for _, p in known):
+    both = [(h, p) for h, p in compatible if len(h.members) > len(groups)]
+    if sum(p for _, p in both) < (1.0 - SILENT) * sum(p for _, p in compatible):
         return ()
     rest = [(h, p) for h, p in both if lead <= set(h.members)]
     return cover(evidence, [h for h, _ in rest], np.array([p for _, p in rest]), lead)

@@ -34,6 +34,6 @@ def smallest(evidence: Evidence) -> Array:
     never = ~s.visible | ~passes(high)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        seen = passes(middle)
-        low, high = np.where(seen, low, middle), np.where(seen, middle, high)
+        detectable = passes(middle)
+        low, high = np.where(detectable, low, middle), np.where(detectable, middle, high)
     return np.where(never, np.inf, high)

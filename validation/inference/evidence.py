@@ -133,9 +133,9 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     values = {**parameter_values(network, case.model.values), **fit.values}
     parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
     exchange(parts, effects, p)
-    own = [replace(s, J=s.J[:, :p]) for s in parts]
+    nuisance_parts = [replace(s, J=s.J[:, :p]) for s in parts]
     fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
-                   CachedSegments(own, nearby=False), error=fit.error)  # fmt: skip
+                   CachedSegments(nuisance_parts, nearby=False), error=fit.error)  # fmt: skip
     evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {}, {})
     there = {}
     for k, a in likely(evidence):
@@ -210,9 +210,9 @@ def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[Any, Sequence[Arra
     if not jumps:
         return np.zeros(0)
     p = len(fit.unknowns.parameters)
-    own = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
+    blocks = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
     theta, sd = extended_prior(fit)
-    scores = score(total(projected(fit, own)), theta, sd, np.zeros(len(jumps), int))
+    scores = score(total(projected(fit, blocks)), theta, sd, np.zeros(len(jumps), int))
     return np.asarray(scores.u - 0.5 * np.diag(scores.V))
 
 
@@ -223,10 +223,10 @@ def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> Non
     predictions would change little; the readings themselves can be exchanged exactly.  p : columns before the effects'
     """
     other = {(a, k): b for k, e in enumerate(effects) if e.whole for a, b in permutations(e.place.split("|"), 2)}
-    known = {(s.test, s.channel): s for s in parts}
+    segment_of = {(s.test, s.channel): s for s in parts}
     for (a, k), b in other.items():
-        for s in (s for s in parts if s.channel == a and (s.test, b) in known):
-            t = known[s.test, b]
+        for s in (s for s in parts if s.channel == a and (s.test, b) in segment_of):
+            t = segment_of[s.test, b]
             s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
 
 
@@ -242,8 +242,8 @@ def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
     exchange(parts, [e.effects[k] for k in few], 0)
     out = {}
     for i, k in enumerate(few):
-        own = [(s.r / s.weight, s.J[:, i] / s.weight) for s in parts if np.any(s.J[:, i])]
-        before, after = sum(float(r @ r) for r, _ in own), sum(float((r - J) @ (r - J)) for r, J in own)
+        pairs = [(s.r / s.weight, s.J[:, i] / s.weight) for s in parts if np.any(s.J[:, i])]
+        before, after = sum(float(r @ r) for r, _ in pairs), sum(float((r - J) @ (r - J)) for r, J in pairs)
         if after < 0.5 * before:
             out[k] = before - after
     return out
@@ -308,8 +308,8 @@ def converged(evidence: Evidence) -> Evidence:
 
 def _calibrated_to(evidence: Evidence, fit: Fit) -> Evidence:
     """The evidence about another calibration; candidates keep the tangents they had."""
-    e, own = evidence, {(s.test, s.channel): s for s in fit.parts}
-    here = [(s, own[s.test, s.channel]) for s in e.parts]
+    e, segment_of = evidence, {(s.test, s.channel): s for s in fit.parts}
+    here = [(s, segment_of[s.test, s.channel]) for s in e.parts]
     parts = tuple(replace(s, r=n.r, J=np.column_stack([n.J, s.J[:, e.p :]])) for s, n in here)
     return weighed(e.tests, fit, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
 
@@ -324,31 +324,31 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
     """The noise of what calibration, model error and some effects leave, by tangents."""
     e, p = evidence, evidence.p
     G, (theta, sd) = total(e.grams), extended_prior(e.fit)
-    chosen, q = list(members), theta.size
-    A = np.block([[G.JJ, G.JZ[:, chosen]], [G.JZ[:, chosen].T, G.ZZ[np.ix_(chosen, chosen)]]])
-    wide = np.array([widened(e.parameters[k]).prior_sd for k in chosen])
+    columns, q = list(members), theta.size
+    A = np.block([[G.JJ, G.JZ[:, columns]], [G.JZ[:, columns].T, G.ZZ[np.ix_(columns, columns)]]])
+    wide = np.array([widened(e.parameters[k]).prior_sd for k in columns])
     weight = np.concatenate([sd, wide]) ** -2.0
-    b = np.concatenate([G.Jr, G.Zr[chosen]]) - weight * np.concatenate([theta, np.zeros(len(chosen))])
+    b = np.concatenate([G.Jr, G.Zr[columns]]) - weight * np.concatenate([theta, np.zeros(len(columns))])
     x = np.linalg.solve(A + np.diag(weight), b)
     error, left = e.fit.error, []
     for s in e.parts:
-        moved = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in chosen]] @ x[q:]
-        left.append(replace(s, r=s.r - moved - (error.of(s) @ x[p:q] if error else 0.0)))
+        response = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in columns]] @ x[q:]
+        left.append(replace(s, r=s.r - response - (error.of(s) @ x[p:q] if error else 0.0)))
     return fit_noise(left)
 
 
 def refit(
     evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = (),
-    begun: float | None = None,
+    objective: float | None = None,
 ) -> Fit:  # fmt: skip
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
     tangents : of all these where the fit begins, by default those without the candidates
-    begun : objective there, by default that without the candidates
+    objective : there, by default that without the candidates
     """
     network, unknowns, fixed = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
-    before = fit.objective if begun is None else begun
+    before = fit.objective if objective is None else objective
     rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, fixed, 8,
                      CachedSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
@@ -388,10 +388,10 @@ def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finel
     finely : to its end, with tangents of its own there
     """
     network, unknowns, fixed = with_members(evidence, members)
-    moved, fit = before.unknowns.names != unknowns.names, evidence.fit
-    known = CachedSegments(before.parts, nearby=moved, renewed=True, stale=True)
+    other_times, fit = before.unknowns.names != unknowns.names, evidence.fit
+    cache = CachedSegments(before.parts, nearby=other_times, renewed=True, stale=True)
     steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
-    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, fixed, steps, known, draft=not finely,
+    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, fixed, steps, cache, draft=not finely,
                     worth=worth, error=fit.error)  # fmt: skip
 
 

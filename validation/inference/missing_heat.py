@@ -128,8 +128,8 @@ class Scan:
         A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
         JZ = np.zeros((cov.shape[0], start[-1]))
         for d, name in enumerate(self.knots):
-            g, own, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
-            A[block, block], u[block], JZ[:, block] = g.ZZ[own, own], g.Zr[own], g.JZ[:, own]
+            g, rows, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
+            A[block, block], u[block], JZ[:, block] = g.ZZ[rows, rows], g.Zr[rows], g.JZ[:, rows]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
         sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
         evidences = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
@@ -144,8 +144,8 @@ class Scan:
         p, most = self.sd.size, 0.0
         for s in self.parts:
             _, q, _ = heat_W[s.test]
-            own = slice(p + i * q.size, p + (i + 1) * q.size)
-            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow[:p] + s.J[:, own] @ q), initial=0.0)))
+            columns = slice(p + i * q.size, p + (i + 1) * q.size)
+            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow[:p] + s.J[:, columns] @ q), initial=0.0)))
         return most
 
 
@@ -161,12 +161,12 @@ def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> lis
 
 def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
     """The tangents of a heat input at every place and knot."""
-    own = solids(fit.network)
-    places, knots = tuple(p.name for p in own), {t.name: knots_of(t, knot_s) for t in tests}
+    bodies = solids(fit.network)
+    places, knots = tuple(p.name for p in bodies), {t.name: knots_of(t, knot_s) for t in tests}
 
     def of_test(test: Test) -> tuple[list[Segment], Array]:
         network, hats = with_heat_inputs(fit.network, places, knots[test.name])
-        T = at_knots(test, nodes(fit.network, test, fit.values, own), knots[test.name])
+        T = at_knots(test, nodes(fit.network, test, fit.values, bodies), knots[test.name])
         return segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats)), T
 
     each = side_by_side(of_test, tests, lambda test: len(test.time))
@@ -228,8 +228,8 @@ def _evidence(A: Array, u: Array, sizes: Array, root: Array) -> tuple[Array, Arr
     eigenvalues, vectors = np.linalg.eigh(root.T @ A @ root)
     basis = root @ vectors
     b, square = basis.T @ u, sizes[:, None] ** 2
-    grown = 1.0 + square * np.maximum(eigenvalues, 0.0)
-    evidence = 0.5 * np.sum(square * b**2 / grown - np.log(grown), axis=1)
+    denominator = 1.0 + square * np.maximum(eigenvalues, 0.0)
+    evidence = 0.5 * np.sum(square * b**2 / denominator - np.log(denominator), axis=1)
     best = int(np.argmax(evidence))
-    share = square[best] / grown[best]
+    share = square[best] / denominator[best]
     return evidence, basis @ (share * b), np.asarray(np.sqrt(basis**2 @ share))

@@ -92,11 +92,13 @@ def prior_shares(evidence: Evidence) -> Array:
     weight = {k: RARE[k].share if k in RARE else 1.0 for k in faults}
     whole = {f: sum(w for k, w in weight.items() if faults[k] == f) for f in (False, True)}
     share = {k: PRIOR["fault" if faults[k] else "effect"].share * w / whole[faults[k]] for k, w in weight.items()}
-    own = {k: w / kinds.count(k) for k, w in share.items()}
+    alone = {k: w / kinds.count(k) for k, w in share.items()}
     condition, law = PRIOR["condition"].share, PRIOR["effect"].share * RARE["law"].share
 
     def of(e: Effect) -> float:
-        return condition * e.share if isinstance(e, During) else law * e.share if isinstance(e, Above) else own[e.kind]
+        return (
+            condition * e.share if isinstance(e, During) else law * e.share if isinstance(e, Above) else alone[e.kind]
+        )
 
     return np.array([of(e) for e in evidence.effects])
 

@@ -31,9 +31,9 @@ from validation.measurement.noise import Noise
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
-Begun = Mapping[tuple[int, ...], Fit]
+WarmFits = Mapping[tuple[int, ...], Fit]
 Beside = tuple[int, Fit, Mapping[int, Sequence[Array]]]
-NOWHERE: Begun = MappingProxyType({})
+NOWHERE: WarmFits = MappingProxyType({})
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 ABSENT = 0.02  # of its usual size: an effect this small is not there
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
@@ -47,33 +47,33 @@ NEARLY, MOST_LINEAR = 0.4, 3  # linear amplitude, and how many, of effects that 
 
 def refitted(
     evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress,
-    begun: Begun = NOWHERE,
+    warm_fits: WarmFits = NOWHERE,
 ) -> list[Hypothesis]:  # fmt: skip
     """The hypotheses with those that carry weight refitted, until none does that is not.
 
-    begun : members -> a refit of theirs under another noise
+    warm_fits : members -> a refit of theirs under another noise
     """
     out = list(hypotheses)
     far = dict.fromkeys([*exchanged(evidence, out), *far_from_prior(evidence, out), *rivals(out)])
-    together(evidence, out, list(far), progress, begun)
+    together(evidence, out, list(far), progress, warm_fits)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
         if not due:
             break
         for size in (1, 2):  # two begin where one of them was fitted alone
-            together(evidence, out, [i for i in due if len(out[i].members) == size], progress, begun)
+            together(evidence, out, [i for i in due if len(out[i].members) == size], progress, warm_fits)
     return with_smaller_shortfall(hypotheses, out)
 
 
 def together(
-    evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None], begun: Begun
+    evidence: Evidence, out: list[Hypothesis], due: Sequence[int], progress: Callable[[str], None], warm_fits: WarmFits
 ) -> None:
     """Refit some hypotheses side by side (the kernel frees the GIL); none depends on another of them."""
     for i in due:
         progress(f"refitting {out[i].name(evidence)}")
     near = all_beside(evidence, out, due)
-    refitted = side_by_side(lambda i: laplace(evidence, out[i], near.get(i), begun), due)
+    refitted = side_by_side(lambda i: laplace(evidence, out[i], near.get(i), warm_fits), due)
     for i, h in zip(due, refitted, strict=True):
         out[i] = h
 
@@ -113,8 +113,8 @@ def _corrected(
 
 def shares(hypotheses: Sequence[Hypothesis]) -> Array:
     """Probabilities; of what has a name those without heat of unknown cause, which is not refitted and may hide it."""
-    P, named = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
-    return np.where(named, P / max(float(P[named].sum()), 1e-300), P)
+    P, with_cause = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
+    return np.where(with_cause, P / max(float(P[with_cause].sum()), 1e-300), P)
 
 
 def fitted_alone(hypotheses: Sequence[Hypothesis], members: Sequence[int]) -> tuple[int, Fit] | None:
@@ -152,18 +152,19 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     fit = evidence.fit
     pull = dict(zip(fit.unknowns.names, np.abs(fit.theta / fit.unknowns.sd), strict=True))
     alone = [(i, evidence.twins[h.members[0]]) for i, h in enumerate(hypotheses) if len(h.members) == 1 and not h.fit]
-    ranked = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
-    return [i for _, i in ranked[:MOST_LINEAR]]
+    order = sorted((-pull[twin], i) for i, twin in alone if twin and pull[twin] > STRAIN)
+    return [i for _, i in order[:MOST_LINEAR]]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun: Begun = NOWHERE,
+def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, warm_fits: WarmFits = NOWHERE,
             finely: bool = False) -> Hypothesis:  # fmt: skip
     """The hypothesis with the best of its refits and the evidence that follows.
 
-    near : one of two effects, its fit without the other, and tangents there;  begun : members -> a refit that may go on
+    near : one of two effects, its fit without the other, and tangents there
+    warm_fits : members -> a refit that may go on
     finely : to its end
     """
-    before, fits = begun.get(h.members), []
+    before, fits = warm_fits.get(h.members), []
     if before is not None:
         with suppress(NoSolution):
             fits.append(refit_onwards(evidence, h.members, before, finely))
@@ -180,7 +181,7 @@ def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, begun
 
 def to_the_end(evidence: Evidence, h: Hypothesis) -> Hypothesis:
     """A refitted hypothesis, refitted further to its end."""
-    return laplace(evidence, h, begun={h.members: h.fit} if h.fit else NOWHERE, finely=True)
+    return laplace(evidence, h, warm_fits={h.members: h.fit} if h.fit else NOWHERE, finely=True)
 
 
 def finely(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:

@@ -57,8 +57,8 @@ class Candidate:
     tests: tuple[tuple[str, float, float, bool], ...] = ()
 
     def document(self) -> dict:
-        own = ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K", "tests")
-        out = {k: v for k, v in vars(self).items() if k not in own}
+        special = ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K", "tests")
+        out = {k: v for k, v in vars(self).items() if k not in special}
         out["amplitude"] = {"value": self.value, "unit": self.unit, "ci95": list(self.ci95)}
         out["rmse_K"], out["holdout_rmse_K"] = _pair(self.rmse_K), _pair(self.holdout_rmse_K)
         out["tests"] = [dict(zip(("test", "before", "after", "held_out"), t, strict=True)) for t in self.tests]

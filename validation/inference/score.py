@@ -38,8 +38,8 @@ class Gram:
 
     def of(self, few: Sequence[int]) -> Gram:
         """With some of its effects only."""
-        chosen = list(few)
-        return replace(self, JZ=self.JZ[:, chosen], ZZ=self.ZZ[np.ix_(chosen, chosen)], Zr=self.Zr[chosen])
+        columns = list(few)
+        return replace(self, JZ=self.JZ[:, columns], ZZ=self.ZZ[np.ix_(columns, columns)], Zr=self.Zr[columns])
 
 
 def gram(parts: Sequence[Segment], noise: Noise, p: int) -> dict[str, Gram]:
@@ -55,10 +55,10 @@ def grams(parts: Sequence[tuple[Segment, Sequence[Array]]], noise: Noise, p: int
     out: dict[str, Array] = {}
     for s, blocks in parts:
         columns = [*blocks, s.r[:, None]]
-        seen = [np.flatnonzero(X.any(axis=0)) for X in columns]
+        nonzero = [np.flatnonzero(X.any(axis=0)) for X in columns]
         first = np.cumsum([0, *(X.shape[1] for X in columns)])
-        X = noise.whiten(s, np.column_stack([X[:, k] for X, k in zip(columns, seen, strict=True)]))
-        at = np.concatenate([k + begin for k, begin in zip(seen, first)])
+        X = noise.whiten(s, np.column_stack([X[:, k] for X, k in zip(columns, nonzero, strict=True)]))
+        at = np.concatenate([k + begin for k, begin in zip(nonzero, first)])
         G = out.setdefault(s.test, np.zeros((first[-1], first[-1])))
         G[np.ix_(at, at)] += X.T @ X
     return {test: Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))

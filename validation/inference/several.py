@@ -29,10 +29,10 @@ def further(
 ) -> list[Hypothesis]:
     """The hypotheses, with larger ones where two effects explain most, or heat of unknown cause explains more."""
     out, weight = list(hypotheses), weights(hypotheses)
-    fitted = [i for i, h in enumerate(out) if usable(evidence, h)]
-    if not fitted:
+    refits = [i for i, h in enumerate(out) if usable(evidence, h)]
+    if not refits:
         return out
-    first = max(fitted, key=lambda i: weight[i])
+    first = max(refits, key=lambda i: weight[i])
     best = out[first]
     goes_on = len(best.members) > 1 or weight[first] < max((w for w, h in zip(weight, out) if h.heat), default=-np.inf)
     while goes_on and len(best.members) < MOST:
@@ -51,8 +51,8 @@ def usable(evidence: Evidence, h: Hypothesis) -> bool:
 
 def pays(hypotheses: Sequence[Hypothesis], before: Hypothesis, new: Hypothesis) -> bool:
     """Is an explanation more probable than the one that it adds an effect to?"""
-    *_, old, added = weights([*hypotheses, before, new])
-    return bool(added > old)
+    *_, old, weight = weights([*hypotheses, before, new])
+    return bool(weight > old)
 
 
 def with_one_more(

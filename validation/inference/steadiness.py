@@ -37,18 +37,18 @@ def differs(choice: Decision, other: Decision) -> bool:
     """Does another decision say something else: that nothing or another thing is missing, or the same less surely?"""
     if not choice.groups or len(choice.groups) != len(other.groups):
         return (choice.verdict, len(choice.groups)) != (other.verdict, len(other.groups))
-    known = {k for g in choice.groups for k in g}
-    return not {g[0] for g in other.groups} <= known or (choice.verdict == "named" != other.verdict)
+    members = {k for g in choice.groups for k in g}
+    return not {g[0] for g in other.groups} <= members or (choice.verdict == "named" != other.verdict)
 
 
 def united(groups: tuple[tuple[int, ...], ...], more: tuple[tuple[int, ...], ...]) -> tuple[tuple[int, ...], ...]:
     """The groups, each with the members of that other one which shares an effect with it or stands in its place; what
     one group has joins no other."""
-    out, own = [], {k for g in groups for k in g}
+    out, members = [], {k for g in groups for k in g}
     for i, g in enumerate(groups):
         alike = [m for m in more if set(m) & set(g)] or list(more[i : i + 1])
-        out.append((*g, *dict.fromkeys(k for m in alike for k in m if k not in own)))
-        own |= set(out[-1])
+        out.append((*g, *dict.fromkeys(k for m in alike for k in m if k not in members)))
+        members |= set(out[-1])
     return tuple(out)
 
 
@@ -62,8 +62,8 @@ def at_every_second(posterior: Posterior, first: int) -> Posterior:
               - log_bayes(e, h.fit, h.members) for h in every if h.fit and h.members}  # fmt: skip
     best = max((h for h in every if h.members in gained), key=lambda h: h.log_bayes, default=None)
     share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
-    moved = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
-    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, moved, strict=True))
+    increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
+    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))
     return replace(posterior, evidence=new, hypotheses=now)
 
 

@@ -91,8 +91,8 @@ def fault(test: Test, channel: Channel) -> Fault | None:
 
 def others_move(test: Test, channel: Channel, when: slice) -> bool:
     """Does every second of the other channels move by more than noise can?"""
-    own = [c.y[when] for c in test.channels if c is not channel and np.isfinite(c.y[when]).any()]
-    return bool(own) and float(np.median([np.nanmax(y) - np.nanmin(y) for y in own])) > FORM["moving"]
+    others = [c.y[when] for c in test.channels if c is not channel and np.isfinite(c.y[when]).any()]
+    return bool(others) and float(np.median([np.nanmax(y) - np.nanmin(y) for y in others])) > FORM["moving"]
 
 
 def jumps_after(y: NDArray[np.float64], first: int, last: int) -> bool:

@@ -81,7 +81,7 @@ ELLS = (ELL, 600.0, 2400.0)  # s, of the slow part: the usual one, a shorter and
 SLOWS = np.array([0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0])  # variance over the white one, by decades
 _AT = [(f, e, b) for f, e, b in product(range(len(FASTS)), range(len(ELLS)), range(len(SLOWS))) if b or ELLS[e] == ELL]
 GRID = tuple(Shape(*FASTS[f], float(SLOWS[b]), ELLS[e]) for f, e, b in _AT)
-CHOSEN = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid
+GRID_INDEX = tuple(np.array(_AT).T)  # of all fast parts, lengths and slow parts those on the grid
 
 
 class Bases(NamedTuple):
@@ -100,7 +100,7 @@ class Bases(NamedTuple):
         scale = 1.0 + SLOWS[:, None] * self.slow[:, :, None, :]
         norm = (1.0 / scale) @ square
         logdet = self.logdet[:, None, None] + np.log(scale).sum(axis=-1)
-        return norm[CHOSEN], logdet[CHOSEN]
+        return norm[GRID_INDEX], logdet[GRID_INDEX]
 
 
 @lru_cache(maxsize=16)
@@ -199,10 +199,10 @@ def fit_noise(parts: Sequence[Segment]) -> Noise:
     """Maximum likelihood per channel, all its tests together, each in proportion to its weight."""
     channels = list(dict.fromkeys(s.channel for s in parts))
     square, logdet, count = (np.zeros((len(channels), k)) for k in (len(GRID), len(GRID), 1))
-    for own in _tests(parts):
-        time = np.unique(np.concatenate([s.time for s in own]))
-        norms, ld = _bases(stamp(time)).judged(np.column_stack([_complete(s, time) for s in own]))
-        for s, norm in zip(own, norms.T, strict=True):
+    for segments in _tests(parts):
+        time = np.unique(np.concatenate([s.time for s in segments]))
+        norms, ld = _bases(stamp(time)).judged(np.column_stack([_complete(s, time) for s in segments]))
+        for s, norm in zip(segments, norms.T, strict=True):
             at = channels.index(s.channel)
             square[at] += norm
             logdet[at] += ld

@@ -27,7 +27,7 @@ from validation.measurement.blocks import INSTANTS
 Array = NDArray[np.float64]
 Sensor = tuple[str, Row, float, float]  # name, row over z, sigma (K), lag (s)
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0)  # s: those people choose
-ALLOWED = 0.5  # of a sensor's standard deviation: its residual is then 12 % larger than it need be
+TOLERANCE = 0.5  # of a sensor's standard deviation: its residual is then 12 % larger than it need be
 MOST, MOMENTS = 20_000, 1_000  # instants of a record that are looked at; those that count, where inputs move most
 SLOWEST = 1e-6  # 1/s: what settles in more than eleven days drifts
 SMALL = 1e-4  # below, g(x) is x / 24
@@ -115,13 +115,13 @@ def sample_step(
     usual = float(np.median(np.diff(time)))
     most = time[-1] / INSTANTS if wished is None else min(wished, time[-1] / INSTANTS)
     steps = sorted({usual, *(h for h in (*STEPS, *([wished] if wished else [])) if usual < h <= most)})
-    felt, chosen = _Felt.of(network, time, inputs, around, level), SampleStep(steps[0], 0.0, None, None, None)
+    felt, best = _Felt.of(network, time, inputs, around, level), SampleStep(steps[0], 0.0, None, None, None)
     for h in steps[1:]:
         worst = felt.worst(h, sensors)
-        if worst.error_K > ALLOWED * min(sigma for _, _, sigma, _ in sensors):
+        if worst.error_K > TOLERANCE * min(sigma for _, _, sigma, _ in sensors):
             break
-        chosen = worst
-    return chosen
+        best = worst
+    return best
 
 
 @dataclass(frozen=True)
@@ -165,8 +165,8 @@ class _Felt:
         push, best = self.modes.weight @ self.heat, SampleStep(h, 0.0, None, None, None)
         for name, row, _, lag in sensors:
             inside = row.index < len(self.states)
-            own = row.weights[inside] @ self.modes.shape[row.index[inside]]
-            parts = np.abs(change @ (own[:, None] * push).T)
+            modal = row.weights[inside] @ self.modes.shape[row.index[inside]]
+            parts = np.abs(change @ (modal[:, None] * push).T)
             late = parts @ interpolation_error(h / np.maximum(1.0 / self.modes.rate + lag, 1e-9))
             if (error := float(np.sqrt(np.sum(late**2) / at.size))) > best.error_K:
                 best = SampleStep(h, error, name, *self._fastest(parts[int(late.argmax())]))

@@ -53,11 +53,11 @@ def with_motion(network: Network, tests: Sequence[Test]) -> Network:
 
 def _following(network: Network, p: Parameter, signal: str, level: float) -> Network:
     """The network in which the links of a parameter may grow with a signal."""
-    own = [x for x in network.links if (x.name, 1.0) in p.targets and _still(x)]
-    if p.mapping != "log" or not own:
+    links = [x for x in network.links if (x.name, 1.0) in p.targets and _still(x)]
+    if p.mapping != "log" or not links:
         return network
-    names = [f"{x.name} by {signal}" for x in own]
-    for link, name in zip(own, names, strict=True):
+    names = [f"{x.name} by {signal}" for x in links]
+    for link, name in zip(links, names, strict=True):
         assert isinstance(link.law, Fixed)
         law = InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
         network = copy_link(network, link, name, law)
@@ -136,10 +136,10 @@ class Constants:
 
     def by_sensor(self, j: int, z: Array) -> Iterator[tuple[int, float]]:
         """Where in the vector, and how much (K) its reading at z = [x; u] changes with it."""
-        i, own = self.first(j), _at(self.channels[j].row, z)
+        i, reading = self.first(j), _at(self.channels[j].row, z)
         for k, (row, _) in enumerate(self.beside[j]):
-            yield i + k, _at(row, z) - own
-        yield i + len(self.beside[j]), own - _at(self.air, z)
+            yield i + k, _at(row, z) - reading
+        yield i + len(self.beside[j]), reading - _at(self.air, z)
         yield i + len(self.beside[j]) + 1, 1.0
 
     def bias(self, j: int, w: Array) -> float:

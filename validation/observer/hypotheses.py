@@ -24,19 +24,19 @@ FORGETS_S = 1800.0  # half an hour: a motor's own time constant
 SURE = 0.95  # probability from which a hypothesis is said
 OVER = 0.5  # and below which it is withdrawn
 DRIFT = 20.0  # times a sensor's accuracy: how far a broken one is off
-ALLOWED = 2.0  # deviations of the table of doubt: missing heat beyond is a failure of the model
+TOLERANCE = 2.0  # deviations of the table of doubt: missing heat beyond is a failure of the model
 
 
 @dataclass
 class Hypotheses:
-    """names (h,) : sensors, then bodies;  spread, allowed (h,) K or W, deviations of a fault and of what is none
+    """names (h,) : sensors, then bodies;  spread, tolerance (h,) K or W, deviations of a fault and of what is none
 
     prior (h,) log odds;  score, information (h,) : a and V
     """
 
     names: tuple[str, ...]
     spread: Array
-    allowed: Array
+    tolerance: Array
     prior: Array
     score: Array
     information: Array
@@ -53,7 +53,7 @@ class Hypotheses:
     @property
     def amplitude(self) -> Array:
         """(h,) K or W, shrunk by the prior."""
-        return self.score / (self.information + 1.0 / (self.spread**2 + self.allowed**2))
+        return self.score / (self.information + 1.0 / (self.spread**2 + self.tolerance**2))
 
     def _evidence(self, variance: Array) -> Array:
         """(h,) e(v)"""
@@ -63,7 +63,7 @@ class Hypotheses:
     @property
     def probability(self) -> Array:
         """(h,) of each against nothing and the others."""
-        gain = self._evidence(self.spread**2 + self.allowed**2) - self._evidence(self.allowed**2)
+        gain = self._evidence(self.spread**2 + self.tolerance**2) - self._evidence(self.tolerance**2)
         log = np.concatenate([[0.0], self.prior + gain / temper(float(gain.max(initial=0.0)))])
         weight = np.exp(log - log.max())
         return np.asarray(weight[1:] / weight.sum())
@@ -74,12 +74,12 @@ class Hypotheses:
 
 
 def hypotheses(
-    sensors: tuple[str, ...], sigma: Array, allowed: Array, bodies: tuple[str, ...], table_sd: Array
+    sensors: tuple[str, ...], sigma: Array, tolerance_K: Array, bodies: tuple[str, ...], table_sd: Array
 ) -> Hypotheses:
-    """sigma, allowed (s,) K of the sensors;  table_sd (m,) W that the table of doubt allows the bodies"""
+    """sigma, tolerance_K (s,) K of the sensors;  table_sd (m,) W that the table of doubt allows the bodies"""
     fault = PRIOR["fault"].share / max(len(sensors), 1)
     fails = sum(PRIOR[name].share for name in ("effect", "condition", "heat")) / max(len(bodies), 1)
     log = np.log(np.array([*[fault] * len(sensors), *[fails] * len(bodies)]) / PRIOR["nothing"].share)
     spread = np.concatenate([DRIFT * sigma, USUAL["switched"] * table_sd])
-    own = np.concatenate([allowed, np.zeros(len(bodies))])
-    return Hypotheses((*sensors, *bodies), spread, own, log, np.zeros(spread.size), np.zeros(spread.size))
+    tolerance = np.concatenate([tolerance_K, np.zeros(len(bodies))])
+    return Hypotheses((*sensors, *bodies), spread, tolerance, log, np.zeros(spread.size), np.zeros(spread.size))

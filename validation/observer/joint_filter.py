@@ -68,11 +68,11 @@ class _Run:
         self.of, self.test, self.process, self.terms = of, test, of.process, of.terms
         self.n = self.process.size
         self.w, self.q = of.w, np.zeros(len(of.bodies))
-        driven = record(test, {})
-        self.time = np.asarray(driven.time, float)
-        self.f = self.terms.factors(driven)
+        course = record(test, {})
+        self.time = np.asarray(course.time, float)
+        self.f = self.terms.factors(course)
         names = self.process.network.boundaries
-        self.u = np.column_stack([np.broadcast_to(driven.boundaries[b], self.time.shape) for b in names])
+        self.u = np.column_stack([np.broadcast_to(course.boundaries[b], self.time.shape) for b in names])
         self.at = {c.name: j for j, c in enumerate(of.constants.channels)}
         self.x, self.P = self._begun(of.noise)
         self.along = np.zeros((self.x.size, self.process.slow.size))
@@ -121,9 +121,9 @@ class _Run:
         C = self.terms.C
         into[self.process.slow, np.arange(s)] = C[self.process.slow]
         into[:, s:] = h * B
-        own = np.zeros(C.size)
-        own[self.process.slow] = C[self.process.slow]
-        Phi = np.linalg.solve(np.diag(own) + h * G, into)[self.process.slow]
+        diagonal = np.zeros(C.size)
+        diagonal[self.process.slow] = C[self.process.slow]
+        Phi = np.linalg.solve(np.diag(diagonal) + h * G, into)[self.process.slow]
         self.along = self.process.balance(G)
         P = self.P
         top = Phi @ P
@@ -197,8 +197,8 @@ class _Terms:
             for target, value in slope.items():
                 if target in at:
                     self.by[at[target], j] += value
-        own = [capacity_slopes(self.network, slope) for slope in moves]
-        self.C_by = np.reshape(own, (-1, self.n)).T * (self.network.C / np.maximum(self.C, 1e-30))[:, None]
+        capacity_by = [capacity_slopes(self.network, slope) for slope in moves]
+        self.C_by = np.reshape(capacity_by, (-1, self.n)).T * (self.network.C / np.maximum(self.C, 1e-30))[:, None]
 
     def _unit(self, z: Array) -> Array:
         """(ne, n) heat into every state by a coefficient of one."""
@@ -219,17 +219,19 @@ class _Terms:
         K = self.every.matrix(now)
         G, unit = K[:, : self.n].copy(), self._unit(z) if self._bent else np.empty((0, 0))
         for e, law, hot, cold in self._bent:
-            for row, moved in ((hot, _slope(law, hot, cold, z, 0)), (cold, _slope(law, hot, cold, z, 1))):
-                own = row.index < self.n
-                if moved and own.any():
-                    np.subtract.at(G.T, row.index[own], coefficient[e] * moved * np.outer(row.weights[own], unit[e]))
+            for row, slope in ((hot, _slope(law, hot, cold, z, 0)), (cold, _slope(law, hot, cold, z, 1))):
+                inside = row.index < self.n
+                if slope and inside.any():
+                    np.subtract.at(
+                        G.T, row.index[inside], coefficient[e] * slope * np.outer(row.weights[inside], unit[e])
+                    )
         return -(K @ z), G
 
     def by_constants(self, z: Array, count: int) -> Array:
         """(n, count) how the heat into the states changes with each constant; those of sensors change none."""
         per = (self.f * self._laws(z))[:, None] * self._unit(z)
-        own = per.T @ self.by - self.C_by * (self.m @ per)[:, None]
-        return np.pad(own, ((0, 0), (0, count - own.shape[1])))
+        columns = per.T @ self.by - self.C_by * (self.m @ per)[:, None]
+        return np.pad(columns, ((0, 0), (0, count - columns.shape[1])))
 
 
 @dataclass(frozen=True)

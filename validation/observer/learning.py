@@ -39,16 +39,16 @@ class Design:
 
     def started(self, sensors: Sequence[Channel], readings: Array, boundaries: Mapping[str, float]) -> Observer:
         """With some sensors, from their first readings (s,)."""
-        own = [self.as_learned(c) for c in sensors]
-        bias, channels = np.array([s.bias_K for s in own]), [s.channel for s in own]
+        sensor_models = [self.as_learned(c) for c in sensors]
+        bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
         return observer(
             self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias
         )  # fmt: skip
 
     def as_learned(self, c: Channel) -> Sensor:
         """A sensor by its name; as declared where no test had it."""
-        known = self.learned.get(c.name)
-        return Sensor(c) if known is None else known.of(c)
+        constants = self.learned.get(c.name)
+        return Sensor(c) if constants is None else constants.of(c)
 
 
 def unsettled(case: Case) -> ParameterPosterior:
@@ -61,11 +61,11 @@ def unsettled(case: Case) -> ParameterPosterior:
 
 def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Network:
     """With priors of added effects that say half of what was found: in a fit they say nothing."""
-    added = {e.name for e in case.model.effects}
+    effects = {e.name for e in case.model.effects}
 
     def prior(p: Parameter) -> Parameter:
         deviation = abs(values.get(p.name, p.value) - p.neutral)
-        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in added else p
+        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in effects else p
 
     return replace(network, parameters=tuple(prior(p) for p in network.parameters))
 
@@ -104,20 +104,20 @@ def design_of(
 def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[Test], doubt: Doubt) -> Constants:
     """Of the network's heat, and of every sensor of the tests."""
     bare = thermal(network)
-    own = {p.name for p in bare.parameters}
+    names = {p.name for p in bare.parameters}
     channels = {c.name: c for t in tests for c in t.channels}
-    start = {n: v for n, v in values.items() if n in own}
+    start = {n: v for n, v in values.items() if n in names}
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
 
 
 def over(design: Design, test: Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
     """An observer after a test, and its samples."""
     test = thinned(test)
-    driven, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
+    course, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
     y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
-    around = {b: float(np.asarray(u, float).flat[0]) for b, u in driven.boundaries.items()}
+    around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
     one = design.started(sensors, y[0], around)
-    return one, list(one.follow(driven, y))
+    return one, list(one.follow(course, y))
 
 
 def usual_rise(tests: Sequence[Test]) -> float:

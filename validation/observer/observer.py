@@ -14,7 +14,7 @@ from lumped.integration.simulate import initial_state
 from lumped.model.network import Row
 from validation.case import Channel
 from validation.doubt import USUAL
-from validation.observer.hypotheses import ALLOWED, OVER, SURE, Hypotheses, hypotheses
+from validation.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, hypotheses
 from validation.observer.kalman import Filter, begun
 from validation.observer.process import Driven, Process
 from validation.observer.process_noise import ProcessNoise
@@ -58,8 +58,8 @@ class Sample:
     def at(self, row: Row) -> tuple[float, float]:
         """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
         z = np.concatenate([self.x, self.u])
-        own = row.index < self.x.size
-        h = row.weights[own] @ self.along[row.index[own]]
+        inside = row.index < self.x.size
+        h = row.weights[inside] @ self.along[row.index[inside]]
         return float(row.weights @ z[row.index]), float(np.linalg.norm(h @ self.S[: h.size]))
 
 
@@ -123,10 +123,10 @@ class Observer:
         variance, expected = c.sigma_K**2 * max(CORRELATION_S / seconds, 1.0), float(self.lagged[j] + h @ change)
         sd, was = float(np.sqrt(np.sum((f.S.T @ h) ** 2) + variance)), state.dropped
         sigma = np.array([one.sigma_K for one in self.sensors])
-        used = state.take(reading, expected, sd, self.lagged.copy(), sigma, time, seconds)
+        usable = state.take(reading, expected, sd, self.lagged.copy(), sigma, time, seconds)
         if state.dropped != was:
             self._dropped(j, time)
-        if not used:
+        if not usable:
             return
         gain, total = f.gain(h, variance)
         innovation, signature = reading - expected, h @ f.error
@@ -173,7 +173,7 @@ class Observer:
     def missing_heat_probability(self) -> Array:
         """(m,) probability that the missing heat of a body is more than the table of doubt allows."""
         sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
-        return np.asarray(ndtr((np.abs(self.filter.q) - ALLOWED * self.table_sd) / np.maximum(sd, 1e-9)))
+        return np.asarray(ndtr((np.abs(self.filter.q) - TOLERANCE * self.table_sd) / np.maximum(sd, 1e-9)))
 
     def _drop_drifting(self, j: int, time: float, chance: float) -> None:
         """Without the sensor; where it has led the estimate is forgotten."""
@@ -201,15 +201,15 @@ def observer(
     bias (s,) K that the sensors read too much, none by default
     """
     off = np.zeros(len(sensors)) if bias is None else bias
-    known = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
-    x = initial_state(process.network, known or float(np.mean([*boundaries.values()])))
-    around = np.array([*known.values(), *boundaries.values()])
-    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in known}
+    start_T = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
+    x = initial_state(process.network, start_T or float(np.mean([*boundaries.values()])))
+    around = np.array([*start_T.values(), *boundaries.values()])
+    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in start_T}
     count, m = len(sensors), len(process.bodies)
     heats = np.hstack([np.zeros((m, count)), np.eye(m)])
     start = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
     sigma = np.array([c.sigma_K for c in sensors])
-    allowed = np.hypot(sigma, USUAL["gain"] * rise_K)
-    tests = hypotheses(tuple(c.name for c in sensors), sigma, allowed, process.bodies, table_sd)
+    tolerance_K = np.hypot(sigma, USUAL["gain"] * rise_K)
+    tests = hypotheses(tuple(c.name for c in sensors), sigma, tolerance_K, process.bodies, table_sd)
     states = [SensorState() for _ in sensors]
     return Observer(start, table_sd, tuple(sensors), off, states, tests, np.zeros(count))

@@ -151,8 +151,8 @@ class Process:
 
     def sensed(self, row: Row, along: Array) -> Array:
         """(n_slow,) what a sensor sees of the slow states."""
-        own = row.index < along.shape[0]
-        return np.asarray(row.weights[own] @ along[row.index[own]])
+        inside = row.index < along.shape[0]
+        return np.asarray(row.weights[inside] @ along[row.index[inside]])
 
 
 class _Factored:

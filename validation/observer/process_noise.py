@@ -58,11 +58,11 @@ def _in_test(of: ParameterPosterior, test: Test, bodies: Sequence[str]) -> Array
     network, free, size = acting(of, test)
     look = _Flows(network, of.values, test, bodies)
     columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if not _outside(p)}
-    moved = {name: look.driven(other) for name, other in moved_inputs(network, test, of.doubt)}
-    moved |= {name: look.beside(other) for name, other in moved_boundaries(test, of.doubt)}
+    responses = {name: look.driven(other) for name, other in moved_inputs(network, test, of.doubt)}
+    responses |= {name: look.beside(other) for name, other in moved_boundaries(test, of.doubt)}
     sd = [p.prior_sd / s for p, s in zip(free, size, strict=True) if p.name in columns]
-    Sigma = of.of([*columns, *moved], np.array([*sd, *np.ones(len(moved))]))
-    A = np.stack([*columns.values(), *moved.values()], axis=2)
+    Sigma = of.of([*columns, *responses], np.array([*sd, *np.ones(len(responses))]))
+    A = np.stack([*columns.values(), *responses.values()], axis=2)
     return np.asarray(np.einsum("tik,kl,tjl->ij", A, Sigma, A) / len(A))
 
 
@@ -79,11 +79,11 @@ class _Flows:
 
     def __init__(self, network: Network, values: Mapping[str, float], test: Test, bodies: Sequence[str]) -> None:
         self.network = thermal(network)
-        own = {p.name for p in self.network.parameters}
-        self.values = values_of(self.network, {k: v for k, v in values.items() if k in own})
+        names = {p.name for p in self.network.parameters}
+        self.values = values_of(self.network, {k: v for k, v in values.items() if k in names})
         self.test, self.columns = test, [network.column(b) for b in bodies]
-        driven = record(test, {})
-        self.z = np.asarray(simulate(self.network, driven, self.values, keep_states=True).z)
+        course = record(test, {})
+        self.z = np.asarray(simulate(self.network, course, self.values, keep_states=True).z)
         self.some = np.unique(np.linspace(0, test.time.size - 1, INSTANTS).astype(int))
         self.terms = assembly(self.network)
         acting_now = multipliers(self.network, self.values)

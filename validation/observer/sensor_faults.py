@@ -14,7 +14,7 @@ LOST_S = 30.0  # a plug that is wiggled comes back sooner
 BACK_S = 60.0  # of good readings, before a sensor is believed again
 FROZEN_S = 120.0  # a recorder that hangs for less does little harm
 LONGER = 5.0  # times the longest run of equal readings so far: coarse readings stand still by themselves
-MOVED = 2.0  # of a sensor's accuracy: what another sensor, or the model, has to move while the reading stands still
+MOTION = 2.0  # of a sensor's accuracy: what another sensor, or the model, has to move while the reading stands still
 OUTLIER = 5.0  # deviations of the innovation: one reading in two million
 
 
@@ -55,7 +55,7 @@ class SensorState:
         return good and not self.dropped
 
     def _others_moved(self, around: Array, sigma_K: Array) -> bool:
-        return bool(np.any(np.abs(around - self.then) > MOVED * sigma_K))
+        return bool(np.any(np.abs(around - self.then) > MOTION * sigma_K))
 
     def _return(self) -> None:
         """A sensor that was lost or frozen is believed again once its readings are good and move."""

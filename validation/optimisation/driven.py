@@ -22,7 +22,7 @@ LAG = 0.05  # of the cycle's mean speed: what the vehicle may lack on average; i
 
 @dataclass(frozen=True)
 class Driven:
-    """machine, vehicle, controller : of the cycle;  time (nt,) s;  wanted (nt,) m/s;  slope (nt,) rise over run
+    """machine, vehicle, controller : of the cycle;  time (nt,) s;  target_mps (nt,);  slope (nt,) rise over run
 
     warm : resistance over that of the machine, with the winding at its limit
     """
@@ -31,7 +31,7 @@ class Driven:
     vehicle: Vehicle
     controller: Controller
     time: Array
-    wanted: Array
+    target_mps: Array
     slope: Array
     warm: float = 1.0
 
@@ -42,16 +42,18 @@ class Driven:
     def usual(self, key: str) -> float:
         return float(getattr(self.controller, GAINS[key]))
 
-    def inputs(self, named: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+    def inputs(self, design: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
         """Inputs of a network at the gains of a design, and limit -> the share by which it is exceeded."""
-        gains = {GAINS[key]: named[key] for key in GAINS if key in named}
+        gains = {GAINS[key]: design[key] for key in GAINS if key in design}
         R = np.full(self.time.size, self.warm * self.machine.R)
-        done = drive_cycle(
-            self.machine, self.vehicle, replace(self.controller, **gains), self.time, self.wanted, self.slope,
+        course = drive_cycle(
+            self.machine, self.vehicle, replace(self.controller, **gains), self.time, self.target_mps, self.slope,
             resistance=R,
         )  # fmt: skip
         step = np.diff(self.time, prepend=self.time[0]) / (self.time[-1] - self.time[0])
-        mean = {name: float(step @ u) for name, u in done.inputs().items()}
-        mean["current_A"] = float(step @ done.current_A**2) ** 0.5
-        short = float(step @ np.maximum(self.wanted - done.vehicle_speed_mps, 0.0)) / float(step @ self.wanted)
+        mean = {name: float(step @ u) for name, u in course.inputs().items()}
+        mean["current_A"] = float(step @ course.current_A**2) ** 0.5
+        short = float(step @ np.maximum(self.target_mps - course.vehicle_speed_mps, 0.0)) / float(
+            step @ self.target_mps
+        )
         return mean, {f"speed kept within {100.0 * LAG:g} %": short / LAG - 1.0}

@@ -89,22 +89,22 @@ class Problem:
 
     def of(self, x: Sequence[float] | Array) -> Performance:
         """The design at a point of the space."""
-        named = self.space.named(x)
+        design = self.space.named(x)
         try:
-            machine = None if self.machine_at is None else self.machine_at(named)
-            return self.judged(named, machine)
+            machine = None if self.machine_at is None else self.machine_at(design)
+            return self.judged(design, machine)
         except InputError as error:
             return self._impossible(str(error))
 
-    def judged(self, named: Mapping[str, float], machine: Machine | None) -> Performance:
+    def judged(self, design: Mapping[str, float], machine: Machine | None) -> Performance:
         """A design whose machine is there already."""
-        inputs, lag = self._inputs(named, machine)
+        inputs, lag = self._inputs(design, machine)
         values = {
             **self.values,
             **({} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)),
         }
         rest, runaway = self._rest(values, inputs)
-        share = self.space.share(named)
+        share = self.space.share(design)
         copper = losses(self.network, values, inputs, rest.z, ("copper",)) * self.corrections.ratio(COPPER, share)
         places, slowest = self._temperatures(rest, values, inputs, share)
         hottest = max(list(places.values())[: self.peak])
@@ -116,9 +116,11 @@ class Problem:
         limits = self.electrics.excess(inputs, copper) if self.driven is None else lag
         return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)
 
-    def _inputs(self, named: Mapping[str, float], machine: Machine | None) -> tuple[dict[str, float], dict[str, float]]:
+    def _inputs(
+        self, design: Mapping[str, float], machine: Machine | None
+    ) -> tuple[dict[str, float], dict[str, float]]:
         """Of the network; and what the drive misses of its cycle."""
-        out = {**self.inputs, **{n: u for n, u in named.items() if n in self.inputs}}
+        out = {**self.inputs, **{n: u for n, u in design.items() if n in self.inputs}}
         if machine is not None:
             from lumped.machine.motor import rated_inputs
 
@@ -126,7 +128,7 @@ class Problem:
             out |= {n: rated[n] for n in self.from_machine}
         if self.driven is None:
             return out, {}
-        load, lag = self.driven.inputs(named)
+        load, lag = self.driven.inputs(design)
         return out | {n: u for n, u in load.items() if n in out}, lag
 
     def _rest(self, values: Mapping[str, float], inputs: Mapping[str, float]) -> tuple[Rest, bool]:

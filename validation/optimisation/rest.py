@@ -100,11 +100,11 @@ def losses(
 ) -> float:
     """Heat (W) of the sources of some kinds at temperatures z."""
     m, at = multipliers(network, values), {n: np.array([float(u)]) for n, u in inputs.items()}
-    chosen = [s for s in network.sources if s.kind in kinds]
+    sources = [s for s in network.sources if s.kind in kinds]
     watts = [
-        float(np.mean(s.law.factor(at))) * temperature_value(s.law.temperature, _T(s.probe, z), 0.0) for s in chosen
+        float(np.mean(s.law.factor(at))) * temperature_value(s.law.temperature, _T(s.probe, z), 0.0) for s in sources
     ]
-    return sum(m.get(s.name, 1.0) * w for s, w in zip(chosen, watts, strict=True))
+    return sum(m.get(s.name, 1.0) * w for s, w in zip(sources, watts, strict=True))
 
 
 def _T(row: Row, z: Array) -> float:

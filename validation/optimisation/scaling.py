@@ -45,13 +45,15 @@ class Scaling:
 
         Only faces are looked at whose part or fluid has another shape.
         """
-        moved = changed(self.machine, machine)
-        if not moved:
+        differing = changed(self.machine, machine)
+        if not differing:
             return {}
         there = Films(surroundings(machine, ()))
-        out = {f"design capacity:{p.name}": p.volume / self.volumes[p.name] for p in machine.parts if p.name in moved}
+        out = {
+            f"design capacity:{p.name}": p.volume / self.volumes[p.name] for p in machine.parts if p.name in differing
+        }
         for face in self.places:
-            if face.part in moved or stem(str(face.fluid)) in moved:
+            if face.part in differing or stem(str(face.fluid)) in differing:
                 out |= self._face(face, there, inputs)
         return out
 

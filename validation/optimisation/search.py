@@ -137,8 +137,8 @@ def infeasible(designs: Sequence[Design]) -> InputError:
     if not fits:
         return InputError(f"no design is possible: {designs[0].performance.why}", "--vary", "other bounds")
     nearest = min(fits, key=lambda d: sum(max(e, 0.0) for e in d.performance.excess.values()))
-    missed = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
-    worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(missed.items(), key=lambda p: -p[1]))
+    excess = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
+    worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(excess.items(), key=lambda p: -p[1]))
     return InputError(
         f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}", "--limit",
         "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)",

@@ -47,5 +47,5 @@ class Space:
 
     def share(self, values: Mapping[str, float]) -> Array:
         """(k,) how far each variable that changes conduction is from the reference, in widths of its range."""
-        own = [v for v in self.variables if v.conducts]
-        return np.array([(values[v.name] - v.usual) / (v.high - v.low) for v in own])
+        conducting = [v for v in self.variables if v.conducts]
+        return np.array([(values[v.name] - v.usual) / (v.high - v.low) for v in conducting])

@@ -82,8 +82,8 @@ def _turn(difference: Array) -> Array:
 def levels(tests: Sequence[Test]) -> dict[str, float]:
     """Root mean square of every input over all tests that record it; inputs that are zero throughout are left out."""
     names = dict.fromkeys(name for t in tests for name in t.inputs)
-    pooled = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
-    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in pooled.items()}
+    values = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
+    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in values.items()}
     return {n: v for n, v in level.items() if v > 0}
 
 
@@ -105,8 +105,8 @@ def with_model_form(
     first = first_of(network)
     for p in network.parameters:
         if p.mapping == "log" or p.name in added:
-            own = [x for x in network.links if first.get(x.name) == p.name]
-            films = [x for x in own if p.name in added or is_film(network, x)]
+            links = [x for x in network.links if first.get(x.name) == p.name]
+            films = [x for x in links if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
             laws = [x.law for x in films] + [x.law for x in losses]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):

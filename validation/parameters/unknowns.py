@@ -98,10 +98,10 @@ def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> 
 
 def scene_of(case: Case) -> Scene:
     """What the case's tests record; an input counts when every test that is fitted or chosen with has it."""
-    used = [t for t in case.tests if t.role != "hold-out"] or list(case.tests)
-    inputs = frozenset.union(*(frozenset(t.inputs) for t in used)) | {"time_s"}
-    channels = tuple(dict.fromkeys(c.name for t in used for c in t.channels))
-    return Scene(case.model.network, inputs, channels, tuple(t.name for t in used))
+    tests = [t for t in case.tests if t.role != "hold-out"] or list(case.tests)
+    inputs = frozenset.union(*(frozenset(t.inputs) for t in tests)) | {"time_s"}
+    channels = tuple(dict.fromkeys(c.name for t in tests for c in t.channels))
+    return Scene(case.model.network, inputs, channels, tuple(t.name for t in tests))
 
 
 def effects_of(case: Case) -> tuple[Effect, ...]:
@@ -154,8 +154,8 @@ def widened(parameter: Parameter) -> Parameter:
 
 def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
     """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
-    seen = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
-    return float(np.mean([np.mean(f) for f in seen])) if seen else 0.0
+    factors = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
+    return float(np.mean([np.mean(f) for f in factors])) if factors else 0.0
 
 
 def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]:
@@ -179,9 +179,9 @@ def _grown(case: Case, more: Sequence[Effect]) -> tuple[Network, Unknowns]:
     network = freed(network, {e.name for e in inside})
     network, forms = with_model_form(network, case.tests, {e.name for e in inside}, case.doubt)
     network = replace(network, parameters=(*network.parameters, *extra))
-    chosen = {p.name for p in (case.nuisances or case.model.network.parameters)}
-    chosen |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)
-    return network, Unknowns(tuple(p for p in network.parameters if p.name in chosen))
+    names = {p.name for p in (case.nuisances or case.model.network.parameters)}
+    names |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)
+    return network, Unknowns(tuple(p for p in network.parameters if p.name in names))
 
 
 def with_model(case: Case, model: Model) -> Case:

@@ -70,16 +70,16 @@ def _bars_off(time: Array, inputs: Inputs, boundaries: Inputs, network: Network)
     """The currents of cages: bars that stand still under direct current carry none."""
     read = [(n, role(network, s.place)) for s in network.sources if s.kind == "copper" for n in s.law.reads]
     elsewhere = {n for n, of in read if of is not Role.CAGE}
-    own = [n for n in inputs_measuring(network, inputs, "current") if (n, Role.CAGE) in read and n not in elsewhere]
-    return {**inputs, **{n: np.zeros_like(time) for n in own}}, boundaries
+    bars = [n for n in inputs_measuring(network, inputs, "current") if (n, Role.CAGE) in read and n not in elsewhere]
+    return {**inputs, **{n: np.zeros_like(time) for n in bars}}, boundaries
 
 
 def _even(factor: float) -> Change:
     """Currents held at a multiple of the root mean square of their records."""
 
     def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
-        own = inputs_measuring(network, inputs, "current")
-        rms = {k: np.full_like(time, factor * np.sqrt(np.mean(inputs[k] ** 2))) for k in own}
+        currents = inputs_measuring(network, inputs, "current")
+        rms = {k: np.full_like(time, factor * np.sqrt(np.mean(inputs[k] ** 2))) for k in currents}
         return {**inputs, **rms}, boundaries
 
     return change
@@ -108,8 +108,8 @@ def _on_off(level: float, periods: int = 3) -> Callable[[Array], Array]:
 
 def _half_time(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
     """Currents switched off midway."""
-    early, own = time < 0.5 * time[-1], inputs_measuring(network, inputs, "current")
-    return {k: v * early if k in own else v for k, v in inputs.items()}, boundaries
+    early, currents = time < 0.5 * time[-1], inputs_measuring(network, inputs, "current")
+    return {k: v * early if k in currents else v for k, v in inputs.items()}, boundaries
 
 
 def _fast_and_slow(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:

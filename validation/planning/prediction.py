@@ -64,11 +64,11 @@ def refitted_gains(evidence: Evidence, models: CompetingModels, promised: Iterab
         for p in plans[:CHECKED]
     ]
     separations += [{}] * (len(plans) - len(separations))
-    shares = [g / p.gaps[pair] for own, p in zip(separations, plans, strict=True) for pair, g in own.items()]
+    shares = [g / p.gaps[pair] for gaps, p in zip(separations, plans, strict=True) for pair, g in gaps.items()]
     share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
     left = [
-        replace(p, gaps={pair: max(min(gap, own.get(pair, share * gap)), 0.0) for pair, gap in p.gaps.items()})
-        for own, p in zip(separations, plans, strict=True)
+        replace(p, gaps={pair: max(min(gap, gaps.get(pair, share * gap)), 0.0) for pair, gap in p.gaps.items()})
+        for gaps, p in zip(separations, plans, strict=True)
     ]
     return sorted(left, key=lambda p: -p.worth)
 
@@ -93,13 +93,13 @@ def predicted_deviance(
 def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test], right: int, wrong: int) -> float:
     read, rival = [predicted_readings(models.fit(right), t) for t in new], models.fit(wrong)
     network, unknowns, fixed = with_members(evidence, [wrong])
-    known = {p.name for p in network.parameters}
-    own = tuple(p for p in nuisances(network, read) if p.name not in known)
-    network, free = replace(network, parameters=(*network.parameters, *own)), (*unknowns.parameters, *own)
-    here = {**fixed, **{p.name: p.value for p in own}, **rival.values}
-    near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(own))))) for s in rival.parts]
+    names = {p.name for p in network.parameters}
+    extra = tuple(p for p in nuisances(network, read) if p.name not in names)
+    network, free = replace(network, parameters=(*network.parameters, *extra)), (*unknowns.parameters, *extra)
+    here = {**fixed, **{p.name: p.value for p in extra}, **rival.values}
+    near = [replace(s, J=np.pad(s.J, ((0, 0), (0, len(extra))))) for s in rival.parts]
     near += segments(network, read, here, free)
-    theta, tests = np.concatenate([rival.theta, np.zeros(len(own))]), (*evidence.tests, *read)
+    theta, tests = np.concatenate([rival.theta, np.zeros(len(extra))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
     fit = minimise(network, tests, Unknowns(free), theta, models.noise, fixed, STEPS, CachedSegments(near),
                    worth=ENOUGH, error=error)  # fmt: skip

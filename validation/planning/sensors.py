@@ -51,9 +51,9 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
 
 def free_places(network: Network, tests: Sequence[Test]) -> list[Place]:
     """Where no channel sits: parts, nodes and fluids, and the faces of parts that have several."""
-    occupied = {c.place for t in tests for c in t.channels}
+    with_sensor = {c.place for t in tests for c in t.channels}
     kinds = ("part", "node", "surface", "fluid")
-    return [p for p in network.places.values() if p.kind in kinds and p.name not in occupied]
+    return [p for p in network.places.values() if p.kind in kinds and p.name not in with_sensor]
 
 
 def access(network: Network, place: Place) -> str:
@@ -65,18 +65,18 @@ def access(network: Network, place: Place) -> str:
     return "outside" if place.part in outside(network) and place.kind != "part" else "inside"
 
 
-def with_sensors(evidence: Evidence, places: Sequence[Place], chosen: Sequence[int]) -> Iterator[tuple[Place, Gram]]:
+def with_sensors(evidence: Evidence, places: Sequence[Place], effects: Sequence[int]) -> Iterator[tuple[Place, Gram]]:
     """What a thermocouple at each place adds to the Gram matrix, its unknown bias projected out."""
     fit = evidence.fit
-    columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in chosen))
+    columns = (*fit.unknowns.parameters, *(evidence.parameters[k] for k in effects))
     tests = [with_thermocouples(t, places) for t in evidence.tests]
     p, error = len(fit.unknowns.parameters), widened_error(evidence, tests)
     parts = segments(evidence.network, tests, fit.values, columns)
     if error:
         parts, p = [error.beside(s, p) for s in parts], p + error.size
     for place in places:
-        own = [s for s in parts if s.channel == PREFIX + place.name]
-        yield place, _without_bias(own, fit.noise, p)
+        segments_there = [s for s in parts if s.channel == PREFIX + place.name]
+        yield place, _without_bias(segments_there, fit.noise, p)
 
 
 def with_thermocouples(test: Test, places: Sequence[Place]) -> Test:

@@ -18,15 +18,15 @@ GAP, DECISIVE = 10.0, 20.0  # deviance from which two begin to come apart, and f
 
 def separation(evidence: Evidence, models: CompetingModels, more: Gram) -> Gaps:
     """For every pair of a group the gap with more readings than the evidence has, the smaller way."""
-    chosen = models.group
-    sign = evidence.score.sign[list(chosen)]
-    s = score(total(evidence.grams).of(chosen) + more, *extended_prior(evidence.fit), sign)
+    group = models.group
+    sign = evidence.score.sign[list(group)]
+    s = score(total(evidence.grams).of(group) + more, *extended_prior(evidence.fit), sign)
     V, c = np.diag(s.V), s.cosine
-    size = [models.fit(k).values[evidence.names[k]] for k in chosen]
+    size = [models.fit(k).values[evidence.names[k]] for k in group]
     strength = [a**2 * v for a, v in zip(size, V, strict=True)]
     return {
-        (chosen[i], chosen[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2))
-        for i, j in combinations(range(len(chosen)), 2)
+        (group[i], group[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2))
+        for i, j in combinations(range(len(group)), 2)
     }
 
 

@@ -74,12 +74,12 @@ def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) ->
     if "voltage_V" not in columns:
         return columns
     voltages = np.unique(columns["voltage_V"])
-    chosen = voltages[0] if voltage is None and voltages.size == 1 else voltage
-    if chosen not in voltages:
+    level = voltages[0] if voltage is None and voltages.size == 1 else voltage
+    if level not in voltages:
         raise InputError(
             f"the map has {voltages.size} voltages", where, f"--voltage one of {', '.join(f'{v:g}' for v in voltages)}"
         )
-    return {n: c[columns["voltage_V"] == chosen] for n, c in columns.items()}
+    return {n: c[columns["voltage_V"] == level] for n, c in columns.items()}
 
 
 def _complete(count: NDArray[np.int64], axes: list[Array], where: str) -> None:
@@ -102,9 +102,9 @@ def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> Non
     shaft = columns[TORQUE] * columns[SPEED] * RPM
     heat = np.sum([columns[f"{n}_W"] for n in names], axis=0)
     off = np.abs(columns["input_W"] - shaft - heat)
-    allowed = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))
-    if np.any(off > allowed + 1e-9):
-        k = int(np.argmax(off - allowed))
+    tolerance = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))
+    if np.any(off > tolerance + 1e-9):
+        k = int(np.argmax(off - tolerance))
         raise InputError(
             f"the powers do not balance: at {columns[TORQUE][k]:g} Nm, {columns[SPEED][k]:g} 1/min input less shaft is "
             f"{columns['input_W'][k] - shaft[k]:.4g} W, the losses are {heat[k]:.4g} W", where,
@@ -120,8 +120,8 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
     kinds = {s.kind for s in network.sources} | {s.name for s in network.sources} | {_bare(s) for s in network.sources}
     for name in grid.watts:
         if name not in kinds:
-            known = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
-            raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {known}")
+            choices = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
+            raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {choices}")
     sources = []
     for s in network.sources:
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
@@ -138,13 +138,13 @@ def _bare(s: Source) -> str:
 
 def _law(grid: LossGrid, watts: Array, source: Source) -> MapLoss:
     """Of one slice with the network's own temperature law, else linear between first and last slice."""
-    own = source.law.temperature
+    law = source.law.temperature
     first, T = watts[0], float(grid.temperatures[0])
     if grid.temperatures.size > 1:
         rise = float(grid.temperatures[-1]) - T
         alpha = float(np.sum(watts[-1] - first) / max(float(np.sum(first)), 1e-300) / rise)
-        own = Linear(alpha, T)
-    elif isinstance(own, Linear):
-        own = Linear(own.alpha / (1.0 + own.alpha * (T - own.reference)), T)
+        law = Linear(alpha, T)
+    elif isinstance(law, Linear):
+        law = Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
     rows = tuple(tuple(float(v) for v in row) for row in first)
-    return MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, own)
+    return MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)

@@ -113,8 +113,8 @@ def _largest(tests: Sequence[Test], reads: Mapping[str, None], loads: Sequence[s
 
 
 def _mean(tests: Sequence[Test], boundary: str, usual: float | None) -> float | None:
-    seen = [float(np.mean(t.boundaries[boundary])) for t in tests if boundary in t.boundaries]
-    return float(np.mean(seen)) if seen else usual
+    means = [float(np.mean(t.boundaries[boundary])) for t in tests if boundary in t.boundaries]
+    return float(np.mean(means)) if means else usual
 
 
 def air_boundaries(network: Network) -> tuple[str, ...]:

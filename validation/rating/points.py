@@ -48,9 +48,9 @@ class Model:
 
     def at(self, op: Operation, x: Array) -> Stand:
         """A stand at a state x (n_states,)."""
-        named = x[["#" not in s for s in self.network.states]]
+        means = x[["#" not in s for s in self.network.states]]
         none = np.zeros((x.size + len(self.network.boundaries), 0))  # no tangents
-        return Stand(x, none, np.zeros(x.size), 1.0, float(min(named.min(), *op.boundaries.values())))
+        return Stand(x, none, np.zeros(x.size), 1.0, float(min(means.min(), *op.boundaries.values())))
 
     def course(
         self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float
@@ -67,9 +67,9 @@ class Model:
         """(n_rows,) largest temperatures of a duty that is repeated until it repeats itself."""
         time, share = s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
         pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)
-        driven = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
+        inputs = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
         mean = load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2)
-        return self.again_and_again(op, Record(time, driven, op.boundaries), mean, speed)
+        return self.again_and_again(op, Record(time, inputs, op.boundaries), mean, speed)
 
     def again_and_again(self, op: Operation, record: Record, load: float, speed: float | None) -> Array:
         """(n_rows,) largest temperatures of a record that follows on itself until it repeats itself.
@@ -79,13 +79,13 @@ class Model:
         try:
             record = replace(record, inputs=Signals(record.inputs, record.time.size))  # factors are worked out once
             x = self.start(op, load, speed).x
-            seen: list[tuple[Array, Array]] = []
+            iterates: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):
                 run = simulate(self.network, record, self.values, self.rows, begin=self.at(op, x))
-                seen = [*seen, (x, run.end.x)][-DEPTH:]
+                iterates = [*iterates, (x, run.end.x)][-DEPTH:]
                 if np.abs(run.end.x - x).max() < REPEATS_K * TOGETHER:
                     break
-                x = mixed(seen)
+                x = mixed(iterates)
             return np.asarray(run.y.max(axis=0))
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)

@@ -34,8 +34,8 @@ class Lap:
         inputs = {n: float(np.mean(u)) for n, u in self.record.inputs.items()}
         boundaries = {b: float(np.mean(T)) for b, T in self.record.boundaries.items()}
         square = float(np.mean(np.square(self.record.inputs[op.main])))
-        moved = op.moved({n: inputs[n] for n in op.inputs if n not in self.loads}, boundaries)
-        return moved, square**0.5 / abs(op.inputs[op.main])
+        average = op.moved({n: inputs[n] for n in op.inputs if n not in self.loads}, boundaries)
+        return average, square**0.5 / abs(op.inputs[op.main])
 
 
 def share_for_ever(model: Model, op: Operation, limits: Mapping[str, float], lap: Lap) -> tuple[float, str]:

@@ -70,12 +70,12 @@ def predicted_without(fit: Fit, k: int) -> dict[str, float]:
     theta = np.concatenate([fit.theta, np.zeros(d)])[order]
     weight = np.concatenate([fit.unknowns.sd, np.ones(d)])[order] ** -2.0
     whole, out = {name: _joined(g) for name, g in grams.items()}, {}
-    for name, own in whole.items():
+    for name, form in whole.items():
         others = [g for other, g in whole.items() if other != name]
         if not others or not _felt(grams, name):
             continue
         A, b = (np.asarray(sum(part)) for part in zip(*((g[0], g[1]) for g in others), strict=True))
-        out[name] = _deviance(own, _step(A, b, theta, weight, -1)) - _deviance(own, _step(A, b, theta, weight, None))
+        out[name] = _deviance(form, _step(A, b, theta, weight, -1)) - _deviance(form, _step(A, b, theta, weight, None))
     return out
 
 

@@ -156,10 +156,10 @@ def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     return tuple(c for c in diagnosis.candidates if c.effect in first)
 
 
-def evidence(diagnosis: Diagnosis, chosen: Candidate) -> dict[str, float | str]:
+def evidence(diagnosis: Diagnosis, candidate: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
     numbers: dict[str, float | str] = {
-        "probability": chosen.probability, "score": chosen.score, "threshold": chosen.threshold,
-        "decision": chosen.decision, "verdict": diagnosis.verdict,
+        "probability": candidate.probability, "score": candidate.score, "threshold": candidate.threshold,
+        "decision": candidate.decision, "verdict": diagnosis.verdict,
     }  # fmt: skip
-    return numbers | ({"confused_with": ", ".join(chosen.confused_with)} if chosen.confused_with else {})
+    return numbers | ({"confused_with": ", ".join(candidate.confused_with)} if candidate.confused_with else {})

@@ -32,8 +32,8 @@ class PredictedCurves:
 
     def spread_K(self, channel: str) -> float:
         """Largest rms difference between two hypotheses at a channel."""
-        own = [y[channel] for y in self.curves.values()]
-        return max((float(np.sqrt(np.mean((a - b) ** 2))) for a, b in combinations(own, 2)), default=0.0)
+        courses = [y[channel] for y in self.curves.values()]
+        return max((float(np.sqrt(np.mean((a - b) ** 2))) for a, b in combinations(courses, 2)), default=0.0)
 
     def closest(self) -> float:
         """Root mean square over the channels, in their one-sigma, by which the two that stay closest differ."""
@@ -79,8 +79,8 @@ def _predicted(case: Case, models: Mapping[str, Model], experiment: Experiment, 
     try:
         for name, model in models.items():
             network = working(replace(case, model=model))[0]
-            known = {p.name for p in network.parameters}
-            y = predict(network, test, {k: v for k, v in model.values.items() if k in known}).y
+            names = {p.name for p in network.parameters}
+            y = predict(network, test, {k: v for k, v in model.values.items() if k in names}).y
             curves[name] = {c.name: y[:, j] for j, c in enumerate(test.channels)}
     except ThermoscopeError:
         return None
@@ -96,9 +96,9 @@ def schedule(test: Test, before: Test) -> list[tuple[str, float, float, float]]:
     for name, values in (*test.inputs.items(), *test.boundaries.items()):
         value = np.broadcast_to(np.asarray(values, float), test.time.shape)
         starts = np.flatnonzero(np.diff(value, prepend=np.nan))
-        own = before.inputs.get(name, before.boundaries.get(name))
-        driven = own is not None and np.array_equal(np.unique(np.asarray(own, float)), np.unique(value))
-        if len(starts) > STEPS or driven:
+        record = before.inputs.get(name, before.boundaries.get(name))
+        as_before = record is not None and np.array_equal(np.unique(np.asarray(record, float)), np.unique(value))
+        if len(starts) > STEPS or as_before:
             continue
         ends = [*starts[1:], len(value) - 1]
         out += [(name, float(test.time[a]), float(test.time[b]), float(value[a])) for a, b in zip(starts, ends)]

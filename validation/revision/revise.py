@@ -131,8 +131,8 @@ def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:
     """Take an effect out and calibrate on all tests but the held-out ones."""
     left = tuple(e for e in case.model.effects if e.name != name)
     if len(left) == len(case.model.effects):
-        known = ", ".join(e.name for e in case.model.effects) or "none"
-        raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {known}")
+        choices = ", ".join(e.name for e in case.model.effects) or "none"
+        raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {choices}")
     values = {k: v for k, v in case.model.values.items() if k != name and not k.startswith(f"{name}^")}
     model = replace(case.model, effects=left, values=values)
     return _revised(case, model, "remove", name, TRAINING, progress)
@@ -150,8 +150,8 @@ def _revised(
         raise InputError(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
-    grown = replace(case.training(), model=model)
-    fits = staged_fit(grown, tests if action == "calibrate" else _plain(tests), start(grown), search, progress)
+    training = replace(case.training(), model=model)
+    fits = staged_fit(training, tests if action == "calibrate" else _plain(tests), start(training), search, progress)
     new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
     after = errors(replace(case, model=new))
     changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
@@ -219,8 +219,8 @@ def judge(
     error as it was: that weighs all sensors alike. Other tests have no say; what became of them is told after.
     fitted : names of the tests it was fitted to
     """
-    seen = [c for c in changes if c.name in fitted]
-    was, now = mean_square(seen, "before"), mean_square(seen, "after")
+    in_fit = [c for c in changes if c.name in fitted]
+    was, now = mean_square(in_fit, "before"), mean_square(in_fit, "after")
     converged = all(fit.converged for fit in fits)
     foretells = any(c.check == "left out" and c.value > c.limit for c in acceptance)
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
@@ -233,13 +233,13 @@ def judge(
 
 def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[str]:
     """What became of the tests that were not fitted, in words."""
-    own = [c for c in changes if c.name not in fitted]
-    if not own:
+    outside = [c for c in changes if c.name not in fitted]
+    if not outside:
         return ["no held-out test"]
-    called = "held-out tests" if all(c.role == "hold-out" for c in own) else "other tests"
-    was, now = mean_square(own, "before"), mean_square(own, "after")
+    called = "held-out tests" if all(c.role == "hold-out" for c in outside) else "other tests"
+    was, now = mean_square(outside, "before"), mean_square(outside, "after")
     change = f"{called} {fall(was, now)}"
-    worst = max(own, key=lambda c: c.after - c.before)
+    worst = max(outside, key=lambda c: c.after - c.before)
     return [
         f"{change}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else change
     ]

@@ -80,8 +80,8 @@ def _rib(start: float, end: float, thick: float, side: int, number: int) -> Shap
         [(start, -1e-3), (start, high), (start + 0.2 * (end - start), high), (end, 0.1 * high), (end, -1e-3)]
     )
     flat = extruded(slope, -wide / 2, wide / 2, 0.25 * wide)  # x out, y forwards, z around
-    turned = flat.placed((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
-    return (turned if side > 0 else turned.flipped()).turned(2 * np.pi * number / RIBS)
+    upright = flat.placed((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
+    return (upright if side > 0 else upright.flipped()).turned(2 * np.pi * number / RIBS)
 
 
 def bearing(o: Outlines, part: Part) -> list[Body]:
@@ -106,7 +106,7 @@ def shaft(o: Outlines, part: Part) -> list[Body]:
     sections = o.section(part)
     if not sections:
         return [Body(part.name, Finish.STEEL, joined([extruded(o.of(p), *p[1:], 0.001) for p in part.prisms]))]
-    own = Body(part.name, Finish.STEEL, joined([revolved(rounded(_chamfered(s), 0.0, 0.0)) for s in sections]))
+    body = Body(part.name, Finish.STEEL, joined([revolved(rounded(_chamfered(s), 0.0, 0.0)) for s in sections]))
     shields = o.parts(Role.END_SHIELD, Role.BEARING)
     left = min((p.span[0] for p in shields), default=part.span[0]) - part.span[0]
     right = part.span[1] - max((p.span[1] for p in shields), default=part.span[1])
@@ -115,11 +115,11 @@ def shaft(o: Outlines, part: Part) -> list[Body]:
     radius = max(s.bounds[2] for s in sections if s.bounds[1] <= end <= s.bounds[3])
     there = right if side > 0 else left
     if there > STUB * 2 * radius:
-        return [own, Body(part.name, Finish.STEEL, _key(radius, end - side * there, there, side), added=True)]
+        return [body, Body(part.name, Finish.STEEL, _key(radius, end - side * there, there, side), added=True)]
     length = EXTENSION * 2 * radius
     more = rod(0.86 * radius, length, 0.06 * radius, 96)
     more = (more if side > 0 else more.flipped()).moved((0.0, 0.0, end))
-    return [own, Body(part.name, Finish.STEEL, joined([more, _key(0.86 * radius, end, length, side)]), added=True)]
+    return [body, Body(part.name, Finish.STEEL, joined([more, _key(0.86 * radius, end, length, side)]), added=True)]
 
 
 def _covered_end(o: Outlines, part: Part) -> bool:

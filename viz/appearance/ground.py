@@ -47,10 +47,10 @@ def _scattered(shapes: Sequence[Shape]) -> Array:
     corners = np.concatenate([s.points[s.triangles] for s in shapes])
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     rng = np.random.default_rng(0)
-    chosen = corners[rng.choice(len(corners), SAMPLES, p=area / area.sum())]
+    triangles = corners[rng.choice(len(corners), SAMPLES, p=area / area.sum())]
     u, v = np.sqrt(rng.random(SAMPLES)), rng.random(SAMPLES)
     share = np.stack([1 - u, u * (1 - v), u * v], axis=1)
-    return np.asarray((share[:, :, None] * chosen).sum(axis=1))
+    return np.asarray((share[:, :, None] * triangles).sum(axis=1))
 
 
 def _density(points: Array, start: Array, end: Array, span: float) -> Array:

@@ -65,13 +65,13 @@ def extruded(outline: Polygon, z0: float, z1: float, round_m: float = 0.0) -> Sh
     angle = np.linspace(0.0, np.pi / 2, CORNER)
     steps = [(round_m * (1 - np.sin(a)), round_m * (1 - np.cos(a))) for a in angle] if round_m > 0 else [(0.0, 0.0)]
     steps = [*steps, *((inset, z1 - z0 - up) for inset, up in steps[::-1])]
-    moved = [_inset(ring) for ring in rings]
-    first, *holes = [ring - round_m * by for ring, by in zip(rings, moved, strict=True)]
+    insets = [_inset(ring) for ring in rings]
+    first, *holes = [ring - round_m * by for ring, by in zip(rings, insets, strict=True)]
     end = Polygon(first, holes)
-    turned = not end.exterior.is_ccw or any(hole.is_ccw for hole in end.interiors)
-    if round_m > 0 and (2 * round_m > z1 - z0 or turned or not end.is_valid or end.area < 0.3 * outline.area):
+    inside_out = not end.exterior.is_ccw or any(hole.is_ccw for hole in end.interiors)
+    if round_m > 0 and (2 * round_m > z1 - z0 or inside_out or not end.is_valid or end.area < 0.3 * outline.area):
         return extruded(outline, z0, z1, round_m / 2 if round_m > 1e-4 else 0.0)
-    layers = [[ring - inset * by for ring, by in zip(rings, moved, strict=True)] for inset, _ in steps]
+    layers = [[ring - inset * by for ring, by in zip(rings, insets, strict=True)] for inset, _ in steps]
     heights = [z0 + up for _, up in steps]
     return _stacked(layers, heights, end)
 

@@ -63,8 +63,8 @@ class Outlines:
         """
         import shapely
 
-        known = [(self.of(prism), *prism[1:]) for prism in part.prisms]
-        sections = [_along(known, 2 * np.pi * (k + 0.37) / RAYS) for k in range(RAYS)]
+        prisms = [(self.of(prism), *prism[1:]) for prism in part.prisms]
+        sections = [_along(prisms, 2 * np.pi * (k + 0.37) / RAYS) for k in range(RAYS)]
         common = Counter(sections).most_common(1)[0][0]
         volume = sum(np.pi * (r1**2 - r0**2) * (z1 - z0) for r0, r1, z0, z1 in common)
         if abs(volume / part.volume - 1) > ROUND:

@@ -26,8 +26,8 @@ def wheel(o: Outlines, part: Part) -> list[Body]:
     if not blades:
         return [Body(part.name, Finish.RUBBER, joined(hub))]
     r0, r1 = radii_of(o.of(blades[0]))
-    turned = [_blade(r0, r1, z1 - z0, (z0 + z1) / 2, angle_of(o.of(p)), len(blades)) for p in blades]
-    return [Body(part.name, Finish.RUBBER, joined([*hub, *turned]))]
+    vanes = [_blade(r0, r1, z1 - z0, (z0 + z1) / 2, angle_of(o.of(p)), len(blades)) for p in blades]
+    return [Body(part.name, Finish.RUBBER, joined([*hub, *vanes]))]
 
 
 def _blade(r0: float, r1: float, deep: float, z: float, angle: float, count: int) -> Shape:
@@ -45,10 +45,10 @@ def cowl(o: Outlines, part: Part) -> list[Body]:
     """A meshed cowl, with a guard over its outer end."""
     sections = o.section(part) or []
     r0, z0, _, z1 = shapely.union_all(sections).bounds
-    own = [revolved(rounded(s, 0.0005)) for s in sections]
+    meshes = [revolved(rounded(s, 0.0005)) for s in sections]
     side = o.side(part)
     return [
-        Body(part.name, Finish.PAINT, joined(own)),
+        Body(part.name, Finish.PAINT, joined(meshes)),
         Body(part.name, Finish.STEEL, _cover(r0, z1 if side > 0 else z0), added=True),
     ]
 

@@ -57,10 +57,10 @@ def standing(o: Outlines, part: Part) -> list[Body]:
     """Feet with a bolted sole; the base as it is, its edges rounded."""
     base = o.role(part) is Role.BASE
     finish = Finish.PLATE if base else Finish.PAINT
-    own = Body(part.name, finish, joined([extruded(o.of(p), *p[1:], 0.002) for p in part.prisms]))
+    body = Body(part.name, finish, joined([extruded(o.of(p), *p[1:], 0.002) for p in part.prisms]))
     if base:
-        return [own]
-    return [own, *(b for p in part.prisms for b in _sole(part, o.of(p), *p[1:]))]
+        return [body]
+    return [body, *(b for p in part.prisms for b in _sole(part, o.of(p), *p[1:]))]
 
 
 def _sole(part: Part, outline: shapely.Polygon, z0: float, z1: float) -> list[Body]:

@@ -95,8 +95,8 @@ def _poles(o: Outlines, part: Part) -> list[Shape]:
     poles = [o.of(p) for q in o.parts(Role.IRON) if len(q.prisms) > 1 for p in q.prisms]
     if len(part.prisms) != 4 * len(poles) or not poles:
         return []
-    known = [(o.of(p), *p[1:]) for p in part.prisms]
-    return [_frame(known, angle_of(pole)) for pole in poles]
+    prisms = [(o.of(p), *p[1:]) for p in part.prisms]
+    return [_frame(prisms, angle_of(pole)) for pole in poles]
 
 
 def _frame(sections: list[tuple[Polygon, float, float]], angle: float) -> Shape:

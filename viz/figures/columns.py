@@ -35,18 +35,18 @@ class Panel:
 @paper.styled
 def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = None) -> Figure:
     """Temperatures are blue, inputs orange, what is left out grey; the meaning stands under the name."""
-    drawn_panels = panels[:MOST]
-    across = min(ACROSS, len(drawn_panels))
-    rows = -(-len(drawn_panels) // across)
+    visible_panels = panels[:MOST]
+    across = min(ACROSS, len(visible_panels))
+    rows = -(-len(visible_panels) // across)
     figure, axes = paper.subplots(3.0 * across, 1.8 * rows + 0.5, rows, across)
-    for ax, panel in zip(axes, drawn_panels, strict=False):
+    for ax, panel in zip(axes, visible_panels, strict=False):
         thin = slice(None, None, max(1, panel.time.size // POINTS))
         colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
         ax.plot(panel.time[thin], panel.values[thin], color=colour, lw=1.0)
         ax.set_title(panel.name[:SHORT], fontsize=8.5)
         ax.set_xlabel(panel.meaning or "left out", fontsize=8)
         ax.margins(x=0)
-    for ax in axes[len(drawn_panels) :]:
+    for ax in axes[len(visible_panels) :]:
         ax.set_visible(False)
     figure.suptitle(title, fontsize=10)
     return paper.save(figure, png)

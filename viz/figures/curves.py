@@ -120,7 +120,7 @@ def shade(ax: Axes, comparison: Comparison) -> None:
 def wrongness(residual: np.ndarray, limit: float) -> str:
     """Faint where the rms of the test is within the limit; else by sign: vermilion where the machine, once warm, is
     hotter than the model, blue where it is colder."""
-    seen = residual[np.isfinite(residual)]
-    if not seen.size or np.sqrt(np.mean(seen**2)) <= limit:
+    finite = residual[np.isfinite(residual)]
+    if not finite.size or np.sqrt(np.mean(finite**2)) <= limit:
         return LIGHT.faint
-    return VERMILION if seen[len(seen) // 2 :].mean() > 0 else BLUE
+    return VERMILION if finite[len(finite) // 2 :].mean() > 0 else BLUE

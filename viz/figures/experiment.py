@@ -24,15 +24,15 @@ SENSORS = 4  # panels that a page holds side by side
 @paper.styled
 def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path | None = None) -> Figure:
     """One panel per sensor, those first that tell most: a line per hypothesis with the sensor's own 2-sigma band."""
-    chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[:sensors]
+    channels = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[:sensors]
     time = np.asarray(plan.test.time, float)
     unit, unit_s = ("min", 60.0) if time[-1] - time[0] < LONG_S else ("h", 3600.0)
     at = plan.decisive()
     thin = slice(None, None, max(1, -(-len(time) // POINTS)))
     t = (time - time[0])[thin] / unit_s
-    rows = -(-len(chosen) // 2)
+    rows = -(-len(channels) // 2)
     figure, axes = paper.subplots(8.6, 2.6 * rows + 0.4, rows, 2)
-    for ax, channel in zip(axes, chosen, strict=False):
+    for ax, channel in zip(axes, channels, strict=False):
         for colour, curves in zip(COLOURS, plan.curves.values(), strict=False):
             y, band = curves[channel.name][thin], 2 * float(np.hypot(channel.sigma_K, channel.model_K))
             ax.fill_between(t, y - band, y + band, color=colour, alpha=0.15, lw=0)
@@ -42,7 +42,7 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
         ax.axvline((time[at] - time[0]) / unit_s, color=LIGHT.ink, lw=0.8, ls=":")
         ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]
         end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
-    for ax in axes[len(chosen) :]:
+    for ax in axes[len(channels) :]:
         ax.set_visible(False)
     names = list(plan.curves)[: len(COLOURS)]
     figure.legend(

@@ -89,5 +89,5 @@ def conductance(network: Network, link: Link, ends: tuple[str, str], watts: floa
     """
     mean = next(network.states.index(end) for end in ends if end in network.states)
     mine = link.rows == mean
-    driven = float(link.vals[mine] @ z[link.cols[mine]])
-    return abs(watts / driven) * float(link.vals[mine & (link.cols == mean)].sum()) if driven else 0.0
+    difference = float(link.vals[mine] @ z[link.cols[mine]])
+    return abs(watts / difference) * float(link.vals[mine & (link.cols == mean)].sum()) if difference else 0.0

@@ -36,8 +36,8 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
         theme, (0.66, 0.34), title={"text": f"{short(c.name)} ({c.place})", "x": 0.02, "y": 0.98, "font": {"size": 14}}
     )
     shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
-    for values, filled in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
-        out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **filled)
+    for values, style in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
+        out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **style)
     _line(out, x, y, "measured ± limit", theme.ink, 1)
     if comparison.before is not None:
         _line(out, x, comparison.before[c.name][thin], "earlier model", ORANGE, 1, "dash")
@@ -68,11 +68,11 @@ def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
 
 def against_input(comparison: Comparison, channel: str, name: str, *, theme: Theme = LIGHT) -> go.Figure:
     """The residual of one sensor (K) against an input or boundary of the test: a trend names what is missing."""
-    c, known = channel_of(comparison, channel), {**comparison.test.inputs, **comparison.test.boundaries}
-    if name not in known:
-        raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(known)}")
+    c, inputs = channel_of(comparison, channel), {**comparison.test.inputs, **comparison.test.boundaries}
+    if name not in inputs:
+        raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(inputs)}")
     (t, unit), thin = comparison.clock, comparison.thin
-    x = np.broadcast_to(np.asarray(known[name], float), t.shape)[thin]
+    x = np.broadcast_to(np.asarray(inputs[name], float), t.shape)[thin]
     out = figure(theme, title={"text": f"{short(c.name)}: residual against {name}", "x": 0.02})
     dots = {"color": plain(t[thin]), "colorscale": "Viridis", "size": 5, "colorbar": {"title": f"time ({unit})"}}
     out.add_scatter(x=plain(x), y=plain(comparison.residual(c)[thin]), mode="markers", marker=dots, showlegend=False)

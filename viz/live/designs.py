@@ -44,15 +44,15 @@ def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Th
     """Designs in the space of three objectives, the first, second and last; the fourth is the colour."""
     import plotly.graph_objects as go
 
-    named = [*objectives, *objectives][:3] if len(objectives) < 3 else [objectives[0], objectives[1], objectives[-1]]
-    colour = next((o for o in objectives if o not in named), objectives[0])
-    x, y, z, c = (column(rows, o) for o in (*named, colour))
+    axes = [*objectives, *objectives][:3] if len(objectives) < 3 else [objectives[0], objectives[1], objectives[-1]]
+    colour = next((o for o in objectives if o not in axes), objectives[0])
+    x, y, z, c = (column(rows, o) for o in (*axes, colour))
     out = go.Figure(go.Scatter3d(
         x=x, y=y, z=z, mode="markers", text=[str(r["design"]) for r in rows],
         marker={"size": 5, "color": c, "colorscale": SCALE, "colorbar": {"title": WORDS.get(colour, colour)}},
         hovertemplate="%{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
     ))  # fmt: skip
-    titles = [{"title": WORDS.get(o, o), "type": _type(u)} for o, u in zip(named, (x, y, z), strict=True)]
+    titles = [{"title": WORDS.get(o, o), "type": _type(u)} for o, u in zip(axes, (x, y, z), strict=True)]
     scene = {
         **dict(zip(("xaxis", "yaxis", "zaxis"), titles, strict=True)),
         "camera": {"eye": EYE, "center": {"z": -0.15}},

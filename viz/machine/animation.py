@@ -98,8 +98,8 @@ def _palette(pictures: list[NDArray[np.uint8]]) -> Image.Image:
     """255 colours. Each colour has the root of its share to say: else paper and shell leave none to small hot parts."""
     from PIL import Image, ImageColor
 
-    chosen = np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)
-    some = np.concatenate([pictures[i][::2, ::2].reshape(-1, 3) for i in chosen])
+    sample = np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)
+    some = np.concatenate([pictures[i][::2, ::2].reshape(-1, 3) for i in sample])
     key = (some >> (8 - BITS)).astype(int) @ [1 << 2 * BITS, 1 << BITS, 1]
     _, group, count = np.unique(key, return_inverse=True, return_counts=True)
     mean = np.stack([np.bincount(group, channel) / count for channel in some.T], axis=1)

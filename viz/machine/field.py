@@ -55,13 +55,13 @@ def cutaway(
     note : what the sensors' labels say
     """
     view = view or View()
-    p, surface, seen = cut_open(
+    p, surface, marks = cut_open(
         nodes, sensors, labels, room_for(label_texts(sensors, labels), title), wedge, view, theme
     )
-    paint_cut(p, surface, seen.cut, on_nodes(nodes, T), limits, theme, colours)
+    paint_cut(p, surface, marks.cut, on_nodes(nodes, T), limits, theme, colours)
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
-    seen.draw(p, surface, view, theme, note)
+    marks.draw(p, surface, view, theme, note)
     scene.save(p, png)
     return p
 

@@ -46,17 +46,17 @@ def misses(
         validation.comparison.interpolation;  sensors : where it was measured
     """
     view, room = view or View(), room_for(label_texts(sensors), title, note=True)
-    p, surface, seen = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
+    p, surface, marks = cut_open(nodes, sensors, LABELS, room, wedge, view, theme)
     K = on_nodes(nodes, error)
     most = float(np.abs(K).max())
-    paint_cut(p, surface, seen.cut, K, (-most, most), theme, missing())
+    paint_cut(p, surface, marks.cut, K, (-most, most), theme, missing())
     scene.colour_bar(p, "K", theme)
-    guess: NDArray[np.bool_] = np.asarray(seen.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
-    _hatch(p, seen.cut.solid, guess, theme)
+    guess: NDArray[np.bool_] = np.asarray(marks.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
+    _hatch(p, marks.cut.solid, guess, theme)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()
     scene.headline(p, title, theme)
-    seen.draw(p, surface, view, theme, CAPTION)
+    marks.draw(p, surface, view, theme, CAPTION)
     scene.save(p, png)
     return p
 

@@ -80,10 +80,10 @@ def missing_in_machine(
     wide = width(max(words.values(), key=len), SMALL)
     room = Room(0.02 + wide, 0.12 + wide, TITLE, NOTE)
     scene.look(p, surface.framed, view, room)
-    seen = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room, surface.framed).items()}
+    anchor_points = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room, surface.framed).items()}
     labels = [
-        Label(tuple(seen[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
-        for n, text in words.items() if n in seen
+        Label(tuple(anchor_points[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
+        for n, text in words.items() if n in anchor_points
     ]  # fmt: skip
     callouts(p, labels, surface.framed, view, theme, size=SMALL)
     scene.save(p, png)

@@ -143,7 +143,7 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
     most = max((f.watts for f in inner), default=1.0)
     strongest = sorted((f for f in inner if f.conductance > 0 and f.watts >= SMALL * most), key=lambda f: -f.watts)
     widest = max((f.conductance for f in strongest), default=0.0)
-    occupied: list[Array] = []
+    labels: list[Array] = []
     for i, f in enumerate(strongest):
         a, b = at[f.start], at[f.end]
         line = pyvista.Line(a, b)
@@ -153,14 +153,14 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )  # fmt: skip
         on_top(actor, 1)
-        place = clear_place(a, b, list(at.values()), occupied, pixel_m) if len(occupied) < LABELLED else None
+        place = clear_place(a, b, list(at.values()), labels, pixel_m) if len(labels) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
-            occupied.append(place)
+            labels.append(place)
     return widest
 
 
-def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[Array], pixel_m: float) -> Array | None:
+def clear_place(a: Array, b: Array, nodes: Sequence[Array], labels: Sequence[Array], pixel_m: float) -> Array | None:
     """Where a label on the line from a to b (m), or beside it, covers no node and no other label, near the line's
     middle; None: nowhere.
 
@@ -170,7 +170,7 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], occupied: Sequence[A
 
     def clear(at: Array) -> bool:
         near = [np.abs(at - other)[1:] < half + dot for other in nodes] + [
-            np.abs(at - o)[1:] < 2 * half for o in occupied
+            np.abs(at - o)[1:] < 2 * half for o in labels
         ]
         return not any(one.all() for one in near)
 

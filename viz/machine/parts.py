@@ -51,8 +51,8 @@ def regions(
     wide = beside(nodes.parts, LETTERS, 0.2)
     room = Room(wide, wide, TITLE if title else 0.0)
     scene.look(p, surface.framed, view, room)
-    seen = anchors(surface, view, room, surface.framed)
-    labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in seen.items()]  # type: ignore[arg-type]
+    anchor_points = anchors(surface, view, room, surface.framed)
+    labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in anchor_points.items()]  # type: ignore[arg-type]
     callouts(p, labels, surface.framed, view, theme, size=LETTERS)
     scene.save(p, png)
     return p
@@ -84,14 +84,14 @@ def exploded(
     _paint(p, surface, field, theme, shift, limits=limits)
     if T is not None:
         scene.colour_bar(p, "°C", theme)
-    moved = nodes.points + shift[nodes.owner]
+    points = nodes.points + shift[nodes.owner]
     without = [part for part in nodes.parts if part not in members]
     if without:
         scene.footnote(p, f"without {', '.join(without)}: longer than the machine", theme)
     for group in groups:
-        _title(p, moved[np.concatenate([nodes.of(part) for part in group])], group)
+        _title(p, points[np.concatenate([nodes.of(part) for part in group])], group)
     scene.headline(p, title, theme)
-    corners = moved[np.concatenate([nodes.of(part) for part in members])]
+    corners = points[np.concatenate([nodes.of(part) for part in members])]
     scene.look(p, corners, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
     scene.save(p, png)
     return p
@@ -116,13 +116,13 @@ def assemblies(nodes: SplitMesh) -> list[list[str]]:
 
 
 def _assembly(nodes: SplitMesh, part: str) -> int:
-    known = nodes.identities.get(part, Identity())
-    if known.role in (Role.END_SHIELD, Role.BEARING):
+    identity = nodes.identities.get(part, Identity())
+    if identity.role in (Role.END_SHIELD, Role.BEARING):
         z = nodes.points[:, 2]
         return 0 if z[nodes.of(part)].mean() < (z.min() + z.max()) / 2 else 4
-    if known.role in (Role.HOUSING, Role.FOOT, Role.BASE):
+    if identity.role in (Role.HOUSING, Role.FOOT, Role.BASE):
         return 1
-    return 3 if known.turns else 2
+    return 3 if identity.turns else 2
 
 
 def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:

@@ -39,11 +39,11 @@ class Pulses:
         self._dots("dot", np.ones_like(wrong), colours, SIZE, 3)
         self._dots("core", self._hidden, np.full_like(colours, 255), HOLLOW * SIZE, 4)
 
-    def _dots(self, name: str, chosen: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int) -> None:
+    def _dots(self, name: str, mask: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int) -> None:
         self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
-        if chosen.any():
+        if mask.any():
             actor = self._p.add_points(
-                self._xyz[chosen], scalars=colours[chosen], rgb=True, point_size=size, lighting=False,
+                self._xyz[mask], scalars=colours[mask], rgb=True, point_size=size, lighting=False,
                 render_points_as_spheres=True, name=name, reset_camera=False, render=False,
             )  # fmt: skip
             on_top(actor, order)

@@ -50,11 +50,11 @@ def render(page: BenchPage) -> str:
     word = "decides" if closest >= DECISIVE else "does not decide"
     says = f"The two closest hypotheses come apart by {closest:.1f} of the sensors' own sigma (rms): this test {word}."
     rows = [(name, _clock(a), _clock(b), value) for name, a, b, value in page.holding]
-    driven = html.table(["hold", "from", "to", "at"], rows)
-    driven += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
+    table = html.table(["hold", "from", "to", "at"], rows)
+    table += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
     parts = [
-        head + html.text(says), html.section("Drive", driven),
+        head + html.text(says), html.section("Drive", table),
         html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _decisive(plan)),
         f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
     ]  # fmt: skip
@@ -64,9 +64,9 @@ def render(page: BenchPage) -> str:
 def _decisive(plan: PredictedCurves) -> str:
     """Temperatures by hypothesis where they are furthest apart; a column to write into."""
     at = plan.decisive()
-    chosen = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
+    channels = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
     rows: list[list[html.Cell]] = [
-        [short(c.name), *(_degrees(y[c.name][at]) for y in plan.curves.values()), BLANK] for c in chosen
+        [short(c.name), *(_degrees(y[c.name][at]) for y in plan.curves.values()), BLANK] for c in channels
     ]
     return f"<h3>At {_clock(plan.test.time[at] - plan.test.time[0])} (°C)</h3>" + html.table(
         ["sensor", *plan.curves, "read"], rows

@@ -100,5 +100,5 @@ def _cell(value: Cell) -> str:
         if not isfinite(value):
             return "–"
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
-    marked = {"over": "bad", "within": "ok"}.get(str(value))
-    return f'<span class="{marked}">{escape(str(value))}</span>' if marked else escape(str(value))
+    css = {"over": "bad", "within": "ok"}.get(str(value))
+    return f'<span class="{css}">{escape(str(value))}</span>' if css else escape(str(value))

@@ -105,8 +105,8 @@ def _error(r: Report) -> str:
 
 
 def _pictures(r: Report) -> str:
-    turned = html.more("Turn it, cut it, play it", html.inner_page(r.viewer, _VIEWER)) if r.viewer else ""
-    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()), turned)
+    viewer = html.more("Turn it, cut it, play it", html.inner_page(r.viewer, _VIEWER)) if r.viewer else ""
+    return html.section("The machine", *(html.picture(png, caption) for caption, png in r.pictures.items()), viewer)
 
 
 _VIEWER = "The machine in the browser's own GL: every test, turned, cut and played. It runs a script of its own."
@@ -129,11 +129,11 @@ def _curves(r: Report) -> str:
 def _missing(r: Report) -> str:
     if r.diagnosis is None or not r.diagnosis["candidates"]:
         return ""
-    ranked = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    by_score = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     parts = [
-        html.plot(candidates.scores(ranked), "scores", "Candidates by score; beyond the black mark is not chance.")
+        html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance.")
     ]
-    parts.append(html.table(_HEADERS, [_row(c) for c in ranked[:12]], [c["decision"] == "named" for c in ranked]))
+    parts.append(html.table(_HEADERS, [_row(c) for c in by_score[:12]], [c["decision"] == "named" for c in by_score]))
     parts.append(_events(r.diagnosis))
     parts.append(_contradiction(r.diagnosis))
     if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
@@ -141,9 +141,9 @@ def _missing(r: Report) -> str:
         figure = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
         parts.append(html.plot(figure, "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
-    alike = [(c["effect"], ", ".join(c["confused_with"])) for c in ranked[:12] if c["confused_with"]]
+    alike = [(c["effect"], ", ".join(c["confused_with"])) for c in by_score[:12] if c["confused_with"]]
     likeness = html.table(["effect", "looks like"], alike)
-    names = [c["effect"] for c in ranked[:10]]
+    names = [c["effect"] for c in by_score[:10]]
     if r.diagnosis.get("confusion"):
         likely = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
         likeness += html.plot(likely, "confusion", "Likeness of their traces.")
@@ -193,10 +193,10 @@ def _hidden(r: Report) -> str:
         return ""
     hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
     blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
-    seen = html.table(["effect", "smallest that would be seen", "unit"], blind)
+    limits = html.table(["effect", "smallest that would be seen", "unit"], blind)
     return html.section(
         "What these tests cannot see, and what would help",
-        seen and html.more("Effects that could be there unseen", seen),
+        limits and html.more("Effects that could be there unseen", limits),
         _next_tests(r.diagnosis),
     )
 

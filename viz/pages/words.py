@@ -43,12 +43,14 @@ def _elsewhere(diagnosis: Document) -> str:
 
 def story(history: Sequence[Document]) -> str:
     """What the last addition that still counts did to the tests that were never used; empty without one."""
-    added = [r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])]
-    if not added:
+    additions = [
+        r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])
+    ]
+    if not additions:
         return ""
-    hold_out = [t for t in added[-1]["tests"] if t["role"] == "hold-out"]
+    hold_out = [t for t in additions[-1]["tests"] if t["role"] == "hold-out"]
     parts = [f"{t['rmse_K']['before']:.2f} K to {t['rmse_K']['after']:.2f} K on {t['name']}" for t in hold_out]
-    effect = spoken([added[-1]["effect"]])
+    effect = spoken([additions[-1]["effect"]])
     if not parts:
         return f"The model was extended by {effect}."
     return f"Extending the model by {effect} brought the error from {' and from '.join(parts)}, never used to fit it."

@@ -49,11 +49,11 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
 def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
     size = np.array(NAME) / DISTANCE
-    occupied: list[NDArray[np.float64]] = []
+    labels: list[NDArray[np.float64]] = []
     out = []
     for at in in_view(places, points)[0]:
-        out.append(not any((np.abs(at - other) < size).all() for other in occupied))
-        occupied += [at] if out[-1] else []
+        out.append(not any((np.abs(at - other) < size).all() for other in labels))
+        labels += [at] if out[-1] else []
     return out
 
 

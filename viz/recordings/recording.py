@@ -118,44 +118,44 @@ def _sensors(
 ) -> None:  # fmt: skip
     import rerun as rr
 
-    placed = [channel for channel in c.channels if channel.name in positions]
-    if not placed:
+    channels = [channel for channel in c.channels if channel.name in positions]
+    if not channels:
         return
     dots = rr.Points3D(
-        [positions[channel.name] for channel in placed], labels=[short(channel.name) for channel in placed],
+        [positions[channel.name] for channel in channels], labels=[short(channel.name) for channel in channels],
         radii=rr.Radius.ui_points(5.0), show_labels=False,
     )  # fmt: skip
     stream.log("machine/sensors", dots, static=True)
-    _names(stream, sorted(placed, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
-    residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in placed], axis=1)
-    _markers(stream, c, placed, rr.TimeColumn(TIME, duration=times), residual)
+    _names(stream, sorted(channels, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
+    residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in channels], axis=1)
+    _markers(stream, c, channels, rr.TimeColumn(TIME, duration=times), residual)
     if revisions:
-        ends = np.array([[row.get(channel.name, np.nan) for channel in placed] for row in revisions])
-        _markers(stream, c, placed, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
+        ends = np.array([[row.get(channel.name, np.nan) for channel in channels] for row in revisions])
+        _markers(stream, c, channels, rr.TimeColumn(REVISION, sequence=range(len(ends))), ends)
 
 
 def _names(
-    stream: rr.RecordingStream, ranked: Sequence[Channel], positions: Mapping[str, Sequence[float]], surface: Surface
+    stream: rr.RecordingStream, channels: Sequence[Channel], positions: Mapping[str, Sequence[float]], surface: Surface
 ) -> None:
     """Names of the first that have room; what the machine hides has its name beside it, on a line from its place."""
     import rerun as rr
 
-    places = np.array([positions[channel.name] for channel in ranked])
+    places = np.array([positions[channel.name] for channel in channels])
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], beside(places, surface.points), places)
-    chosen = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
+    visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
-        at[chosen], labels=[short(ranked[i].name) for i in chosen], radii=rr.Radius.ui_points(0.0), show_labels=True,
-        colors=[255, 255, 255],
+        at[visible], labels=[short(channels[i].name) for i in visible], radii=rr.Radius.ui_points(0.0),
+        show_labels=True, colors=[255, 255, 255],
     )  # fmt: skip
     stream.log("machine/names", labels, static=True)
-    stubs = [np.stack([places[i], at[i]]) for i in chosen if hidden[i]]
+    stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
     lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
 
 
 def _markers(
-    stream: rr.RecordingStream, c: Comparison, placed: Sequence[Channel], index: Any, residual: Array
+    stream: rr.RecordingStream, c: Comparison, channels: Sequence[Channel], index: Any, residual: Array
 ) -> None:  # fmt: skip
     """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
     import rerun as rr
@@ -163,9 +163,9 @@ def _markers(
     colours = [
         _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
         for row in residual
-        for channel, r in zip(placed, row, strict=True)
+        for channel, r in zip(channels, row, strict=True)
     ]
-    columns = rr.Points3D.columns(colors=colours).partition([len(placed)] * len(residual))
+    columns = rr.Points3D.columns(colors=colours).partition([len(channels)] * len(residual))
     stream.send_columns("machine/sensors", indexes=[index], columns=columns)
 
 
@@ -183,10 +183,10 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
 def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
     import rerun as rr
 
-    seen = np.isfinite(values)
+    finite = np.isfinite(values)
     stream.log(path, rr.SeriesLines(colors=_rgba(colour), widths=2.0, names=name), static=True)
-    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[seen])
-    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[seen]))
+    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[finite])
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[finite]))
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:

@@ -75,9 +75,9 @@ class Surface:
         """(n_points,) or (n_points, n) values from (n_nodes,) or (n_nodes, n) nodal ones."""
         return self.weights @ T
 
-    def only(self, chosen: NDArray[np.bool_]) -> Surface:
+    def only(self, mask: NDArray[np.bool_]) -> Surface:
         """Some of the triangles, (n,)."""
-        return Surface(self.nodes, self.weights, self.triangles[chosen], self.part[chosen])
+        return Surface(self.nodes, self.weights, self.triangles[mask], self.part[mask])
 
     def clipped(self, direction: Array, offset: float = 0.0) -> Surface:
         """The side of a plane on which `direction @ point >= offset` (m); through the axis without an offset."""
@@ -100,13 +100,13 @@ class Surface:
 
     def compact(self) -> Surface:
         """Without unused points and empty triangles; points of one part that coincide are joined."""
-        used, flat = np.unique(self.triangles, return_inverse=True)
-        owner = np.zeros(len(used), np.int64)
+        nodes, flat = np.unique(self.triangles, return_inverse=True)
+        owner = np.zeros(len(nodes), np.int64)
         owner[flat.reshape(-1)] = np.repeat(self.part, 3)
-        weights = self.weights[used]
+        weights = self.weights[nodes]
         where = np.column_stack([np.round(weights @ self.nodes.points * 1e9).astype(np.int64), owner])
-        _, first, joined = np.unique(where, axis=0, return_index=True, return_inverse=True)
-        triangles = joined.reshape(-1)[flat.reshape(-1, 3)]
+        _, first, merger = np.unique(where, axis=0, return_index=True, return_inverse=True)
+        triangles = merger.reshape(-1)[flat.reshape(-1, 3)]
         solid = (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all(axis=1)
         return Surface(self.nodes, weights[first], triangles[solid], self.part[solid])
 
@@ -134,10 +134,10 @@ def section(nodes: SplitMesh, normal: Array, offset: float = 0.0) -> Surface:
     count = above.sum(axis=1)
     combined = _Combinations(d, 0)
     triangles, part = [], []
-    for sign, chosen in ((above, count == 1), (~above, count == 3)):
-        a, b, c, e = _first(nodes.tets[chosen], sign[chosen], 1).T
+    for sign, crossing in ((above, count == 1), (~above, count == 3)):
+        a, b, c, e = _first(nodes.tets[crossing], sign[crossing], 1).T
         triangles.append(np.stack([combined.edge(a, b), combined.edge(a, c), combined.edge(a, e)], axis=1))
-        part.append(nodes.region[chosen])
+        part.append(nodes.region[crossing])
     two = count == 2
     a, b, c, e = _first(nodes.tets[two], above[two], 2).T
     ac, ae, be, bc = combined.edge(a, c), combined.edge(a, e), combined.edge(b, e), combined.edge(b, c)
@@ -197,8 +197,8 @@ class _Combinations:
 def _facing(flat: Surface, normal: Array) -> Surface:
     """The same triangles, all turned towards `normal`."""
     a, b, c = flat.points[flat.triangles].transpose(1, 0, 2)
-    turned = np.where((np.cross(b - a, c - a) @ normal < 0)[:, None], flat.triangles[:, ::-1], flat.triangles)
-    return Surface(flat.nodes, flat.weights, turned, flat.part)
+    triangles = np.where((np.cross(b - a, c - a) @ normal < 0)[:, None], flat.triangles[:, ::-1], flat.triangles)
+    return Surface(flat.nodes, flat.weights, triangles, flat.part)
 
 
 def _first(cells: Index, flag: NDArray[np.bool_], count: int) -> Index:

@@ -71,13 +71,13 @@ class Ghosted:
     windows: tuple[Window, ...] = ()
 
 
-def ghosted(surface: Surface, places: Array, chosen: NDArray[np.bool_], eye: Array) -> Ghosted:
+def ghosted(surface: Surface, places: Array, mask: NDArray[np.bool_], eye: Array) -> Ghosted:
     """The surface with a window to each chosen one of the places (n, 3) m, as seen from `eye` (m); the deepest last.
 
     Where two lines of sight are close, their windows meet midway: each must show its own part.
     """
     size = float(np.linalg.norm(np.ptp(surface.nodes.points, axis=0)))
-    rows = np.flatnonzero(chosen).tolist()
+    rows = np.flatnonzero(mask).tolist()
     windows = [window(places[i], eye, RADIUS * size, np.delete(places, i, axis=0)) for i in rows]
     windows.sort(key=lambda w: float(np.linalg.norm(w.bottom - eye)))
     if not windows:

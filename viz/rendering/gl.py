@@ -21,8 +21,8 @@ w = vtkRenderWindow(); w.SetOffScreenRendering(1); w.SetSize(8, 8); w.Render(); 
 @lru_cache(maxsize=1)
 def off_screen_window() -> str | None:
     """Class name of the first VTK window that draws off-screen here, or None. About 0.6 s, once per process."""
-    chosen = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW")
-    return next((name for name in ([chosen] if chosen else _WINDOWS) if _draws(name)), None)
+    preference = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW")
+    return next((name for name in ([preference] if preference else _WINDOWS) if _draws(name)), None)
 
 
 def require_gl() -> None:
@@ -36,9 +36,9 @@ def require_gl() -> None:
 def _draws(window: str) -> bool:
     environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window}
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             [sys.executable, "-c", _DRAW], env=environment, capture_output=True, text=True, timeout=60, check=False
         )
     except (OSError, subprocess.TimeoutExpired):
         return False
-    return done.returncode == 0 and window in done.stdout
+    return process.returncode == 0 and window in process.stdout

@@ -31,14 +31,14 @@ def anchors(surface: Surface, view: View, room: Room, points: Array | None = Non
     data.cell_data["number"] = _as_colour(surface.part + 1)
     p.add_mesh(data, scalars="number", rgb=True, lighting=False)
     scene.look(p, surface.points if points is None else points, view, room)
-    seen = _as_number(np.asarray(p.screenshot(return_img=True))) - 1
+    part_numbers = _as_number(np.asarray(p.screenshot(return_img=True))) - 1
     depth = np.abs(p.get_image_depth())
     eye = np.array(p.camera.position)
     p.close()
     across = np.arange(SIZE[0]) / SIZE[0]
     free, places = (across >= room.left) & (across <= 1 - room.right), {}
-    for part in np.unique(seen[seen >= 0]):
-        inside = distance_transform_edt(np.pad(seen == part, 1))[1:-1, 1:-1] * free
+    for part in np.unique(part_numbers[part_numbers >= 0]):
+        inside = distance_transform_edt(np.pad(part_numbers == part, 1))[1:-1, 1:-1] * free
         row, column = np.unravel_index(np.argmax(inside), inside.shape)
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
             places[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)

@@ -49,7 +49,7 @@ def error_marks(maps: Sequence[ErrorMap], compared: Sequence[Comparison], frames
     most = []
     for m, c in zip(maps, compared, strict=True):
         at = np.linspace(0, len(c.test.time) - 1, frames).astype(int)
-        known = {channel.name: channel for channel in c.channels}
-        most.append(np.abs(m.at({name: c.residual(known[name])[at] for name in m.sensors})).max(axis=0))
+        channels = {channel.name: channel for channel in c.channels}
+        most.append(np.abs(m.at({name: c.residual(channels[name])[at] for name in m.sensors})).max(axis=0))
     high = max(float(np.quantile(one, PEAK)) for one in most)
     return marks(*rounded(-high, high))

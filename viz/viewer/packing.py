@@ -28,13 +28,13 @@ def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
 
 def packed_numbers(values: Array, step: Array | float | None = None) -> dict[str, Any]:
     """Rows of numbers (n, k), each column in its own step (k,), or in 65,535 steps over its range; NaN stays NaN."""
-    known = np.isfinite(values)
-    low = np.where(known, values, np.inf).min(axis=0, initial=np.inf)
+    finite = np.isfinite(values)
+    low = np.where(finite, values, np.inf).min(axis=0, initial=np.inf)
     low = np.where(np.isfinite(low), low, 0.0)
-    above = np.where(known, values - low, 0.0)
+    above = np.where(finite, values - low, 0.0)
     fine = np.maximum(above.max(axis=0, initial=0.0), 1e-12) / 65535
     steps = np.broadcast_to(fine if step is None else step, low.shape)
-    whole = np.where(known, np.round(above / steps), UNKNOWN).astype(np.int64)
+    whole = np.where(finite, np.round(above / steps), UNKNOWN).astype(np.int64)
     return {**packed_integers(whole), "low": low.tolist(), "step": steps.tolist()}
 
 

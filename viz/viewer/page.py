@@ -186,11 +186,11 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     last = [] if test.before is None or comparison.before is None else [comparison.before]
     models = [comparison.model, *last, *(e.readings for e in test.earlier)]
     places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in comparison.channels]
-    known = zip(comparison.channels, places, strict=True)
+    pairs = zip(comparison.channels, places, strict=True)
     return {
         "sensors": [
             {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)}
-            for c, xyz in known
+            for c, xyz in pairs
         ],
         "measured": _columns([c.y for c in comparison.channels], at),
         "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],

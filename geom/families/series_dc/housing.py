@@ -49,8 +49,8 @@ def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> t
     here = z.inner0
     for name, (z0, z1) in z.jackets.items():
         prisms += [(finned, here, z0)] if here < z0 else []
-        own = None if bored is None else [nozzle for nozzle in bored if nozzle.jacket == name]
-        prisms += [(jacket_ring(r), z0, z1)] if own is None else jacket_walls(g, r, z0, z1, own)
+        bores = None if bored is None else [nozzle for nozzle in bored if nozzle.jacket == name]
+        prisms += [(jacket_ring(r), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
         here = z1
     return (*prisms, (finned, here, z.inner1))
 

@@ -13,7 +13,7 @@ from small_case import small_case
 from geom.disk_cache import recalled
 from lumped.condensation.basis_cache import BasisCache, Centre
 from thermoscope import caches
-from thermoscope.importing.written import folder_whole
+from thermoscope.importing.case_files import folder_whole
 
 pytestmark = pytest.mark.heavy
 

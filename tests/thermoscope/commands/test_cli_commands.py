@@ -11,7 +11,7 @@ from command_line import RUN
 from small_case import small_case
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.model.revise import MOVED_K, _unmeasured_words, unmeasured
+from thermoscope.commands.model.revise import CHANGE_K, _unmeasured_words, unmeasured
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
 
@@ -93,7 +93,7 @@ def test_places_without_a_sensor_that_a_step_moved_are_told(story):
     after = replace(model, values={**model.values, copper: 1.5 * model.values[copper]})
     found = unmeasured(folder, SimpleNamespace(model=after))
     assert [(p["place"], p["test"]) for p in found] == [("winding", "town")]
-    assert found[0]["after_C"] > found[0]["before_C"] + MOVED_K
+    assert found[0]["after_C"] > found[0]["before_C"] + CHANGE_K
     said = _unmeasured_words(found)
     assert said.startswith("No sensor sees: winding ")
     assert len(said) <= 80

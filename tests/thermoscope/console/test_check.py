@@ -8,7 +8,7 @@ from thermoscope import check
 def test_what_is_there_needs_no_command(monkeypatch):
     monkeypatch.setattr(check, "_gl", lambda: True)
     (found,) = [f for f in check.findings() if f.name == "off-screen OpenGL"]
-    assert (found.found, found.fix) == (True, "")
+    assert (found.present, found.fix) == (True, "")
 
 
 def test_missing_gl_is_needed_and_has_a_command(monkeypatch, capsys):

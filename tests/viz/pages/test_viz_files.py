@@ -92,7 +92,7 @@ def ended(group: int, tries: int = 300) -> bool:
 def test_the_viewer_shows_it_and_ends(recording, tmp_path, monkeypatch):
     started, popen = [], subprocess.Popen
     monkeypatch.setattr(subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])
-    if not next(f for f in findings() if f.name == "Vulkan driver").found:
+    if not next(f for f in findings() if f.name == "Vulkan driver").present:
         pytest.skip("needs a Vulkan driver: apt-get install -y libvulkan1 mesa-vulkan-drivers")
     cold, hot = snapshots(
         recording, {tmp_path / "0.png": ("test_time", 0.0), tmp_path / "1.png": ("test_time", 3600.0)}

@@ -25,15 +25,17 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
     """Which of table I's factors move magnets, winding, end winding and laminations; `out`: folder for plots."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
-    described = load_machine_file(Path(machine))
-    roles = {part.role for part in described.parts}
+    design_machine = load_machine_file(Path(machine))
+    roles = {part.role for part in design_machine.parts}
     if Role.MAGNET not in roles or Role.HOUSING in roles:
         right = "a machine with magnets in open laminations, e.g. pmsm-m1"
-        raise InputError(f"{described.name} has a housing or no magnets", "screening", right)
+        raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
     with progress() as tell:
-        tell(f"screening {described.name}")
-        document = _by_shares(described, design) if design in ("morris", "sobol") else _by_effects(described, design)
-    document = {"machine": described.name, "design": design, **document}
+        tell(f"screening {design_machine.name}")
+        document = (
+            _by_shares(design_machine, design) if design in ("morris", "sobol") else _by_effects(design_machine, design)
+        )
+    document = {"machine": design_machine.name, "design": design, **document}
     give(document, target, lambda: answer(document))
     if out is not None:
         notes(f"written: {path}" for path in plots(document, out))

@@ -54,12 +54,12 @@ def _fault(about: str, tests: Mapping[str, Test]) -> bool:
 
 def checked_subject(folder: Folder, about: str) -> str:
     """A test, an event inside the tests, a fault, or an input."""
-    tests, timed_event = {t.name: t for t in folder.case.tests}, event(about)
-    if timed_event:
-        for test in timed_event.tests:
+    tests, window = {t.name: t for t in folder.case.tests}, event(about)
+    if window:
+        for test in window.tests:
             if test not in tests:
                 raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
-            checked(timed_event, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
+            checked(window, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
     elif about not in tests and not _fault(about, tests) and not any(about in t.inputs for t in tests.values()):
         raise InputError(f"'{about}' is no test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked")
     return about

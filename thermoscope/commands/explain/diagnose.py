@@ -43,8 +43,8 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     checked_diagnosis(folder)
     budgets = folder.budgets
     diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
-    named = {"case": folder.case.name, "revision": folder.case.model.revision}
-    document = {**named, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
+    header = {"case": folder.case.name, "revision": folder.case.model.revision}
+    document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     save_diagnosis(folder, document)
     return diagnosis, document
 
@@ -55,13 +55,15 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
         return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")
-    named = document.get("named", [])
-    step = f"Next: thermoscope model add {case} {named[0]}" if named else f"Next: thermoscope explain effects {case}"
+    effects = document.get("named", [])
+    step = (
+        f"Next: thermoscope model add {case} {effects[0]}" if effects else f"Next: thermoscope explain effects {case}"
+    )
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     candidates = document["candidates"]
-    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, named), remaining,
+    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, effects), remaining,
              *events(document), *contradiction(document.get("contradiction")), next_tests(document),
              in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
@@ -109,16 +111,16 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     return lines
 
 
-def _lost(candidates: Sequence[Mapping[str, Any]], named: Sequence[str]) -> list[str]:
+def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> list[str]:
     """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
-    if not named:
+    if not effects:
         return []
     refitted = [f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}." for c in candidates[1:ROWS]
-                if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in named]  # fmt: skip
-    rivals = sorted((c for c in candidates if c["effect"] not in named and not c["note"]), key=lambda c: -c["score"])
+                if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in effects]  # fmt: skip
+    rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
-    lead = next(c["score"] for c in candidates if c["effect"] == named[0])
-    return [*refitted, f"Rivals alone have less evidence: {each}; {named[0]} {lead:.1f} nats."] if each else refitted
+    lead = next(c["score"] for c in candidates if c["effect"] == effects[0])
+    return [*refitted, f"Rivals alone have less evidence: {each}; {effects[0]} {lead:.1f} nats."] if each else refitted
 
 
 def limit(candidate: Mapping[str, Any]) -> str:

@@ -50,10 +50,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """Those that can sit in the case first, then what the others lack."""
     rows = document["effects"]
     if document["case"] is None:
-        known = [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows]
+        catalogue = [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows]
         sentence = f"{len(rows)} effects are known; with a CASE this says where each could sit in it."
         return Answer(
-            sentence, [Grid("", ["effect", "what", "sits at", "needs"], known)], "docs/reference/quantities.md"
+            sentence, [Grid("", ["effect", "what", "sits at", "needs"], catalogue)], "docs/reference/quantities.md"
         )
     able = [e for e in rows if e["places"]]
     unable = [e for e in rows if not e["places"]]

@@ -33,12 +33,12 @@ def improve(case: str, yes: bool, most: int, target: str | None) -> int:
         checked_columns(folder)
         ledger = Ledger(folder)
         supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
-        done = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
-    last = {"case": folder.case.name, "revision": ledger.history.last.number, **done.diagnosis.document()}
+        result = improve(folder.case, supervisor, most, tell, folder.settings.kinds)
+    last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
-    document = {"case": folder.case.name, **done.document(), "written": ledger.written}
+    document = {"case": folder.case.name, **result.document(), "written": ledger.written}
     give(document, target, lambda: answer(document, folder, case))
-    return 0 if done.adequate else 1
+    return 0 if result.adequate else 1
 
 
 class Ledger:
@@ -86,8 +86,8 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         for s in steps
     ]
     errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
-    where_written = f"{document['written']} revisions written to {folder.settings.model_file}"
-    stored = where_written if document["written"] else "nothing written"
+    destination = f"{document['written']} revisions written to {folder.settings.model_file}"
+    outcome = destination if document["written"] else "nothing written"
     further = "" if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
-    return Answer(f"{document['verdict']}: {document['why']}; {stored}.", [errors, further], more)
+    return Answer(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, further], more)

@@ -14,9 +14,9 @@ MOST = 3  # tests and as many sensors fit the screen
 def next_tests(document: Mapping[str, Any]) -> Grid | str:
     """Three tests and three sensors at most of a diagnosis's document; "" where there is no group."""
     offers = deciding(document)
-    chosen = [o for kind in ("test", "sensor") for o in [x for x in offers if x.kind == kind][:MOST]]
-    if not chosen:
+    best = [o for kind in ("test", "sensor") for o in [x for x in offers if x.kind == kind][:MOST]]
+    if not best:
         return undecided(document)
-    rows = [[o.what, o.kind, o.hours, "; ".join(o.separates), o.gain] for o in chosen]
+    rows = [[o.what, o.kind, o.hours, "; ".join(o.separates), o.gain] for o in best]
     headers = ["what", "kind", "hours", "separates", "predicted gain"]
     return Grid("What would decide", headers, rows, keep=["kind", "predicted gain"])

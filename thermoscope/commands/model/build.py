@@ -33,18 +33,18 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
     """
     from geom import check_cad, export_cad, write_vtu
 
-    described = load_machine_file(Path(machine))
-    folder = out or Path("out") / described.name
+    source = load_machine_file(Path(machine))
+    folder = out or Path("out") / source.name
     if Path(machine).is_file() and folder.resolve() == Path(machine).resolve().parent:
         raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
-        built, size = built_from(described, accuracy, tell)
+        built, size = built_from(source, accuracy, tell)
         checked = crosscheck.checked(built, size, tell)
         tell("solids")
-        solids = check_cad(described)
+        solids = check_cad(source)
         tell(f"writing {folder}")
-        export_cad(described, folder)
-        write_vtu(built.mesh, folder / f"{described.name}.vtu")
+        export_cad(source, folder)
+        write_vtu(built.mesh, folder / f"{source.name}.vtu")
         document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
@@ -69,7 +69,7 @@ def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
 
 
 def built_from(
-    described: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
+    source: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
 ) -> tuple[Built, NetworkSize | None]:
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
     from lumped.machine.bases import on_all
@@ -77,8 +77,8 @@ def built_from(
     from thermoscope.verification.network_size import accurate_network
 
     if accuracy is None:
-        return usual(on_all(described), size_m, progress=tell), None
-    size = accurate_network(described, accuracy, size_m, tell)
+        return usual(on_all(source), size_m, progress=tell), None
+    size = accurate_network(source, accuracy, size_m, tell)
     return size.built, size
 
 

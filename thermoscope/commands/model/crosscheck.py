@@ -29,11 +29,11 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
     from thermoscope.verification.network_size import accurate_network
 
-    described = load_machine_file(Path(machine))
-    folder = out or Path("out") / described.name
+    source = load_machine_file(Path(machine))
+    folder = out or Path("out") / source.name
     with progress() as tell:
-        size = accurate_network(described, accuracy, progress=tell)
-        document = {"machine": described.name, **checked(size.built, size, tell)}
+        size = accurate_network(source, accuracy, progress=tell)
+        document = {"machine": source.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
     return 0 if size.met else 1
@@ -82,11 +82,11 @@ def bearable(built: Built) -> dict[str, float]:
     from thermoscope.verification.crosscheck import steady_state
 
     point = rated_inputs(built.machine)
-    named = [i for i, state in enumerate(built.network.states) if "#" not in state]
+    means = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
     while True:
         with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
-            T = steady_state(built.network, point, 20.0)[named]
+            T = steady_state(built.network, point, 20.0)[means]
             if T.min() > 0.0 and T.max() < HOT:
                 return point
         point = {**point, "current_A": 0.8 * point["current_A"]}

@@ -69,8 +69,8 @@ def _total(row: Mapping[str, Any]) -> float:
 
 def words(rows: Places) -> str:
     """What a missing number means."""
-    declared = all(row["mesh_K"] is None for row in rows)
-    field = "a declared network has no mesh and nothing is condensed; " if declared else ""
-    timed = any(row["time_K"] is not None for row in rows)
-    time = "time steps as the integrator estimates them" if timed else "nothing estimates the time steps here"
+    meshless = all(row["mesh_K"] is None for row in rows)
+    field = "a declared network has no mesh and nothing is condensed; " if meshless else ""
+    has_time = any(row["time_K"] is not None for row in rows)
+    time = "time steps as the integrator estimates them" if has_time else "nothing estimates the time steps here"
     return f"error budget: {field}{time}; an effect that changes no sensor by more cannot be told from it"

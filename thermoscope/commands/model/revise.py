@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 NO_EVENT = "thermoscope explain diagnose first: it found no event in these"
 FEW = 4  # parameters named in a sentence
-MOVED_K = 1.0  # what a step has to move where no sensor is, to be told
+CHANGE_K = 1.0  # what a step has to move where no sensor is, to be told
 LINE = 75  # letters, so that its unit still fits into 80
 
 
@@ -156,7 +156,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
-    stored = where if document["written"] else "nothing written (--anyway writes it)"
+    outcome = where if document["written"] else "nothing written (--anyway writes it)"
     rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
     errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
@@ -167,24 +167,24 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         _blind(document["parameters"]),
     ]  # fmt: skip
     return Answer(
-        f"{name}: {verdict}; {document['why']}; {stored}.",
+        f"{name}: {verdict}; {document['why']}; {outcome}.",
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
-    seen = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
-    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in seen]
+    identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
+    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in identifiable]
     headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
     return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
 
 
 def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
     """Where no reading says whether the step is right: as many places as a line holds."""
-    moved = [p for p in places if abs(p["after_C"] - p["before_C"]) >= MOVED_K]
+    changes = [p for p in places if abs(p["after_C"] - p["before_C"]) >= CHANGE_K]
     text = ""
-    for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in moved):
+    for each in (f"{p['place']} {p['before_C']:.1f} -> {p['after_C']:.1f}" for p in changes):
         longer = f"{text}, {each}" if text else f"No sensor sees: {each}"
         if text and len(longer) > LINE:
             break

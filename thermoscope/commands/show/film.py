@@ -43,12 +43,12 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         models = runs | {now(folder): folder.case}
         played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
         limit_K = folder.limits(test)
-        seen = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
+        sensors = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
         when = [(t, w) for w, (times, _) in played.items() for t in times]
-        titles = [title(test, t, w, row) for (t, w), row in zip(when, seen, strict=True)]
+        titles = [title(test, t, w, row) for (t, w), row in zip(when, sensors, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
         animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
-                sensors=seen, limits=temperature_range(folder, nodes),
+                sensors=sensors, limits=temperature_range(folder, nodes),
                 tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Answer(f"{file}"))
     return 0

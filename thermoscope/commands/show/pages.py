@@ -115,9 +115,9 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     """What the page shows, and whether it is of the model before its last step."""
-    stored = current_diagnosis(folder)
-    if stored is not None:
-        return stored, False
+    current = current_diagnosis(folder)
+    if current is not None:
+        return current, False
     last = last_diagnosis(folder)
     return last, last is not None
 
@@ -155,10 +155,10 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     into.mkdir(parents=True, exist_ok=True)
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
-    seen = sensors(comparison_of(folder, test), folder.positions)
+    all_sensors = sensors(comparison_of(folder, test), folder.positions)
     title = f"{end_of(test)}: temperature of the model"
     limits = temperature_range(folder, nodes)
-    cutaway(nodes, now, sensors=seen, title=title, limits=limits, note=LATE, png=file)
+    cutaway(nodes, now, sensors=all_sensors, title=title, limits=limits, note=LATE, png=file)
     out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
     out |= _missing_heat(diagnosis, nodes, into)
     earlier = before_last(folder)
@@ -214,12 +214,12 @@ def assumptions(folder: Folder) -> list[str]:
     s, case = folder.settings, folder.case
     kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
     roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
-    used = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
+    summary = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
     sigma = sorted({f"{c.sigma_K:g}" for t in case.tests for c in t.channels}, key=float)
     spread = " to ".join(sigma[:: max(1, len(sigma) - 1)])
     return [
         f"The model is {kind} with {len(case.model.network.parameters)} adjustable parameters.",
-        f"Tests by role: {used}.",
+        f"Tests by role: {summary}.",
         *([f"Sample steps: {sampled(folder.steps)}."] if folder.steps else []),
         f"Sensors are taken to be right within {spread} K (one standard deviation).",
         *folder.notes,
@@ -228,9 +228,9 @@ def assumptions(folder: Folder) -> list[str]:
 
 def commands(folder: Folder, case: str) -> list[str]:
     """What leads from the declared model to this page."""
-    known = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
-    done = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in known]
-    return [*done, f"thermoscope show report {case}"]
+    calls = [r for r in folder.history.revisions if r.action in ("calibrate", "add", "remove")]
+    lines = [f"thermoscope model {r.action} {case} {r.effect}".strip() for r in calls]
+    return [*lines, f"thermoscope show report {case}"]
 
 
 def provenance() -> str:

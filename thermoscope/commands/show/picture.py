@@ -122,9 +122,9 @@ def _field(s: Subject, png: Path) -> None:
     from viz import cutaway, sensors
     from viz.data import LATE
 
-    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
+    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.when}: temperature of the model"
-    cutaway(s.nodes, s.field(), sensors=seen, title=title, limits=s.limits, note=LATE, png=png).close()
+    cutaway(s.nodes, s.field(), sensors=all_sensors, title=title, limits=s.limits, note=LATE, png=png).close()
 
 
 def _machine(s: Subject, png: Path) -> None:
@@ -156,9 +156,9 @@ def _misses(s: Subject, png: Path) -> None:
     from viz import misses, sensors
 
     error = error_field(s.folder, s.test, s.nodes)
-    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
+    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.test.name}, its last fifth: measured minus model"
-    misses(s.nodes, error.mean, error.explained, sensors=seen, title=title, png=png).close()
+    misses(s.nodes, error.mean, error.explained, sensors=all_sensors, title=title, png=png).close()
 
 
 def _uncertainty(s: Subject, png: Path) -> None:
@@ -167,9 +167,9 @@ def _uncertainty(s: Subject, png: Path) -> None:
     from viz.data import LATE
 
     half95 = field_half95(s.folder, s.test, s.nodes.parts, s.tell)
-    seen = sensors(comparison_of(s.folder, s.test), s.folder.positions)
+    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.when}: 95 % band of the model"
-    uncertainty(s.nodes, half95, sensors=seen, title=title, note=LATE, png=png).close()
+    uncertainty(s.nodes, half95, sensors=all_sensors, title=title, note=LATE, png=png).close()
 
 
 def _bands(s: Subject, png: Path) -> None:

@@ -48,8 +48,8 @@ def suspected(folder: Folder) -> list[str]:
     if document is None:
         right = f"thermoscope explain diagnose {folder.case.name} first, or --effect EFFECT@PLACE"
         raise InputError("has no diagnosis of the model as it stands", folder.case.name, right)
-    ranked = sorted(document["candidates"], key=lambda c: -c["score"])
-    likely = [c["effect"] for c in ranked if c["decision"] != "no"] or [c["effect"] for c in ranked]
+    by_score = sorted(document["candidates"], key=lambda c: -c["score"])
+    likely = [c["effect"] for c in by_score if c["decision"] != "no"] or [c["effect"] for c in by_score]
     if not likely:
         raise InputError("has a diagnosis without candidates", folder.case.name, "--effect EFFECT@PLACE")
     return likely[:MOST]

@@ -104,5 +104,5 @@ def viewer_documents(folder: Folder, tell: Progress, agreement: bool = True) -> 
 
 def revisions(folder: Folder) -> list[Revision]:
     """The last one first, then the one before it, the start, and the others with the newest first, MOST in all."""
-    known = [Revision(0, "calibrate"), *folder.history.revisions][::-1]
-    return [*known[:2], *known[2:][-1:], *known[2:-1]][:MOST] if len(known) > 1 else []
+    newest_first = [Revision(0, "calibrate"), *folder.history.revisions][::-1]
+    return [*newest_first[:2], *newest_first[2:][-1:], *newest_first[2:-1]][:MOST] if len(newest_first) > 1 else []

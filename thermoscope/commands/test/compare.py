@@ -104,12 +104,12 @@ def bands_of(rows: Sequence[Mapping[str, Any]]) -> Grid:
 
 def roles_in_short(records: Sequence[Mapping[str, Any]]) -> str:
     """How many roles nobody declares; "" where all are."""
-    guessed = [r["name"] for r in records if r["known"] == "guessed"]
-    if not guessed:
+    guesses = [r["name"] for r in records if r["known"] == "guessed"]
+    if not guesses:
         return ""
     unknown = sum(r["role"] is None for r in records if r["known"] == "guessed")
     how = 'say role = "..." in network.toml'
-    return f"{len(guessed)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
+    return f"{len(guesses)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
 
 
 def roles(records: Sequence[Mapping[str, Any]]) -> Grid:
@@ -169,6 +169,6 @@ def _pulses(h: Mapping[str, Any]) -> str:
 def _pattern(p: Mapping[str, Any] | None) -> list[str]:
     if p is None:
         return ["", ""]
-    ranked = sorted(p["follows"].items(), key=lambda kv: -kv[1])
+    by_ratio = sorted(p["follows"].items(), key=lambda kv: -kv[1])
     white = min(p["ljung_box_p"], p["periodogram_p"]) > WHITE
-    return ["yes" if white else "no", ", ".join(name for name, ratio in ranked[:2] if ratio > 1.0)]
+    return ["yes" if white else "no", ", ".join(name for name, ratio in by_ratio[:2] if ratio > 1.0)]

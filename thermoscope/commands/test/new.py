@@ -18,6 +18,7 @@ from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.extras import message as missing_extra
 from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, common, grouped, shift
+from thermoscope.importing.case_files import folder_whole, quoted, write_case
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
 from thermoscope.importing.dialogue import Dialogue
@@ -26,7 +27,6 @@ from thermoscope.importing.guess import Guess, guesses
 from thermoscope.importing.source import Source, read_source, signature
 from thermoscope.importing.starter import place_of, starter
 from thermoscope.importing.target import Target, target_of
-from thermoscope.importing.written import folder_whole, quoted, write_case
 from thermoscope.recordings.grid import LONGEST_S
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
         return 'network = "network.toml"'
 
     places = {s.labels[g.column]: place for s, g in columns if (place := place_of(g, s.labels[g.column]))}
-    return Model(network, replace(target_of(network), known=places), put, True)
+    return Model(network, replace(target_of(network), places_by_header=places), put, True)
 
 
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
@@ -187,10 +187,10 @@ def drafts_of(
     """A test from each group of recordings that ran together; their clocks are aligned."""
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
-        moved = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        part, note = common((first, *moved), window_s)
+        rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
+        part, note = common((first, *rest), window_s)
         name = test_name(first.source.file, [d.name for d in out])
-        draft = Draft(name, (first, *moved), window_s=part, notes=note)
+        draft = Draft(name, (first, *rest), window_s=part, notes=note)
         out.append(dialogue.completed(draft))
     return out
 
@@ -272,12 +272,12 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """What became of each column of the first test, what was assumed, and the next command."""
     tests, folder = document["tests"], document["folder"]
     columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
-    used = sum(bool(_goes(c)) for c in columns)
-    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {used} of {len(columns)} columns "
+    count = sum(bool(_goes(c)) for c in columns)
+    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
                 "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
-    guessed = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
-    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), guessed, _files(tests)]
+    table = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
+    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), table, _files(tests)]
     return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
 

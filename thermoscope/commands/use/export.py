@@ -100,9 +100,9 @@ def _observer(
         design = designed(folder, tell)
         tell("writing the observer")
         looks = outputs(model_of(folder)[0], folder, limits)
-        own = [design.as_learned(c) for c in sensors]
-        of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in own],
-                            folder.case.tests, looks, np.array([s.bias_K for s in own]))  # fmt: skip
+        filters = [design.as_learned(c) for c in sensors]
+        of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in filters],
+                            folder.case.tests, looks, np.array([s.bias_K for s in filters]))  # fmt: skip
     where = out or folder.settings.out / "observer"
     paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {

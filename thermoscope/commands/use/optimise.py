@@ -39,18 +39,18 @@ def optimise(
     request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as seen_notes, _executor(cluster) as executor:
+    with progress() as tell, once() as messages, _executor(cluster) as executor:
         folder = case_or_machine(name, tell)
         problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
-            chosen = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
-            document["interpolation_error"] = Condensations(problem, tell).verified(chosen)
+            samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
+            document["interpolation_error"] = Condensations(problem, tell).verified(samples)
         where = out or Path("out") / f"{folder.case.name}-designs"
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
-    notes(seen_notes)
+    notes(messages)
     give(document, target, lambda: answer(document, where))
     return 0
 
@@ -140,16 +140,16 @@ def _write(
 
 def answer(document: Mapping[str, Any], where: Path) -> Answer:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
-    designs, reference, aimed = document["designs"], document["reference"], document["objectives"]
+    designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
     ends = ", ".join(f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
-                     f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}" for o in aimed)  # fmt: skip
+                     f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}" for o in objectives)  # fmt: skip
     sentence = f"{len(designs)} designs that none beats, of {document['judged']} judged: {ends}."
     names = [v["name"] for v in document["variables"]]
-    headers = ["design", *(WORDS[o] for o in aimed), *(short_key(n) for n in names)]
-    rows = [_row("as it is" + (" (too hot)" if not reference["feasible"] else ""), reference, aimed, names)]
+    headers = ["design", *(WORDS[o] for o in objectives), *(short_key(n) for n in names)]
+    rows = [_row("as it is" + (" (too hot)" if not reference["feasible"] else ""), reference, objectives, names)]
     picked = [designs[round(k)] for k in np.linspace(0, len(designs) - 1, min(12, len(designs)))]
-    rows += [_row(d["design"], d, aimed, names) for d in picked]
-    parts: list[Grid | str] = [Grid("Pareto set", headers, rows, keep=[WORDS[o] for o in aimed])]
+    rows += [_row(d["design"], d, objectives, names) for d in picked]
+    parts: list[Grid | str] = [Grid("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
     if error := document.get("interpolation_error"):
         parts.append(
             f"Against models condensed anew for three of them: rises within {100.0 * _rises(error):.2g} %, settling "
@@ -171,5 +171,5 @@ def _in_display_unit(objective: str, value: float) -> float:
     return value / 60.0 if objective == SETTLING else value
 
 
-def _row(word: str, design: Mapping[str, Any], aimed: Sequence[str], names: Sequence[str]) -> list[Any]:
-    return [word, *(_in_display_unit(o, design[o]) for o in aimed), *(design["values"][n] for n in names)]
+def _row(word: str, design: Mapping[str, Any], objectives: Sequence[str], names: Sequence[str]) -> list[Any]:
+    return [word, *(_in_display_unit(o, design[o]) for o in objectives), *(design["values"][n] for n in names)]

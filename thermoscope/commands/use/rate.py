@@ -48,11 +48,11 @@ def rate(
         )
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as seen_notes:
+    with progress() as tell, once() as messages:
         folder = case_or_machine(name, tell)
         document = {"case": folder.case.name, "revision": folder.case.model.revision,
                     **document_of(folder, request, sure, tell)}  # fmt: skip
-    notes(seen_notes)
+    notes(messages)
     give(document, target, lambda: answer(document))
     return 0
 
@@ -148,8 +148,8 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
     if cycle.drive is not None:
         from lumped.drives.coupled import coupled
 
-        driven = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
-        record = replace(record, inputs=driven.inputs)
+        drive = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
+        record = replace(record, inputs=drive.inputs)
     lap = Lap(record, op.loads)
     share, at = share_for_ever(it.model, op, it.limits, lap)
     return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}
@@ -159,8 +159,8 @@ def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float
     """From rest to the largest speed that was recorded or asked for."""
     if op.speed is None:
         return []
-    seen = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
-    top = request.top_rpm or max([abs(op.inputs[op.speed]), *seen])
+    peaks = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
+    top = request.top_rpm or max([abs(op.inputs[op.speed]), *peaks])
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 
 

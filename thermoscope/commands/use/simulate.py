@@ -39,8 +39,8 @@ def simulate(case: str, cycle: str | None, out: Path | None, target: str | None,
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        known = posterior_of(folder, tell) if wanted(network, sure) else None
-        runs = [_ran(network, values, one, folder, into, tell, known) for one in _cycles(folder, network, cycle)]
+        posterior = posterior_of(folder, tell) if wanted(network, sure) else None
+        runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {
         "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
@@ -91,14 +91,14 @@ def _ran(
     if cycle.drive is None:
         run = integrated(network, record, values, list(rows.values()), keep_states=True)
     else:
-        driven = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
-        run, record, residuals = driven.run, replace(record, inputs=driven.inputs), driven.residuals
+        drive = coupled(network, record, cycle.drive, cycle.watched, values, list(rows.values()))
+        run, record, residuals = drive.run, replace(record, inputs=drive.inputs), drive.residuals
     z = np.asarray(run.z)
     inside, hot = len(rows) - len(sensors(folder)), hot_spots(network, z)
     hottest = [z[:, r.index] @ r.weights for r in hot.values()]
     read = readings(whole, folder, cycle.name, record, run.y[:, inside:])
-    y, named = np.column_stack([run.y[:, :inside], *hottest, read]), list(rows.items())
-    rows = dict([*named[:inside], *hot.items(), *named[inside:]])
+    y, items = np.column_stack([run.y[:, :inside], *hottest, read]), list(rows.items())
+    rows = dict([*items[:inside], *hot.items(), *items[inside:]])
     checked_run(y, record.time, tuple(rows), network)
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:

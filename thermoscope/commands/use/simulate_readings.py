@@ -33,8 +33,8 @@ def short_of(record: Record, share: float = 0.01) -> dict[str, float]:
     Of the torque or speed wanted, against the largest wanted.
     """
     out = {}
-    for name, wanted in record.inputs.items():
+    for name, demand in record.inputs.items():
         if (actual := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
-            missing = np.abs(wanted) - np.abs(actual) > share * np.abs(wanted).max(initial=1e-12)
+            missing = np.abs(demand) - np.abs(actual) > share * np.abs(demand).max(initial=1e-12)
             out[name.replace("_wanted", "")] = float(np.mean(missing))
     return {name: of for name, of in out.items() if of > 0.0}

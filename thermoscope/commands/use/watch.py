@@ -83,7 +83,7 @@ class Session:
     errors: dict[str, list[Array]] = field(default_factory=dict)
     last: Sample | None = None
     spoken: float = -np.inf
-    begun_s: float = 0.0
+    start_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.rows = mean_rows(self.design.process.network)
@@ -91,10 +91,10 @@ class Session:
 
     def take(self, rows: Rows) -> None:
         if self.one is None:
-            self.one, self.begun_s = started(self.design, self.sensors, rows), float(rows.time[0])
+            self.one, self.start_s = started(self.design, self.sensors, rows), float(rows.time[0])
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
-            known_first = {place: y for place, y in first.items() if np.isfinite(y)}
-            self.free = initial_state(self.plain.network, known_first or self.one.filter.x.mean())
+            initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
+            self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
         whole = joined(self.before, rows)
         record = record_of(whole, self.folder)
         y = np.column_stack([whole.readings[c.name] for c in self.sensors])
@@ -119,26 +119,26 @@ class Session:
     def _compare(self, rows: Rows, samples: Sequence[Sample], free: Sequence[Array]) -> None:
         for c in self.withheld:
             y = rows.readings[c.name]
-            own = np.array([s.at(c.row)[0] for s in samples])
+            estimates = np.array([s.at(c.row)[0] for s in samples])
             without = np.array([c.row.weights @ z[c.row.index] for z in free])
-            both = np.column_stack([y - own, y - without])
+            both = np.column_stack([y - estimates, y - without])
             sums = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
             good = np.isfinite(y)
             sums[0] += np.sum(both[good] ** 2, axis=0)
             sums[1] += float(good.sum())
 
     def _note(self, sample: Sample) -> None:
-        seen = {n: sample.at(row) for n, row in self.rows.items()}
-        for name, (T, _) in seen.items():
+        temperatures = {n: sample.at(row) for n, row in self.rows.items()}
+        for name, (T, _) in temperatures.items():
             if name not in self.hottest or self.hottest[name][0] < T:
                 self.hottest[name] = T, sample.time_s
-        numbers = [sample.time_s, *(x for pair in seen.values() for x in pair)]
+        numbers = [sample.time_s, *(x for pair in temperatures.values() for x in pair)]
         numbers += [x for pair in zip(sample.heat, sample.heat_sd, strict=True) for x in pair]
         self.lines.append(",".join(f"{x:.7g}" for x in numbers))
         self.last = sample
         if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
             self.spoken = sample.time_s
-            say(self._line(sample, seen))
+            say(self._line(sample, temperatures))
 
     def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""
@@ -161,17 +161,18 @@ class Session:
     def document(self) -> dict[str, Any]:
         assert self.one is not None
         assert self.last is not None
-        seen = {n: self.last.at(row) for n, row in self.rows.items()}
+        temperatures = {n: self.last.at(row) for n, row in self.rows.items()}
         states = dict(zip((c.name for c in self.sensors), self.one.states, strict=True))
         noise, last = self.design.noise, self.last
         return {
-            "duration_s": last.time_s - self.begun_s, "samples": len(self.lines),
+            "duration_s": last.time_s - self.start_s, "samples": len(self.lines),
             "process_noise": {"time_s": noise.time_s},
             "sensors": [{"sensor": c.name, "place": c.place, "given": c in self.sensors,
                          "dropped": states[c.name].dropped if c.name in states else ""}
                         for c in (*self.sensors, *self.withheld)],
             "places": [{"place": n, "end_C": T, "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
-                        "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]} for n, (T, sd) in seen.items()],
+                        "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]}
+                       for n, (T, sd) in temperatures.items()],
             "missing_heat": [
                 {"place": b, "end_W": last.heat[i], "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
                  "allowed_sd_W": noise.sd[i]}

@@ -49,5 +49,5 @@ class ContactResistance(Effect):
         return [label(link) for link in joints(scene.network)]
 
     def extend(self, network: Network) -> Network:
-        hit = [link.name for link in joints(network) if label(link) == self.place]
-        return with_parameter(network, self.parameter(*hit))
+        names = [link.name for link in joints(network) if label(link) == self.place]
+        return with_parameter(network, self.parameter(*names))

@@ -15,10 +15,10 @@ def gaps(network: Network) -> list[str]:
 
     Where nothing is known to turn, any two solids that a link joins.
     """
-    known = {p.name for p in solids(network)}
-    joined = [link.places for link in network.links if set(link.places) <= known and len(set(link.places)) == 2]
-    pairs = [(a, b) if turns(network, a) else (b, a) for a, b in joined if across_air(network, a, b)]
-    untold = [] if any(turns(network, name) for name in known) else joined
+    bodies = {p.name for p in solids(network)}
+    joints = [link.places for link in network.links if set(link.places) <= bodies and len(set(link.places)) == 2]
+    pairs = [(a, b) if turns(network, a) else (b, a) for a, b in joints if across_air(network, a, b)]
+    untold = [] if any(turns(network, name) for name in bodies) else joints
     return fluids(network, Role.AIR_GAP) or ["|".join(pair) for pair in pairs or untold]
 
 

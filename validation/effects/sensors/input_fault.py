@@ -26,10 +26,10 @@ class Chord(Wrapped):
         """The error on both sides that the chord spans, the input with it added and taken away."""
 
     def factor(self, inputs: Inputs) -> Array | float:
-        known: Mapping[str, Array] = {name: inputs[name] for name in self.reads}
+        readings: Mapping[str, Array] = {name: inputs[name] for name in self.reads}
         error, above, below = self.chord(np.asarray(inputs[self.input], float))
         with within_silence():  # the chord may leave a table that the input itself stays in
-            more, less = (np.asarray(self.base.factor({**known, self.input: u})) for u in (above, below))
+            more, less = (np.asarray(self.base.factor({**readings, self.input: u})) for u in (above, below))
         return np.asarray((more - less) / (2.0 * error))
 
 

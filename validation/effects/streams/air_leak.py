@@ -35,5 +35,5 @@ class AirLeak(Effect):
         return [link.name.split(":", 1)[-1] for link in streams(scene.network)]
 
     def extend(self, network: Network) -> Network:
-        hit = [link.name for link in streams(network) if link.name.split(":", 1)[-1] == self.place]
-        return with_parameter(network, self.parameter(*hit))
+        names = [link.name for link in streams(network) if link.name.split(":", 1)[-1] == self.place]
+        return with_parameter(network, self.parameter(*names))

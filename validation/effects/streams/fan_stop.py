@@ -53,8 +53,8 @@ class FanStop(Effect):
         original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
         test = which.removeprefix(f"{original.name}:")
         new = []
-        own = {t for t, _ in original.targets}
-        for link in [x for x in model_links(network) if x.name in own]:
+        targets = {t for t, _ in original.targets}
+        for link in [x for x in model_links(network) if x.name in targets]:
             new.append(f"{self.name}:{link.name}")
             law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
             network = copy_link(network, link, new[-1], law)

@@ -15,13 +15,13 @@ def flows(network: Network) -> list[Parameter]:
 
 
 def _acts_as_flow(network: Network, links: Mapping[str, Link], p: Parameter) -> bool:
-    moved = [(links[t], e) for t, e in p.targets if t in links]
-    if len(moved) < len(p.targets) or not moved:
+    pairs = [(links[t], e) for t, e in p.targets if t in links]
+    if len(pairs) < len(p.targets) or not pairs:
         return False
-    streams = [e == 1.0 for link, e in moved if link.kind == "stream"]
+    streams = [e == 1.0 for link, e in pairs if link.kind == "stream"]
     films = [
         e != 1.0 and any(network.measures(name) in (AIR, LIQUID) for name in link.law.reads)
-        for link, e in moved if link.kind != "stream"
+        for link, e in pairs if link.kind != "stream"
     ]  # fmt: skip
     return all(streams) and all(films)
 

@@ -98,10 +98,10 @@ def screen(machine: Machine, design: Design, load: Load | None = None) -> Screen
     table = table_of(machine)
     runs = [run(machine, level, load or Load(), table) for level in design.settings()]
     rises = np.array([list(one.values()) for one in runs])
-    named = {name: rises[:, j] for j, name in enumerate(RESPONSES)}
-    named[STEP] = named["winding"] - named["magnets"]
-    named[PATH] = np.array([path_mK_W(one, load or Load()) for one in runs])
-    return Screening(design, rises, {name: effects(design, y, name) for name, y in named.items()})
+    response_of = {name: rises[:, j] for j, name in enumerate(RESPONSES)}
+    response_of[STEP] = response_of["winding"] - response_of["magnets"]
+    response_of[PATH] = np.array([path_mK_W(one, load or Load()) for one in runs])
+    return Screening(design, rises, {name: effects(design, y, name) for name, y in response_of.items()})
 
 
 def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:
@@ -111,13 +111,13 @@ def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], di
     The voids of slots and of end windings are filled in one and the same bath, so the two count as one group.
     """
     table, test = table_of(machine), load or Load()
-    known: dict[tuple[tuple[str, float], ...], dict[str, float]] = {}
+    cache: dict[tuple[tuple[str, float], ...], dict[str, float]] = {}
 
     def rises(levels: Mapping[str, float]) -> dict[str, float]:
         key = tuple(sorted(levels.items()))
-        if key not in known:
-            known[key] = run(machine, levels, test, table)
-        return known[key]
+        if key not in cache:
+            cache[key] = run(machine, levels, test, table)
+        return cache[key]
 
     factors = [
         Varied("convection", 5.0, 10.0), Varied("emissivity", 0.2, 0.8), Varied("base", 0.0, 1.0),

@@ -13,7 +13,7 @@ from validation.case import Test
 from validation.procedure.measuring.warming import equilibrium
 
 Array = NDArray[np.float64]
-CLOSE, ALLOWED, NEVER = 3.0, 4.0, 7.0  # percent of the temperature, as published
+CLOSE, TOLERANCE, NEVER = 3.0, 4.0, 7.0  # percent of the temperature, as published
 Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
 
 
@@ -36,7 +36,7 @@ class Assembly:
     @property
     def verdict(self) -> Verdict:
         limits: tuple[tuple[float, Verdict], ...] = (
-            (CLOSE, "calibrated"), (ALLOWED, "allowed"), (NEVER, "correct the model")
+            (CLOSE, "calibrated"), (TOLERANCE, "allowed"), (NEVER, "correct the model")
         )  # fmt: skip
         return next((word for limit, word in limits if self.percent <= limit), "beyond 7 %")
 
@@ -73,5 +73,5 @@ def worst(rows: Sequence[Assembly]) -> Mapping[str, Any]:
     errors = [r.percent for r in rows]
     return {
         "typical_percent": float(np.median(errors)), "largest_percent": max(errors),
-        "calibrated": all(e <= ALLOWED for e in errors),
+        "calibrated": all(e <= TOLERANCE for e in errors),
     }  # fmt: skip

@@ -74,8 +74,8 @@ def curves(case: Case, resolution_K: float = 0.5) -> Curves:
     network, _ = working(case)
     values, air = physical(case), ambient(network) or network.boundaries[0]
     rules = {t.name: _rules(t, predict(network, t, values).y, resolution_K) for t in case.tests}
-    own = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}
-    return Curves(case, own, rules, dict(_pooled(case.tests, air)))
+    curves_of = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}
+    return Curves(case, curves_of, rules, dict(_pooled(case.tests, air)))
 
 
 def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
@@ -148,7 +148,7 @@ def _end(test: Test, place: str, boundary: str) -> tuple[float, float] | None:
     late, air = test.time >= LATE * test.time[-1], np.broadcast_to(test.boundaries[boundary], test.time.shape)
     ends = []
     for c in (c for c in test.channels if c.place == place):
-        seen = late & np.isfinite(c.y)
-        if seen.any():
-            ends.append((float(np.mean(c.y[seen] - air[seen])), c.sigma_K))
+        rows = late & np.isfinite(c.y)
+        if rows.any():
+            ends.append((float(np.mean(c.y[rows] - air[rows])), c.sigma_K))
     return (float(np.mean([r for r, _ in ends])), max(u for _, u in ends)) if ends else None

@@ -53,12 +53,12 @@ class Meter:
             raise InputError(
                 f"the {self.name} has no range up to {range_high:g} {self.unit}", where, f"ranges: {names}"
             )
-        used = min(self.ranges, key=lambda r: abs(r.high - range_high))
+        nearest = min(self.ranges, key=lambda r: abs(r.high - range_high))
         why = f"{value:g} {self.unit} was read on the range up to {range_high:g} {self.unit}, "
-        if used.high < value:
+        if nearest.high < value:
             raise InputError(why + "which ends below it", where, f"the range up to {best.high:g} {self.unit}")
         right = f"the range up to {best.high:g} {self.unit} (resolution {best.resolution:g})"
-        raise InputError(f"{why}resolution {used.resolution:g} {self.unit}", where, right)
+        raise InputError(f"{why}resolution {nearest.resolution:g} {self.unit}", where, right)
 
     def reading(self, name: str, value: float) -> Reading:
         """The value with the limit of error of its range."""

@@ -55,14 +55,14 @@ class Reading:
 class PropagatedUncertainty:
     """A result with its uncertainty in the unit of the result.
 
-    worst : (low, high) over all corners of the inputs;  sd : first order;  drawn_sd, interval : Monte Carlo, 95 %
+    worst : (low, high) over all corners of the inputs;  sd : first order;  monte_carlo_sd, interval : Monte Carlo, 95 %
     budget : input -> standard uncertainty it alone would cause, first order
     """
 
     value: float
     worst: tuple[float, float]
     sd: float
-    drawn_sd: float
+    monte_carlo_sd: float
     interval: tuple[float, float]
     budget: Mapping[str, float]
 
@@ -74,7 +74,7 @@ class PropagatedUncertainty:
     def document(self) -> dict[str, Any]:
         return {
             "value": self.value, "sd": self.sd, "worst": list(self.worst), "gum95": list(self.first_order),
-            "monte_carlo_sd": self.drawn_sd, "monte_carlo95": list(self.interval), "budget": dict(self.budget),
+            "monte_carlo_sd": self.monte_carlo_sd, "monte_carlo95": list(self.interval), "budget": dict(self.budget),
         }  # fmt: skip
 
 
@@ -84,11 +84,11 @@ def propagate(
     """The three uncertainties of result(*readings); `result` works on numbers and on arrays alike."""
     sd, budget = _first_order(result, readings)
     random = np.random.default_rng(seed)
-    seen = np.asarray(result(*(r.draw(random, draws) for r in readings)), float)
-    low, high = np.percentile(seen, [2.5, 97.5])
+    outcomes = np.asarray(result(*(r.draw(random, draws) for r in readings)), float)
+    low, high = np.percentile(outcomes, [2.5, 97.5])
     value = float(result(*(r.value for r in readings)))
     return PropagatedUncertainty(
-        value, _worst(result, readings), sd, float(seen.std(ddof=1)), (float(low), float(high)), budget
+        value, _worst(result, readings), sd, float(outcomes.std(ddof=1)), (float(low), float(high)), budget
     )
 
 
@@ -107,5 +107,5 @@ def _worst(result: Callable[..., Any], readings: Sequence[Reading]) -> tuple[flo
         raise ValueError(f"{len(readings)} inputs: the worst case visits at most 2^{CORNERS} corners")
     signs = np.array(list(product((-1.0, 1.0), repeat=len(readings)))).T
     corners = [r.value + s * r.reach for r, s in zip(readings, signs, strict=True)]
-    seen = np.asarray(result(*corners), float)
-    return float(seen.min()), float(seen.max())
+    outcomes = np.asarray(result(*corners), float)
+    return float(outcomes.min()), float(outcomes.max())

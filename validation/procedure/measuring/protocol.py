@@ -212,9 +212,9 @@ def _hot_ohm(record: Record) -> tuple[State, str]:
         return "refused", f"first reading after {times[0]:g} s; {2 * limit:g} s is the latest at {record.rated_kW:g} kW"
     if cold is not None and hot.cooling[0][1] <= cold.ohm:
         return "refused", f"{hot.cooling[0][1]:g} ohm is not above the cold {cold.ohm:g} ohm"
-    done = _guarded(lambda: _range_words(record.ohmmeter, hot.cooling[0][1], hot.range_high, "hot resistance"))
-    if done[0] == "refused":
-        return done
+    outcome = _guarded(lambda: _range_words(record.ohmmeter, hot.cooling[0][1], hot.range_high, "hot resistance"))
+    if outcome[0] == "refused":
+        return outcome
     if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > INTERVAL_S:
         return (
             "doubtful",

@@ -59,8 +59,8 @@ class Saturation:
 
         low, high = self.emf[0], self.emf[-1]
         if np.min(emf) < low - 1e-9 or np.max(emf) > high + 1e-9:
-            seen = float(np.min(emf) if np.min(emf) < low else np.max(emf))
-            raise InputError(f"{seen:.4g} V lies outside the saturation curve", "saturation", f"{low:g} to {high:g} V")
+            worst = float(np.min(emf) if np.min(emf) < low else np.max(emf))
+            raise InputError(f"{worst:.4g} V lies outside the saturation curve", "saturation", f"{low:g} to {high:g} V")
         remanence = PchipInterpolator(self.emf, self.remanence)(emf)
         return float(remanence) if np.ndim(emf) == 0 else remanence
 

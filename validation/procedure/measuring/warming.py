@@ -71,8 +71,8 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
     from scipy.stats import t as student
 
     minutes, T = np.asarray(minutes, float), np.asarray(T, float)
-    seen = np.isfinite(T)
-    minutes, T = minutes[seen], T[seen]
+    finite = np.isfinite(T)
+    minutes, T = minutes[finite], T[finite]
     if T.size < 5 or np.min(T) <= 0 or np.ptp(T) < 4 * resolution_K:
         raise InputError(f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K", "eq. 8",
                          f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K")  # fmt: skip
@@ -82,18 +82,18 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
     wide = student.ppf(0.975, T.size - 3) * np.sqrt(np.diag(covariance))
     ci = {n: (float(v - w), float(v + w)) for n, v, w in zip("abc", p, wide, strict=True)}
     rmse = float(np.sqrt(np.mean((eq8(minutes, *p) - T) ** 2)))
-    fitted = Warming(float(p[0]), float(p[1]), float(p[2]), ci, rmse)
+    fit = Warming(float(p[0]), float(p[1]), float(p[2]), ci, rmse)
     measured = first if start_C is None and minutes[0] < 0.5 else start_C
-    return Warming(fitted.a, fitted.b, fitted.c, ci, rmse, _doubts(fitted, measured, minutes[-1]))
+    return Warming(fit.a, fit.b, fit.c, ci, rmse, _doubts(fit, measured, minutes[-1]))
 
 
-def _doubts(fitted: Warming, measured: float | None, last_min: float) -> tuple[str, ...]:
+def _doubts(fit: Warming, measured: float | None, last_min: float) -> tuple[str, ...]:
     out = []
-    if measured is not None and abs(fitted.start - measured) > START_K:
-        out.append(f"the formula starts at {fitted.start:.1f} degC, the record at {measured:.1f} degC: "
+    if measured is not None and abs(fit.start - measured) > START_K:
+        out.append(f"the formula starts at {fit.start:.1f} degC, the record at {measured:.1f} degC: "
                    "eq. 8 does not describe the first minutes")  # fmt: skip
-    if fitted.b < 0 and fitted.c < 0 and fitted.time_to_share_min() > last_min:
-        out.append(f"95 % of the end is reached after {fitted.time_to_share_min():.0f} min, after the record's end: "
+    if fit.b < 0 and fit.c < 0 and fit.time_to_share_min() > last_min:
+        out.append(f"95 % of the end is reached after {fit.time_to_share_min():.0f} min, after the record's end: "
                    "the end temperature is extrapolated")  # fmt: skip
     return tuple(out)
 
@@ -121,16 +121,16 @@ def equilibrium(minutes: Array, T: Array, resolution_K: float, window_min: float
     It must have held for a window's length of such pairs, so that one lucky pair does not count.
     """
     minutes, T = np.asarray(minutes, float), np.asarray(T, float)
-    seen = np.isfinite(T)
-    minutes, T = minutes[seen], T[seen]
+    finite = np.isfinite(T)
+    minutes, T = minutes[finite], T[finite]
     if T.size < 4 or minutes[-1] - minutes[0] < 2 * window_min:
         right = f"a record longer than {2 * window_min:g} min"
         raise InputError(f"{T.size} readings", "equilibrium", right)
     late = minutes > minutes[-1] - window_min
     drift = 60.0 * float(np.polyfit(minutes[late], T[late], 1)[0]) if late.sum() > 1 else float("nan")
     before = minutes <= minutes[-1] - window_min + 1e-9
-    moved = np.abs(np.interp(minutes[before] + window_min, minutes, T) - T[before])
-    wrong = np.flatnonzero(moved > resolution_K + 1e-9)
+    change = np.abs(np.interp(minutes[before] + window_min, minutes, T) - T[before])
+    wrong = np.flatnonzero(change > resolution_K + 1e-9)
     first = 0 if wrong.size == 0 else int(wrong[-1]) + 1
     if first >= before.sum() or minutes[first] > minutes[-1] - 2 * window_min + 1e-9:
         return Equilibrium(False, None, float(T[late].mean()), drift, resolution_K)

@@ -258,8 +258,8 @@ class _Builder:
                   "R20_ohm": s.resistance_ohm, "temperature_of": "winding", "prior_sd": 0.02}  # fmt: skip
         out: dict[str, Any] = {"copper": copper}
         if s.magnetic_W:
-            shared = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
-            out["magnetic"] = {"at": shared, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
+            parts = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
+            out["magnetic"] = {"at": parts, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
                                "speed_at": 383, "prior_sd": 0.15}  # fmt: skip
         caps: dict[str, Any] = {"endcap.left": 0.5, "endcap.right": 0.5}
         out["bearings"] = {"at": caps, "kind": "bearing", "P_W": s.friction_W, "of": speed}
@@ -276,8 +276,8 @@ class _Builder:
         both = [f"link:{n}{m}" for n in ends for m in ("", ":forced")]
         self._parameter("end space", both, 0.4, "published sets differ by 2 to 3")
         for base in dict.fromkeys(n.rsplit(".", 1)[0] for n in self.nodes if n.startswith("base")):
-            own = [n for n in films if n.startswith(f"{base}.")]
-            acts = [f"link:{n}{m}" for n in own for m in (still, ":radiation")]
+            base_films = [n for n in films if n.startswith(f"{base}.")]
+            acts = [f"link:{n}{m}" for n in base_films for m in (still, ":radiation")]
             self._parameter(f"{base} films", acts, 0.4, "published plates facing up and down differ by a factor of 2")
         self._parameter(
             "capacity", [f"capacity:{n}" for n in self.nodes if "C_J_K" in self.nodes[n]], 0.05, "fill factors"

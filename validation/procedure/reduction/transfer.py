@@ -80,8 +80,8 @@ def end_errors(case: Case) -> list[Row]:
         y = predict(network, test, physical(case)).y
         late = test.time >= test.time[-1] - LATE * (test.time[-1] - test.time[0])
         for j, c in enumerate(test.channels):
-            seen = late & np.isfinite(c.y)
-            if seen.any():
-                means = float(c.y[seen].mean()), float(y[seen, j].mean())
+            rows = late & np.isfinite(c.y)
+            if rows.any():
+                means = float(c.y[rows].mean()), float(y[rows, j].mean())
                 out.append(Row(test.name, c.name, *means, COVERAGE * c.sigma_K, float(LIMITS * c.sigma_K)))
     return out

@@ -73,25 +73,25 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
         right = "a machine file with [bases], see docs/how-to/thermal-test.md"
         raise InputError("the network knows no bases", case.name, right)
     if unknown := [n for n in names if n not in [t.name for t in tests]]:
-        known = ", ".join(t.name for t in tests)
-        raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {known}")
+        choices = ", ".join(t.name for t in tests)
+        raise InputError(f"no test '{unknown[0]}'", case.name, f"tests that are not held out: {choices}")
     declared_fit = _fitted(case, tests, None)
-    chosen = [t for t in tests if not names or t.name in names]
-    return [h for test in chosen for h in _of_test(case, tests, test, bases, declared_fit, progress)]
+    subjects = [t for t in tests if not names or t.name in names]
+    return [h for test in subjects for h in _of_test(case, tests, test, bases, declared_fit, progress)]
 
 
 def _of_test(
     case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
 ) -> list[Hypothesis]:
-    declared, fits = declared_base(test, bases), {}
+    sheet_base, fits = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
-        moved = [on_base(t, base, bases) if t is test else t for t in tests]
-        fits[base] = declared_fit if base == declared else _fitted(case, moved, declared_fit)
+        variant = [on_base(t, base, bases) if t is test else t for t in tests]
+        fits[base] = declared_fit if base == sheet_base else _fitted(case, variant, declared_fit)
     cost = {base: deviance(fit) for base, fit in fits.items()}
     least = min(cost.values())
     rows = [
-        Hypothesis(test.name, base, base == declared, cost[base] - least,
+        Hypothesis(test.name, base, base == sheet_base, cost[base] - least,
                    base_heat(fit.network, on_base(test, base, bases), fit.values))
         for base, fit in fits.items()
     ]  # fmt: skip
@@ -120,10 +120,10 @@ def wrong_bases(hypotheses: Sequence[Hypothesis]) -> list[str]:
     return [_words(h, hypotheses) for h in hypotheses if h.declared and h.excluded]
 
 
-def _words(declared: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
-    own = [h for h in hypotheses if h.test == declared.test and not h.excluded]
-    better = " or ".join(h.base for h in own)
+def _words(sheet: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
+    possible = [h for h in hypotheses if h.test == sheet.test and not h.excluded]
+    better = " or ".join(h.base for h in possible)
     return (
-        f"{declared.test} did not stand on the base its sheet says ({declared.base}, deviance {declared.deviance:.0f}) "
-        f"but on: {better}. At the base, not in the films of the machine: {declared.heat.against(own[0].heat)}"
+        f"{sheet.test} did not stand on the base its sheet says ({sheet.base}, deviance {sheet.deviance:.0f}) "
+        f"but on: {better}. At the base, not in the films of the machine: {sheet.heat.against(possible[0].heat)}"
     )
