@@ -10,6 +10,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
+from urllib.parse import urljoin
 
 import pytest
 
@@ -221,8 +222,15 @@ def drawn(browser, home, width=960, height=700):
 
 
 def framed(tab):
-    """The frame of the machine once it has drawn."""
-    frame = tab.query_selector("#viewer").content_frame()
+    """The frame of the machine that the page asks for, once it has drawn."""
+    source = urljoin(tab.url, tab.get_attribute("#viewer", "src"))
+    for _ in range(LONG // 100):
+        frame = next((f for f in tab.frames if f.url == source), None)  # before it has gone there, the last machine's
+        if frame is not None:
+            break
+        tab.wait_for_timeout(100)
+    else:
+        pytest.fail(f"no frame of the page went to {source}")
     until(frame, "window.viewer && viewer.frames > 0 && !viewer.dirty")
     return frame
 
