@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_motor import machine, motor
-from test_viz_viewer import BROWSER, PLACE, TOP, drawn_by_a_browser, recorded
+from viewer_pages import PLACE, TOP, recorded, tab
 
 from geom import build_mesh, load_machine
 from viz import split
@@ -16,7 +16,8 @@ from viz.viewer.looks import LOST, SHARES, STEP_M, coarse, packed_looks
 from viz.viewer.packing import unpacked
 from viz.viewer.page import document, render
 
-MACHINES = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket", "pmsm-m1")
+LARGE = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket")
+MACHINES = ("pmsm-m1", *(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE))
 COARSE_M = 0.15  # of the mesh: its nodes only say which part a corner is warm as
 FAR = 0.01  # of the machine's size that a corner may leave the shape by: three pixels of three hundred
 
@@ -69,12 +70,12 @@ def test_few_triangles_keep_shapes(name):
         assert less.shape.volume == pytest.approx(body.shape.volume, rel=LOST)
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_the_page_opens_with_it_and_cuts_show_the_mesh(tmp_path):
+@pytest.mark.heavy
+def test_the_page_opens_with_it_and_cuts_show_the_mesh(browser, tmp_path):
     """A part and its true temperature under the pointer either way; the machine fills the picture; a silent console."""
     nodes, one = split(motor(24)), recorded()
     (tmp_path / "v.html").write_text(render(document("motor", nodes, [one], PLACE, machine=machine())))
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         assert page.input_value("#axis") == "3"
         seen = {}
         for axis in ("3", "0"):
@@ -128,13 +129,13 @@ def test_a_computer_that_cannot_draw_makes_the_page_all_the_same(monkeypatch):
     assert document("motor", nodes, [recorded()], PLACE, machine=machine())["looks"]["counts"]
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(tmp_path):
+@pytest.mark.heavy
+def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(browser, tmp_path):
     """As it looks: the open shaft is seen from above and the housing's lower side is not; from below the other way."""
     nodes, one = split(motor(24)), recorded()
     place = {"T_housing": (0.0, -0.22, 0.3), "T_shaft": (-0.02, 0.02, 0.3)}
     (tmp_path / "v.html").write_text(render(document("motor", nodes, [one], place, machine=machine())))
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         seen = {tilt: page.evaluate(WINDOWS, tilt) for tilt in (1.4, -1.4)}
     assert seen == {1.4: ["T_housing"], -1.4: ["T_shaft"]}
     assert said == []
