@@ -26,12 +26,12 @@ FAR = 0.01  # of the machine's size that a corner may leave the shape by: three 
 def shown(request):
     one = load_machine(request.param)
     nodes = split(build_mesh(one, COARSE_M))
-    return one, nodes, packed_looks(one, nodes)
+    return one, nodes, packed_looks(one, nodes), dressed(one)
 
 
 def test_corners_are_warm_as_the_part_they_show(shown):
     """Both nodes of a corner are of its part; the nearer one tells more."""
-    _, nodes, looks = shown
+    _, nodes, looks, _ = shown
     mix, triangles = unpacked(looks["mix"]), unpacked(looks["triangles"])
     part = np.repeat(np.arange(len(nodes.parts)), np.sum(looks["counts"], axis=1))
     assert len(part) == len(triangles)
@@ -45,22 +45,21 @@ def test_nothing_is_drawn_in_the_quarter_that_is_cut_away(shown):
     """x < 0 < y, but for what is never cut: bolts and the like are left out there as a whole."""
     points = unpacked(shown[2]["points"])
     inside = (points[:, 0] < -STEP_M) & (points[:, 1] > STEP_M)
-    whole = [b.shape.points for b in dressed(shown[0]) if b.whole]
+    whole = [b.shape.points for b in shown[3] if b.whole]
     reach = max((np.ptp(p[:, :2], axis=0).max() for p in whole), default=0.0)
     away = np.minimum(-points[inside, 0], points[inside, 1])
     assert away.size == 0 or away.max() <= reach
 
 
 def test_the_frame_is_that_of_pictures(shown):
-    one, _, looks = shown
-    points = framed(one, dressed(one))
+    one, _, looks, bodies = shown
+    points = framed(one, bodies)
     assert looks["frame"] == [points.min(axis=0).tolist(), points.max(axis=0).tolist()]
 
 
-@pytest.mark.parametrize("name", MACHINES)
-def test_few_triangles_keep_shapes(name):
+def test_few_triangles_keep_shapes(shown):
     """A quarter of the triangles; corners stay within a hundredth of the machine, volumes within four."""
-    bodies = dressed(load_machine(name))
+    bodies = shown[3]
     size = np.linalg.norm(np.ptp(np.concatenate([b.shape.points for b in bodies]), axis=0))
     few = [coarse(b) for b in bodies]
     assert sum(len(b.shape.triangles) for b in few) < 0.25 * sum(len(b.shape.triangles) for b in bodies)
