@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from small_motor import RADII, motor
-from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, tab, warming, write_viewer
+from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, still, tab, warming, write_viewer
 
 from geom import build_mesh, load_machine
 from viz import split
@@ -317,7 +317,7 @@ def test_errors_and_network_stand_in_the_page_at_every_width(browser, tmp_path):
         for width in (1280, 800, 400):
             page.set_viewport_size({"width": width, "height": 700})
             page.set_checked("#networked", True)
-            page.wait_for_function("!viewer.dirty")
+            still(page)
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             assert page.evaluate(INSIDE) == []
             assert page.evaluate(OVERLAPS) == 0
@@ -360,6 +360,7 @@ def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(br
         page.evaluate("viewer.sensors = Array(9).fill(viewer.sensors[0])")
         assert page.evaluate("viewer.labelled().length") == 6
         page.set_viewport_size({"width": 400, "height": 600})
+        still(page)
         assert page.evaluate("viewer.labelled().length") == 3
     assert said == []
 

@@ -59,6 +59,12 @@ def write_viewer(path, title, nodes, tests, positions):
     return path
 
 
+def still(page):
+    """Wait until the page has taken a new size, which it does between two frames, and has drawn what follows."""
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    page.wait_for_function("!viewer.dirty && viewer.smooth")
+
+
 @contextmanager
 def tab(browser, file: Path, width: int = 800, height: int = 600):
     """The page of a file once it has drawn, and what it says on the console; in a tab that shares nothing."""
