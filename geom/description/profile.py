@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -117,11 +118,13 @@ class ArcGrid:
 
     def _merged(self, first: Iterable[float], others: Iterable[float]) -> list[float]:
         """All own breaks, and those of others that do not nearly coincide with one already there."""
-        breaks = sorted(first)
+        around = sorted((b % (2 * math.pi), b) for b in first)
         for angle in sorted(others):
-            if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in breaks) > 0.05 * self.step:
-                breaks.append(angle)
-        return sorted(breaks)
+            at = bisect(around, (angle % (2 * math.pi), angle))
+            beside = (around[at - 1][1], around[at % len(around)][1])  # of hundreds only the two neighbours may be near
+            if min(abs((angle - b + math.pi) % (2 * math.pi) - math.pi) for b in beside) > 0.05 * self.step:
+                around.insert(at, (angle % (2 * math.pi), angle))
+        return sorted(b for _, b in around)
 
     def facet(self, loop: Loop) -> list[tuple[float, float]]:
         """Corner points of the faceted loop (m)."""

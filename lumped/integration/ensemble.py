@@ -48,14 +48,17 @@ def _some(network: Network, record: Record, members: Members, rows: Sequence[Row
 
 
 @contextmanager
-def dask_cluster(address: str) -> Iterator[Executor]:
-    """The workers of a Dask cluster (optional package `distributed`) as an executor; its workers need this package."""
+def dask_cluster(address: str, wait_s: float = 10.0) -> Iterator[Executor]:
+    """The workers of a Dask cluster (optional package `distributed`) as an executor; its workers need this package.
+
+    wait_s : how long its scheduler may take to answer (s): a busy one takes seconds;  InputError: it does not
+    """
     try:
         from distributed import Client
     except ImportError:
         raise MissingDependency("the package 'distributed' is not installed: pip install distributed") from None
     try:
-        client = Client(address, timeout="10s")
+        client = Client(address, timeout=wait_s)
     except OSError as fault:
         raise InputError(f"no Dask scheduler answers: {fault}", address, "tcp://HOST:8786 of a running one") from None
     with client:

@@ -108,7 +108,7 @@ def opened_once(load_case, home):
 
 
 LINES = [
-    pytest.param(case, words, marks=[pytest.mark.heavy] if all_[: len(MESHED)] == MESHED else [])
+    pytest.param(case, words, marks=[pytest.mark.heavy] if case != "tclab" or words in STEPS else [])
     for case, all_ in TAKEN.items() for words in all_
 ]  # fmt: skip
 
@@ -125,7 +125,10 @@ def test_a_shipped_case_goes_through_the_command(home, tmp_path, case, words):
     assert finite(done.document)
 
 
-@pytest.mark.parametrize(("case", "words"), REFUSED, ids=[" ".join(key) for key in REFUSED])
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [pytest.param(*k, marks=[pytest.mark.heavy] if k[0] != "tclab" else [], id=" ".join(k)) for k in REFUSED],
+)
 def test_what_a_shipped_case_has_not_is_said(home, tmp_path, case, words):
     command, *options = words.split()
     done = answered(command, home / "cases" / case, *options, "--json", "-", cwd=tmp_path)

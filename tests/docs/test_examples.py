@@ -13,10 +13,11 @@ WRITES = {
     "residuals": ["residuals-1.png", "residuals-2.png", "parity.html"],
     "machine": ["machine.svg"],
 }
+LONG = {"residuals"}  # a measured case, calibrated
 TESTED_ELSEWHERE = {"hust", "tclab"}
 
 
-@pytest.mark.parametrize("name", TOLERANCE)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.heavy] if n in LONG else []) for n in TOLERANCE])
 def test_example(name, root, tmp_path, monkeypatch):
     """one_node: a step of the integrator may be wrong by 10 mK, of 30 K here; the others are the same sums."""
     monkeypatch.setattr(sys, "argv", [name, str(tmp_path)])

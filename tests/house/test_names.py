@@ -1,11 +1,9 @@
 """No code decides what something is by a piece of its name: roles and quantities say it."""
 
 import ast
-from pathlib import Path
 
 import pytest
 
-ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
 WHOLE = {"startswith", "endswith"}
 PIECES = {"split", "partition", "rpartition", "rsplit"}
 ALLOWED = {  # file -> what its strings are, none of them a user's name for a part, an input or a test
@@ -107,18 +105,18 @@ def _named(node):
     return isinstance(node, ast.Name) and node.id in NAMES
 
 
-def files(root):
-    return [f for room in ROOMS for f in sorted((root / room).rglob("*.py"))]
+@pytest.fixture(scope="module")
+def lines(root, trees):
+    """File -> its lines that look for a literal in a name."""
+    return {str(f.relative_to(root)): sorted(set(guesses(tree))) for f, tree in trees.items()}
 
 
-def test_no_name_is_taken_apart_but_where_the_tool_made_it(root):
-    found = {str(f.relative_to(root)): sorted(set(guesses(ast.parse(f.read_text())))) for f in files(root)}
-    assert {f: lines for f, lines in found.items() if lines and f not in ALLOWED} == {}
+def test_no_name_is_taken_apart_but_where_the_tool_made_it(lines):
+    assert {f: at for f, at in lines.items() if at and f not in ALLOWED} == {}
 
 
-def test_every_exception_is_needed(root):
-    unused = [f for f in ALLOWED if not list(guesses(ast.parse(Path(root, f).read_text())))]
-    assert unused == []
+def test_every_exception_is_needed(lines):
+    assert [f for f in ALLOWED if not lines[f]] == []
 
 
 FAMILY = {"series-dc", "pmsm", "tefc", "poles", "airgap", "yoke", "rotor.core", "rotor.cage", "stator.core",
@@ -136,10 +134,10 @@ def words_of_families(tree):
     return {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and n.value in FAMILY}
 
 
-def test_what_a_family_calls_its_parts_stays_in_its_room(root):
+def test_what_a_family_calls_its_parts_stays_in_its_room(root, trees):
     """The other rooms read roles and `Machine.features`."""
-    others = [f for f in files(root) if f.relative_to(root).parts[0] != "geom"]
-    named = {str(f.relative_to(root)): words_of_families(ast.parse(f.read_text())) for f in others}
+    others = [f for f in trees if f.relative_to(root).parts[0] != "geom"]
+    named = {str(f.relative_to(root)): words_of_families(trees[f]) for f in others}
     assert {f: names for f, names in named.items() if names and f not in PUBLISHED} == {}
     assert all(named[f] for f in PUBLISHED)
 

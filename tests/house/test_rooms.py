@@ -21,9 +21,12 @@ DEEPEST = {"geom": 12, "fem": 10, "lumped": 12, "validation": 14, "viz": 9, "the
 SENTENCES = 6  # of the page of the architecture, which has one picture
 
 
-def modules(root):
-    files = [f for room in ROOMS for f in sorted((root / room).rglob("*.py"))]
-    return {".".join(f.relative_to(root).with_suffix("").parts).removesuffix(".__init__"): f for f in files}
+@pytest.fixture(scope="module")
+def uses(root, trees):
+    """Module -> the modules that it imports."""
+    names = {f: ".".join(f.relative_to(root).with_suffix("").parts).removesuffix(".__init__") for f in trees}
+    modules = set(names.values())
+    return {names[file]: set(imports(tree, modules)) for file, tree in trees.items()}
 
 
 def test_no_folder_is_long(root):
@@ -58,26 +61,22 @@ def test_the_page_of_rooms_names_every_room(root):
     assert missing == set()
 
 
-def test_modules_import_each_other_one_way(root):
-    known = modules(root)
-    assert circle({name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}) == []
+def test_modules_import_each_other_one_way(uses):
+    assert circle(uses) == []
 
 
-def test_folders_import_each_other_one_way(root):
+def test_folders_import_each_other_one_way(uses):
     """At every depth: of all that stands in one folder, files and folders, each uses only what comes before it."""
-    known = modules(root)
-    every = {name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}
-    folders = {name.rpartition(".")[0] for name in known if "." in name}
+    folders = {name.rpartition(".")[0] for name in uses if "." in name}
     assert {"validation", "lumped", "validation.effects"} <= folders
-    assert {f: ring for f in sorted(folders) if (ring := circle(children(every, f)))} == {}
+    assert {f: ring for f in sorted(folders) if (ring := circle(children(uses, f)))} == {}
 
 
 @pytest.mark.parametrize("room", ROOMS)
-def test_the_page_names_folders_after_those_they_use(root, room):
-    known = modules(root)
-    uses = children({name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}, room)
+def test_the_page_names_folders_after_those_they_use(root, uses, room):
+    inside = children(uses, room)
     order = [name for name in re.findall(r"`(\w+)`", rows_of(root)[room]) if (root / room / name).is_dir()]
-    late = {(name, used) for k, name in enumerate(order) for used in uses.get(name, set()) & set(order[k + 1 :])}
+    late = {(name, used) for k, name in enumerate(order) for used in inside.get(name, set()) & set(order[k + 1 :])}
     assert late == set()
 
 
@@ -101,10 +100,8 @@ def test_the_check_sees_folders_that_use_each_other():
     assert circle(children(graph, "r"))
 
 
-def test_no_room_is_deeper_than_it_was(root):
-    known = modules(root)
-    every = {name: set(imports(ast.parse(file.read_text()), known)) for name, file in known.items()}
-    depths = {room: depth({n: m for n, m in every.items() if n.partition(".")[0] == room}) for room in ROOMS}
+def test_no_room_is_deeper_than_it_was(uses):
+    depths = {room: depth({n: m for n, m in uses.items() if n.partition(".")[0] == room}) for room in ROOMS}
     assert {room: n for room, n in depths.items() if n > DEEPEST[room]} == {}
 
 

@@ -4,7 +4,6 @@ import ast
 
 import pytest
 
-ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
 OURS = {"machine", "part", "prism", "geometry", "g", "mesh", "field", "block", "trace", "reduction", "network", "built",
         "case", "test", "record", "folder", "evidence", "fit", "effect", "sensor", "channel", "surface",
         "jacket", "prisms", "usual", "fluid", "link", "source", "place", "parameter", "profile", "tests", "run",
@@ -24,9 +23,8 @@ def untyped(tree):
             yield f"{name}, line {node.lineno}"
 
 
-def test_what_is_ours_is_typed(root):
-    files = [f for room in ROOMS for f in sorted((root / room).rglob("*.py"))]
-    found = {str(f.relative_to(root)): list(untyped(ast.parse(f.read_text(encoding="utf-8")))) for f in files}
+def test_what_is_ours_is_typed(root, trees):
+    found = {str(f.relative_to(root)): list(untyped(tree)) for f, tree in trees.items()}
     assert {name: lines for name, lines in found.items() if lines} == {}
 
 

@@ -5,7 +5,6 @@ import re
 
 import pytest
 
-ROOMS = ("geom", "fem", "lumped", "validation", "viz", "thermoscope")
 # How often a word is still in use; none may be added.
 REMAINING: dict[str, int] = {}
 # Participles that stand for a noun: what it is says more.
@@ -44,31 +43,34 @@ def own_words(root):
     return {word for row in rows for word in row.split(", ")}
 
 
-def public(root):
+@pytest.fixture(scope="module")
+def public(trees):
     """Every module, and every function, method and class without an underscore before its name."""
-    for file in (f for room in ROOMS for f in sorted((root / room).rglob("*.py"))):
-        yield file.stem
-        tree = ast.parse(file.read_text())
-        names = [n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.ClassDef)]
-        yield from (name for name in names if not name.startswith("_"))
+    nodes = (n for tree in trees.values() for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.ClassDef))
+    return [*(file.stem for file in trees), *(n.name for n in nodes if not n.name.startswith("_"))]
 
 
-def local(root):
+@pytest.fixture(scope="module")
+def local(trees):
     """Every parameter and variable, and what begins with an underscore."""
-    yield from variables(root)
-    for file in (f for room in ROOMS for f in sorted((root / room).rglob("*.py"))):
-        names = [n.name for n in ast.walk(ast.parse(file.read_text())) if isinstance(n, ast.FunctionDef | ast.ClassDef)]
-        yield from (name for name in names if name.startswith("_"))
+    nodes = (n for tree in trees.values() for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.ClassDef))
+    return [*variable_names(trees), *(n.name for n in nodes if n.name.startswith("_"))]
 
 
-def variables(root):
+@pytest.fixture(scope="module")
+def variables(trees):
     """Every parameter and variable, and every field of a class."""
-    for file in (f for room in ROOMS for f in sorted((root / room).rglob("*.py"))):
-        for n in ast.walk(ast.parse(file.read_text())):
-            if isinstance(n, ast.arg):
-                yield n.arg
-            elif isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store):
-                yield n.id
+    return variable_names(trees)
+
+
+def variable_names(trees):
+    names = []
+    for n in (n for tree in trees.values() for n in ast.walk(tree)):
+        if isinstance(n, ast.arg):
+            names.append(n.arg)
+        elif isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store):
+            names.append(n.id)
+    return names
 
 
 def words(name):
@@ -81,23 +83,23 @@ def counted(names, known):
     return {word: found.count(word) for word in sorted(set(found))}
 
 
-def test_no_private_words_in_public_names(root):
-    found = counted(public(root), own_words(root))
+def test_no_private_words_in_public_names(root, public):
+    found = counted(public, own_words(root))
     assert {word: n for word, n in found.items() if n > REMAINING.get(word, 0)} == {}
 
 
-def test_no_private_words_in_parameters_and_variables(root):
-    found = counted(local(root), own_words(root))
+def test_no_private_words_in_parameters_and_variables(root, local):
+    found = counted(local, own_words(root))
     assert {word: n for word, n in found.items() if n > REMAINING_LOCALLY.get(word, 0)} == {}
 
 
-@pytest.mark.parametrize("names", [public, local])
-def test_no_participle_is_added_as_a_noun(root, names):
-    assert counted(names(root), PARTICIPLES) == {}
+@pytest.mark.parametrize("names", ["public", "local"])
+def test_no_participle_is_added_as_a_noun(request, names):
+    assert counted(request.getfixturevalue(names), PARTICIPLES) == {}
 
 
-def test_no_participle_is_added_as_a_variable(root):
-    found = counted(variables(root), LOCAL_PARTICIPLES)
+def test_no_participle_is_added_as_a_variable(variables):
+    found = counted(variables, LOCAL_PARTICIPLES)
     assert {word: n for word, n in found.items() if n > REMAINING_PARTICIPLES.get(word, 0)} == {}
 
 

@@ -49,6 +49,7 @@ def test_the_document_says_what_was_estimated(case, rows, document):
     assert table.size == 1500
 
 
+@pytest.mark.heavy
 def test_a_pipe_gives_what_the_file_gives(case, rows, document):
     """A line a minute, and the same temperatures."""
     command = [sys.executable, "-c", RUN, "use", "watch", str(case), "--follow", "-", "--sensor", "T_winding",

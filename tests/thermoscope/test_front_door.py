@@ -236,6 +236,7 @@ def test_the_readme_runs(root, tmp_path, monkeypatch):
     assert (tmp_path / "better.png").stat().st_size > 1000
 
 
+@pytest.mark.heavy
 def test_a_machine_and_its_field():
     """Steady: the heat that goes in comes out, and the rise is positive everywhere."""
     machine = ts.build("pmsm-m1-no-base", size_m=0.1)
@@ -253,6 +254,7 @@ def test_a_machine_and_its_field():
         machine.field(current=1.0)
 
 
+@pytest.mark.heavy
 def test_a_load_at_which_nothing_settles_is_one_message():
     machine = ts.build("pmsm-m1-no-base", size_m=0.1)
     with pytest.raises(ts.InputError, match=r"does not settle at current_A = .*; a smaller load"):

@@ -39,5 +39,5 @@ def test_a_dask_cluster_gives_the_same_to_the_bit(in_turn):
 
 def test_a_cluster_that_does_not_answer_is_named():
     pytest.importorskip("distributed")
-    with pytest.raises(InputError, match="no Dask scheduler"), dask_cluster("tcp://127.0.0.1:1"):
+    with pytest.raises(InputError, match="no Dask scheduler"), dask_cluster("tcp://127.0.0.1:1", 0.2):
         pass

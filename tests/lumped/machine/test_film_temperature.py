@@ -16,13 +16,13 @@ from lumped.machine.shapes import Gap
 from lumped.transfer.properties import Fluid
 from lumped.transfer.terms_value import temperature_value
 
-PropsSI = pytest.importorskip("CoolProp.CoolProp").PropsSI
 PASCAL = 101325.0
 SURFACE_OVER_FLUID = ((40.0, 0.0), (80.0, 40.0), (60.0, 60.0), (140.0, 60.0))  # degC
 
 
 def dry_air(T):
-    """CoolProp's (Lemmon et al. 2000) at T (degC)."""
+    """CoolProp's (Lemmon et al. 2000) at T (degC). Loading it takes three seconds, which other tests do without."""
+    PropsSI = pytest.importorskip("CoolProp.CoolProp").PropsSI
     rho, cp, k, mu = (PropsSI(x, "T", T + 273.15, "P", PASCAL, "Air") for x in ("D", "C", "L", "V"))
     return Fluid(rho, cp, k, mu, 1.0 / (T + 273.15))
 

@@ -15,9 +15,9 @@ from thermoscope.verification.crosscheck import coefficients, crosscheck, steady
 POINT = {"current_A": 200.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
 
 
-@pytest.fixture(scope="module")
-def motor():
-    return build(load_machine("series-dc-100kw"), 0.1, 36, Recipe(tolerance=0.03))
+@pytest.fixture(scope="module", params=[pytest.param("series-dc-100kw", marks=pytest.mark.heavy)])
+def motor(request):
+    return build(load_machine(request.param), 0.1, 36, Recipe(tolerance=0.03))
 
 
 def test_uniform_temperature_moves_no_heat(motor):

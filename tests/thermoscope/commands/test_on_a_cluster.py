@@ -11,6 +11,7 @@ from simulated.fleet import written
 from thermoscope.cli import app
 
 distributed = pytest.importorskip("distributed")
+pytestmark = pytest.mark.heavy
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from geom.errors import InputError
 from thermoscope.workbench.access_control import AccessControl, loopback, served
 from thermoscope.workbench.command import serve
 from thermoscope.workbench.serve import application, token_for
-from thermoscope.workbench.tabs import MOST
+from thermoscope.workbench.tabs import MOST, Tabs
 from viz.viewer.page import script as viewer_script
 
 TOKEN = "a-token-of-enough-characters"
@@ -26,6 +26,29 @@ TOKEN = "a-token-of-enough-characters"
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return with_motor(small_case(tmp_path_factory.mktemp("access")))
+
+
+@pytest.fixture
+def servers(monkeypatch):
+    """The tabs of every server that starts, as it knows them itself."""
+    begun = []
+
+    class Known(Tabs):
+        def __init__(self, *given):
+            super().__init__(*given)
+            begun.append(self)
+
+    monkeypatch.setattr("thermoscope.workbench.serve.Tabs", Known)
+    return begun
+
+
+async def looked_at(tabs, number):
+    """Wait until a server has counted so many connected tabs: it does so after the browser hears of it."""
+    for _ in range(6000):
+        if sum(tab.connected for tab in tabs.open.values()) == number:
+            return
+        await asyncio.sleep(0.01)
+    pytest.fail(f"never were {number} tabs connected")
 
 
 def asked(folder, access, questions):
@@ -185,7 +208,7 @@ def test_serve_always_asks_for_a_token(folder, monkeypatch):
     assert len({access.token for access in controls}) == len(controls) == 4
 
 
-def test_a_duplicated_tab_gets_a_session_of_its_own(folder):
+def test_a_duplicated_tab_gets_a_session_of_its_own(folder, servers):
     """The copy asks with the address of a tab that is still connected; once that one has left, its session is free."""
 
     async def questions(address, session):
@@ -197,10 +220,11 @@ def test_a_duplicated_tab_gets_a_session_of_its_own(folder):
             tab = answer.headers["Location"].removesuffix("index.html")
         first = await asked_for(tab)
         async with session.ws_connect(first):
+            await looked_at(servers[0], 1)
             copy = await asked_for(tab)
             async with session.ws_connect(copy):
-                pass
-        await asyncio.sleep(1.0)
+                await looked_at(servers[0], 2)
+        await looked_at(servers[0], 0)
         return tab, first, copy, await asked_for(tab)
 
     tab, first, copy, again = asked(folder, AccessControl("127.0.0.1", ""), questions)
@@ -232,7 +256,7 @@ def test_pages_run_their_own_scripts_only(folder):
     assert report.startswith("default-src 'none'")
 
 
-def test_a_ninth_tab_has_to_wait(folder):
+def test_a_ninth_tab_has_to_wait(folder, servers):
     """Eight tabs that are looked at stay; the ninth is told, and gets in once one of them is closed."""
 
     async def questions(address, session):
@@ -244,9 +268,10 @@ def test_a_ninth_tab_has_to_wait(folder):
         for _ in range(MOST):
             _, where = await tab()
             sockets.append(await session.ws_connect(f"{address}{where}ws"))
+        await looked_at(servers[0], MOST)
         full, _ = await tab()
         await sockets.pop().close()
-        await asyncio.sleep(1.0)
+        await looked_at(servers[0], MOST - 1)
         free, _ = await tab()
         for socket_ in sockets:
             await socket_.close()

@@ -23,7 +23,8 @@ def counted(folder, tell):
         log.write("x")
     tell("half 1/2")
     yield FIRST
-    time.sleep(folder.seconds)
+    while not Path(folder.go).exists():
+        time.sleep(0.01)
     if folder.fault:
         raise ValueError(folder.fault)
     yield REST
@@ -32,18 +33,33 @@ def counted(folder, tell):
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.setattr("thermoscope.workbench.steps.machine_documents", counted)
-    return SimpleNamespace(history=History(), log=str(tmp_path / "log"), seconds=0.5, fault="", built="a machine")
+    (tmp_path / "go").touch()  # what holds the rest back where it is not there
+    return SimpleNamespace(
+        history=History(), log=str(tmp_path / "log"), go=str(tmp_path / "go"), fault="", built="a machine"
+    )
+
+
+async def ended(machines):
+    """Wait until no drawing is under way: the last part of one comes before its process has ended."""
+    for _ in range(6000):
+        if not machines.drawings:
+            return
+        await asyncio.sleep(0.01)
+    pytest.fail("a drawing never ended")
 
 
 def test_two_tabs_wait_for_one_drawing(folder):
+    Path(folder.go).unlink()
+
     async def main():
         machines, heard = Machines(), ([], [])
         first, second = machines.drawing(folder, drawing_job), machines.drawing(folder, drawing_job)
         first.hear(heard[0].append)
         second.hear(heard[1].append)
         early = await first.parts[0], first.parts[1].done()
+        Path(folder.go).touch()
         rest = await second.parts[1]
-        await asyncio.sleep(0.1)
+        await ended(machines)
         return machines, early, rest, heard
 
     machines, early, rest, heard = asyncio.run(main())
@@ -64,7 +80,7 @@ def test_a_machine_without_its_rest_is_shown_and_drawn_anew_when_asked_again(fol
         first = await drawing.parts[0]
         with pytest.raises(FailedError, match="no covariance"):
             await drawing.parts[1]
-        await asyncio.sleep(0.1)
+        await ended(machines)
         return first, machines.find(folder.history), machines.drawings
 
     assert asyncio.run(main()) == (FIRST, None, [])
@@ -82,7 +98,7 @@ def test_a_tab_that_leaves_stops_nobody_else(folder):
 
 
 def test_what_no_tab_wants_is_stopped_and_made_anew_when_asked_again(folder):
-    folder.seconds = 600.0
+    Path(folder.go).unlink()
 
     async def main():
         machines, heard = Machines(), []
@@ -126,7 +142,7 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
             time.sleep(0.01)
         raise ValueError("no readings")
 
-    folder.seconds = 600.0
+    Path(folder.go).unlink()
     monkeypatch.setattr("thermoscope.workbench.steps.Job", Counted)
     monkeypatch.setattr(serve, "bench", comparing)
     with pytest.raises(ValueError, match="no readings"):

@@ -29,27 +29,34 @@ def leading(case: Case) -> tuple[tuple[str, ...], float]:
     return best.effects, best.probability
 
 
-@pytest.mark.parametrize("lid", [True, False])
-def test_a_test_cut_in_two_gives_the_same_odds(lid):
-    whole = bench() if lid else bench(())
-    *others, last = whole.tests
-    effects, p = leading(whole)
+@pytest.fixture(scope="module")
+def whole():
+    """The bench with its lid, and what its tests lead to as they are."""
+    return bench(), *leading(bench())
+
+
+@pytest.mark.parametrize("lid", [pytest.param(True, marks=pytest.mark.heavy), False])
+def test_a_test_cut_in_two_gives_the_same_odds(request, lid):
+    case, effects, p = request.getfixturevalue("whole") if lid else (bench(()), *leading(bench(())))
+    *others, last = case.tests
     assert [e.split(" in ")[0] for e in effects] == (["convection.constant@body"] if lid else [])
-    again, q = leading(replace(whole, tests=(*others, *cut(last, 150))))
+    again, q = leading(replace(case, tests=(*others, *cut(last, 150))))
     assert again == effects
     assert q == pytest.approx(p, abs=0.1)
 
 
-def test_the_order_of_the_tests_gives_the_same_odds():
-    whole = bench()
-    turned = replace(whole, tests=tuple(whole.tests[i] for i in np.random.default_rng(3).permutation(3)))
-    (effects, p), (again, q) = leading(whole), leading(turned)
+@pytest.mark.heavy
+def test_the_order_of_the_tests_gives_the_same_odds(whole):
+    case, effects, p = whole
+    turned = replace(case, tests=tuple(case.tests[i] for i in np.random.default_rng(3).permutation(3)))
+    again, q = leading(turned)
     assert again == effects
     assert q == pytest.approx(p, abs=0.01)
 
 
-def test_every_second_sample_leads_to_the_same_effect():
-    whole = bench()
+@pytest.mark.heavy
+def test_every_second_sample_leads_to_the_same_effect(whole):
+    case, effects, p = whole
 
     def thinned(test: Test) -> Test:
         channels = tuple(replace(c, y=c.y[::2]) for c in test.channels)
@@ -57,6 +64,6 @@ def test_every_second_sample_leads_to_the_same_effect():
         around = {n: u[::2] for n, u in test.boundaries.items()}
         return replace(test, time=test.time[::2], inputs=inputs, boundaries=around, channels=channels)
 
-    (effects, p), (again, q) = leading(whole), leading(replace(whole, tests=tuple(map(thinned, whole.tests))))
+    again, q = leading(replace(case, tests=tuple(map(thinned, case.tests))))
     assert again == effects
     assert q == pytest.approx(p, abs=0.1)

@@ -81,13 +81,18 @@ def test_impregnation_sets_the_step_from_winding_to_magnets(published):
     assert abs(step.effects["D"]) > 3 * abs(step.ranked[1][1])
 
 
+@pytest.fixture(scope="module")
+def with_gap():
+    return screen(load_machine("pmsm-m1"), full(WITH_GAP))
+
+
 @pytest.mark.parametrize("response", ["winding minus magnets", "R_w (mK/W)"])
-def test_impregnation_and_liner_gap_set_the_step(response):
+def test_impregnation_and_liner_gap_set_the_step(with_gap, response):
     """The paper's conclusion: with the gap of table II as an eighth factor the two lead, before films and base.
 
     The bath fills the gap too, so a wider gap counts for more where little resin is (D H below zero).
     """
-    step = screen(load_machine("pmsm-m1"), full(WITH_GAP)).effects[response]
+    step = with_gap.effects[response]
     assert [letters for letters, _ in step.ranked if len(letters) == 1][:2] == ["D", "H"]
     assert step.effects["D"] < 0 < step.effects["H"]
     assert "DH" in step.active

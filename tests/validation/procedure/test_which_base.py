@@ -144,6 +144,7 @@ def diagnosed():
     return {said: diagnose(case(b=said), KINDS, plan=False) for said in ("bench", "none")}
 
 
+@pytest.mark.heavy
 def test_diagnosis_says_it_first(diagnosed):
     """The verdict is the base, by mechanism; no sensor and no film is accused of what the base does."""
     found = diagnosed["none"]
@@ -157,6 +158,7 @@ def test_diagnosis_says_it_first(diagnosed):
     assert not rows["b", "bench"]
 
 
+@pytest.mark.heavy
 def test_diagnosis_of_the_right_bases_goes_on(diagnosed):
     """Nothing is missing there: the same tests under the right sheet accuse nobody."""
     found = diagnosed["bench"]

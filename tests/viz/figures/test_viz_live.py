@@ -113,6 +113,7 @@ def test_other_endings_are_refused(tmp_path):
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
+@pytest.mark.heavy
 @pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
 def test_static_pictures_through_a_browser(tmp_path, monkeypatch):
     """The sheet is twice the figure's 700 x 500, and shows the points; the SVG carries the axes' words."""

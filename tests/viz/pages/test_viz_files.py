@@ -43,6 +43,7 @@ def test_other_endings_are_refused(tmp_path):
         animate(NODES, [0.0], FIELDS[:1], tmp_path / "warm.avi")
 
 
+@pytest.mark.heavy
 @pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
 def test_report_is_printed(tmp_path):
     pdf = write_pdf(write_report(Report("road-test", "A test of the printer."), tmp_path / "report.html"))
@@ -89,6 +90,7 @@ def ended(group: int, tries: int = 300) -> bool:
     return False
 
 
+@pytest.mark.heavy
 def test_the_viewer_shows_it_and_ends(recording, tmp_path, monkeypatch):
     started, popen = [], subprocess.Popen
     monkeypatch.setattr(subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])

@@ -5,15 +5,18 @@ import shutil
 
 import pytest
 from firefox import firefox
-from test_viz_viewer import NODES, PLACE, mapped
+from viewer_pages import NODES, PLACE, mapped
 
 from viz.viewer.page import document, render
 
 FIREFOX = shutil.which("firefox") or shutil.which("firefox-esr")
-pytestmark = pytest.mark.skipif(
-    FIREFOX is None or shutil.which("xvfb-run") is None,
-    reason="needs Firefox and a screen: apt-get install -y firefox-esr xvfb xauth",
-)
+pytestmark = [
+    pytest.mark.heavy,
+    pytest.mark.skipif(
+        FIREFOX is None or shutil.which("xvfb-run") is None,
+        reason="needs Firefox and a screen: apt-get install -y firefox-esr xvfb xauth",
+    ),
+]
 DRAWN = """new Promise((done, failed) => {
   const fault = document.getElementById("fault");
   const look = () => window.viewer && viewer.frames > 0 ? done(true)

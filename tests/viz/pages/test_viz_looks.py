@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_motor import machine, motor
-from test_viz_viewer import BROWSER, PLACE, TOP, drawn_by_a_browser, recorded
+from viewer_pages import PLACE, TOP, recorded, tab
 
 from geom import build_mesh, load_machine
 from viz import split
@@ -16,7 +16,8 @@ from viz.viewer.looks import LOST, SHARES, STEP_M, coarse, packed_looks
 from viz.viewer.packing import unpacked
 from viz.viewer.page import document, render
 
-MACHINES = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket", "pmsm-m1")
+LARGE = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket")
+MACHINES = ("pmsm-m1", *(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE))
 COARSE_M = 0.15  # of the mesh: its nodes only say which part a corner is warm as
 FAR = 0.01  # of the machine's size that a corner may leave the shape by: three pixels of three hundred
 
@@ -25,12 +26,12 @@ FAR = 0.01  # of the machine's size that a corner may leave the shape by: three 
 def shown(request):
     one = load_machine(request.param)
     nodes = split(build_mesh(one, COARSE_M))
-    return one, nodes, packed_looks(one, nodes)
+    return one, nodes, packed_looks(one, nodes), dressed(one)
 
 
 def test_corners_are_warm_as_the_part_they_show(shown):
     """Both nodes of a corner are of its part; the nearer one tells more."""
-    _, nodes, looks = shown
+    _, nodes, looks, _ = shown
     mix, triangles = unpacked(looks["mix"]), unpacked(looks["triangles"])
     part = np.repeat(np.arange(len(nodes.parts)), np.sum(looks["counts"], axis=1))
     assert len(part) == len(triangles)
@@ -44,22 +45,21 @@ def test_nothing_is_drawn_in_the_quarter_that_is_cut_away(shown):
     """x < 0 < y, but for what is never cut: bolts and the like are left out there as a whole."""
     points = unpacked(shown[2]["points"])
     inside = (points[:, 0] < -STEP_M) & (points[:, 1] > STEP_M)
-    whole = [b.shape.points for b in dressed(shown[0]) if b.whole]
+    whole = [b.shape.points for b in shown[3] if b.whole]
     reach = max((np.ptp(p[:, :2], axis=0).max() for p in whole), default=0.0)
     away = np.minimum(-points[inside, 0], points[inside, 1])
     assert away.size == 0 or away.max() <= reach
 
 
 def test_the_frame_is_that_of_pictures(shown):
-    one, _, looks = shown
-    points = framed(one, dressed(one))
+    one, _, looks, bodies = shown
+    points = framed(one, bodies)
     assert looks["frame"] == [points.min(axis=0).tolist(), points.max(axis=0).tolist()]
 
 
-@pytest.mark.parametrize("name", MACHINES)
-def test_few_triangles_keep_shapes(name):
+def test_few_triangles_keep_shapes(shown):
     """A quarter of the triangles; corners stay within a hundredth of the machine, volumes within four."""
-    bodies = dressed(load_machine(name))
+    bodies = shown[3]
     size = np.linalg.norm(np.ptp(np.concatenate([b.shape.points for b in bodies]), axis=0))
     few = [coarse(b) for b in bodies]
     assert sum(len(b.shape.triangles) for b in few) < 0.25 * sum(len(b.shape.triangles) for b in bodies)
@@ -69,12 +69,12 @@ def test_few_triangles_keep_shapes(name):
         assert less.shape.volume == pytest.approx(body.shape.volume, rel=LOST)
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_the_page_opens_with_it_and_cuts_show_the_mesh(tmp_path):
+@pytest.mark.heavy
+def test_the_page_opens_with_it_and_cuts_show_the_mesh(browser, tmp_path):
     """A part and its true temperature under the pointer either way; the machine fills the picture; a silent console."""
     nodes, one = split(motor(24)), recorded()
     (tmp_path / "v.html").write_text(render(document("motor", nodes, [one], PLACE, machine=machine())))
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         assert page.input_value("#axis") == "3"
         seen = {}
         for axis in ("3", "0"):
@@ -128,13 +128,13 @@ def test_a_computer_that_cannot_draw_makes_the_page_all_the_same(monkeypatch):
     assert document("motor", nodes, [recorded()], PLACE, machine=machine())["looks"]["counts"]
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(tmp_path):
+@pytest.mark.heavy
+def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(browser, tmp_path):
     """As it looks: the open shaft is seen from above and the housing's lower side is not; from below the other way."""
     nodes, one = split(motor(24)), recorded()
     place = {"T_housing": (0.0, -0.22, 0.3), "T_shaft": (-0.02, 0.02, 0.3)}
     (tmp_path / "v.html").write_text(render(document("motor", nodes, [one], place, machine=machine())))
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         seen = {tilt: page.evaluate(WINDOWS, tilt) for tilt in (1.4, -1.4)}
     assert seen == {1.4: ["T_housing"], -1.4: ["T_shaft"]}
     assert said == []

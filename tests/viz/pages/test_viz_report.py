@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import pytest
 from fictional import HISTORY, comparison, documents
 from PIL import Image
-from test_viz_viewer import BROWSER, NODES, PLACE, recorded
+from viewer_pages import NODES, PLACE, recorded
 
 from thermoscope.workbench.policy import report_policy
 from viz.pages.report import Report, render, write_report
@@ -185,26 +185,21 @@ def test_the_viewer_stands_in_a_frame_that_sees_nothing_of_the_page():
     assert "<iframe" not in render(Report("case"))
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_a_browser_draws_the_viewer_in_the_report(tmp_path):
+@pytest.mark.heavy
+def test_a_browser_draws_the_viewer_in_the_report(browser, tmp_path):
     """From disk, and with the policy under which the workbench hands the report out."""
-    playwright = pytest.importorskip("playwright.sync_api")
     text = render(Report("case", viewer=viewer_page(viewer_document("motor", NODES, [recorded()], PLACE))))
     rule = f'<meta http-equiv="Content-Security-Policy" content="{report_policy()}">'.replace(
         "; frame-ancestors 'none'", ""
     )  # a page from disk cannot forbid its frames
     said = []
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        for name, shown in (("plain", text), ("ruled", text.replace("<head>", f"<head>{rule}", 1))):
-            file = tmp_path / f"{name}.html"
-            file.write_text(shown, encoding="utf-8")
-            page = browser.new_page()
-            page.on("console", lambda message: said.append(message.text))
-            page.goto(file.as_uri())
-            page.click("summary:has-text('Turn it')")
-            page.frame_locator("iframe").locator("#title:has-text('at 60 min')").wait_for()
-            page.close()
-        browser.close()
+    for name, shown in (("plain", text), ("ruled", text.replace("<head>", f"<head>{rule}", 1))):
+        file = tmp_path / f"{name}.html"
+        file.write_text(shown, encoding="utf-8")
+        page = browser.new_page()
+        page.on("console", lambda message: said.append(message.text))
+        page.goto(file.as_uri())
+        page.click("summary:has-text('Turn it')")
+        page.frame_locator("iframe").locator("#title:has-text('at 60 min')").wait_for()
+        page.close()
     assert said == []

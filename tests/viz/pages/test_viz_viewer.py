@@ -1,67 +1,26 @@
-"""The page in the browser: it holds the fields it was made from, and a browser draws it without complaint."""
+"""The page in the browser: it draws it without complaint, and mouse, fingers and keys do what the page says."""
 
 import json
 import shutil
 import subprocess
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from small_motor import RADII, motor
+from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, still, tab, warming, write_viewer
 
 from geom import build_mesh, load_machine
-from lumped.model.network import Row
-from validation.case import Channel, Test
 from viz import split
-from viz.data import Comparison
-from viz.viewer.error_map import ERROR, SHARE, ErrorMap, packed_maps
+from viz.viewer.error_map import ERROR
 from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import BLOCK, ERROR_K, low_rank
-from viz.viewer.network import NetworkRun
-from viz.viewer.packing import packed_integers, packed_numbers, unpacked
-from viz.viewer.page import STEP_K, Earlier, Recorded, document, render
-from viz.viewer.part_shapes import mixed, packed_fields
+from viz.viewer.low_rank import ERROR_K
+from viz.viewer.page import Earlier, document, render
 
-NODES = split(motor(24))
-TIMES = np.linspace(0.0, 3600.0, 13)
-PLACE = {"T_housing": (0.0, 0.22, 0.3), "T_shaft": (0.0, 0.0, 0.3)}
+pytestmark = pytest.mark.heavy
 LARGEST = 1e6  # bytes of a page
 CASE_MESH_M = 0.06  # size of the elements of a case, see thermoscope.pipeline.build
-BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
-
-
-def warming(hot: float) -> np.ndarray:
-    """Each part with a time constant of its own: not a product of one shape and one curve."""
-    tau = 600.0 * (1 + NODES.owner)
-    return 20.0 + hot * (1 - np.exp(-TIMES[:, None] / tau)) * (1 + NODES.points[:, 2])
-
-
-def recorded(before: bool = True) -> Recorded:
-    row = Row(np.array([0]), np.array([1.0]))
-    model = {n: 20.0 + 30.0 * (1 - np.exp(-TIMES / 900.0)) for n in PLACE}
-    channels = tuple(Channel(n, n, row, model[n] + 5.0) for n in PLACE)
-    test = Test("hour", "hold-out", TIMES, {}, {"ambient": np.full(TIMES.size, 20.0)}, channels)
-    return Recorded(
-        Comparison(test, model, dict.fromkeys(model, 1.0)), TIMES, warming(60.0), warming(50.0) if before else None
-    )
-
-
-def test_mixed_shapes_are_the_fields():
-    fields = warming(60.0)
-    found = low_rank(fields)
-    assert len(found.shapes) < len(fields)
-    assert np.abs(found.fields() - fields).max() <= ERROR_K
-
-
-def test_every_part_mixes_its_own_shapes_to_the_fields():
-    """Parts out of step with each other: the machine as a whole needs more shapes than any part does."""
-    fields = warming(60.0)
-    packed = packed_fields(fields, NODES, ERROR_K, STEP_K)
-    assert len(packed["blocks"]) == len(NODES.parts)
-    assert max(block["columns"] - 1 for block in packed["blocks"]) < len(low_rank(fields).shapes)
-    assert np.abs(mixed(packed) - fields).max() < 1.5 * ERROR_K
 
 
 def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -95,11 +54,10 @@ def test_the_page_of_a_shipped_machine_is_small(shipped):
     assert len(shipped.encode()) < LARGEST
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_the_script_leaves_time_for_sixty_pictures_a_second(shipped, tmp_path):
+def test_the_script_leaves_time_for_sixty_pictures_a_second(browser, shipped, tmp_path):
     """Turned and at another instant: the script alone, in the quietest of twenty pictures; GL works beside it."""
     (tmp_path / "v.html").write_text(shipped, encoding="utf-8")
-    with drawn_by_a_browser(tmp_path / "v.html", 1280, 800) as (page, said):
+    with tab(browser, tmp_path / "v.html", 1280, 800) as (page, said):
         spent = page.evaluate(SPENT)
     assert said == []
     assert 0.0 < spent["turn"] < SIXTIETH_MS
@@ -123,96 +81,26 @@ SPENT = """async () => {
 }"""
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_windows_need_a_few_triangles_and_show_what_all_would(shipped, tmp_path):
+def test_windows_need_a_few_triangles_and_show_what_all_would(browser, shipped, tmp_path):
     """The shipped motor uncut: pixel for pixel, from less than half of the triangles."""
     (tmp_path / "v.html").write_text(shipped, encoding="utf-8")
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, _):
+    with tab(browser, tmp_path / "v.html") as (page, _):
         page.select_option("#axis", "-1")
         page.wait_for_function("!viewer.dirty && viewer.smooth")
-        few = page.evaluate(DRAWN, True)
+        page.evaluate(f"() => {{ window.few = ({DRAWN})(true); }}")
         assert 0 < page.evaluate(f"{CORNERS}(viewer.behind)") < 0.5 * page.evaluate(f"{CORNERS}(viewer.whole)")
         page.evaluate("() => { viewer.through = () => viewer.whole; }")
-        assert page.evaluate(DRAWN, True) == few
+        assert page.evaluate(f"() => {{ const [a, b] = [few, ({DRAWN})(true)]; {CHANGED} }}") == []
 
 
 CORNERS = "((mesh) => mesh.spans.flat().reduce((n, [, count]) => n + count, 0))"
 
 
-def test_no_fewer_principal_shapes_would_do():
-    """Against the singular value decomposition, over more nodes than are looked at together."""
-    rng = np.random.default_rng(0)
-    fields = 50.0 + (rng.standard_normal((40, 12)) * np.logspace(1, -3, 12)) @ rng.standard_normal((12, 2 * BLOCK + 7))
-    rest = fields - fields.mean(axis=0)
-    u, s, v = np.linalg.svd(rest, full_matrices=False)
-    errors = [np.abs(rest - (u[:, :r] * s[:r]) @ v[:r]).max() for r in range(13)]
-    found = low_rank(fields)
-    assert np.abs(found.fields() - fields).max() <= ERROR_K
-    assert len(found.shapes) == next(r for r, error in enumerate(errors) if error <= ERROR_K) > 3
-
-
-def test_a_field_that_stays_needs_no_shape():
-    assert len(low_rank(np.full((3, 5), 20.0)).shapes) == 0
-
-
-def test_packing_loses_no_whole_number_and_half_a_step_of_others():
-    rng = np.random.default_rng(1)
-    whole = rng.integers(0, 70_000, (50, 4))
-    assert (unpacked(packed_integers(whole)) == whole).all()
-    numbers = rng.normal(0.0, 3.0, (50, 3))
-    assert np.abs(unpacked(packed_numbers(numbers)) - numbers).max() <= np.ptp(numbers, axis=0).max() / 65535 / 2 * 1.01
-
-
-def test_packing_keeps_what_is_not_known():
-    numbers = np.array([[np.nan, 1.0, np.nan], [2.0, np.nan, np.nan], [3.0, 5.0, np.nan]])
-    assert unpacked(packed_numbers(numbers, 0.5)) == pytest.approx(numbers, nan_ok=True)
-
-
-@pytest.mark.parametrize("before", [True, False])
-def test_the_page_holds_the_fields_it_was_made_from(before):
-    one = recorded(before)
-    held = document("motor", NODES, [one], PLACE)
-    found, states = mixed(held["fields"]), held["tests"][0]["states"]
-    assert len(states) == 1 + before
-    for first, fields in zip(states, one.states, strict=True):
-        assert np.abs(found[first : first + len(fields)] - fields).max() < 1.5 * ERROR_K
-    assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
-
-
-def write_viewer(path, title, nodes, tests, positions):
-    path.write_text(render(document(title, nodes, tests, positions)), encoding="utf-8")
-    return path
-
-
-def test_what_a_name_holds_is_never_run(tmp_path):
-    page = write_viewer(tmp_path / "v.html", "</script><script>x", NODES, [recorded()], PLACE).read_text()
-    assert "</script><script>x" not in page
-    assert "http://" not in page
-    assert "https://" not in page
-
-
-@contextmanager
-def drawn_by_a_browser(file: Path, width: int = 800, height: int = 600):
-    """The page of a file once it has drawn, and what it says on the console; by software GL."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    with playwright.sync_playwright() as engine:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = engine.chromium.launch(executable_path=BROWSER, args=arguments)
-        page, said = browser.new_page(viewport={"width": width, "height": height}), []
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda fault: said.append(str(fault)))
-        page.goto(file.as_uri())
-        page.wait_for_function("window.viewer && viewer.frames > 0")
-        yield page, said
-        browser.close()
-
-
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_a_browser_draws_it_without_complaint(tmp_path):
+def test_a_browser_draws_it_without_complaint(browser, tmp_path):
     """A part and its true temperature under the pointer, other colours at another time, nothing on the console."""
     file, one = tmp_path / "viewer.html", recorded()
     write_viewer(file, "motor", NODES, [one], PLACE)
-    with drawn_by_a_browser(file) as (page, said):
+    with tab(browser, file) as (page, said):
         found = page.evaluate("viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5)")
         assert found["name"] in NODES.parts
         mine = one.fields[-1][NODES.of(found["name"])]
@@ -234,11 +122,10 @@ def test_a_browser_draws_it_without_complaint(tmp_path):
     assert said == []
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_fingers_turn_it_bring_it_nearer_and_choose_a_sensor(tmp_path):
+def test_fingers_turn_it_bring_it_nearer_and_choose_a_sensor(browser, tmp_path):
     """Touches as the browser's own protocol sends them: one finger drags, two spread, one taps a dot."""
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         screen = page.context.new_cdp_session(page)
         screen.send("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
 
@@ -266,11 +153,10 @@ def test_fingers_turn_it_bring_it_nearer_and_choose_a_sensor(tmp_path):
     assert said == []
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_keys_alone_turn_step_play_and_choose(tmp_path):
+def test_keys_alone_turn_step_play_and_choose(browser, tmp_path):
     """Tab reaches the machine and every control; each key does what the page says of it."""
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         page.keyboard.press("Tab")
         assert page.evaluate("document.activeElement.id") == "gl"
         first = page.evaluate(POSE)
@@ -304,11 +190,10 @@ KEYS = (
 )  # fmt: skip
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
+def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(browser, tmp_path):
     """What lay on top is no longer under the pointer; the cut shaft has the area of its polygon, in the plane."""
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, said):
+    with tab(browser, tmp_path / "v.html") as (page, said):
         page.click("text=Parts: shown, ghost, hidden")
         page.select_option("#axis", "-1")
         top, pictures = page.evaluate(TOP)["name"], {}
@@ -328,22 +213,23 @@ def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(tmp_path):
     assert said == []
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_what_hides_a_labelled_sensor_is_ghosted_around_it(tmp_path):
+def test_what_hides_a_labelled_sensor_is_ghosted_around_it(browser, tmp_path):
     """The shaft's lies inside: without its window other pixels, and only those around labelled sensors."""
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with drawn_by_a_browser(tmp_path / "v.html") as (page, _):
+    with tab(browser, tmp_path / "v.html") as (page, _):
         page.select_option("#axis", "-1")
-        drawn = [np.array(page.evaluate(DRAWN, windows)) for windows in (True, False)]
+        changed = np.array(page.evaluate(f"() => {{ const [a, b] = [true, false].map({DRAWN}); {CHANGED} }}"))
         wide, near = page.evaluate("[viewer.gl.drawingBufferWidth, WINDOW]")
         places = page.evaluate("viewer.sensors.map((s) => [viewer.pixel(s)[0], $('gl').height - viewer.pixel(s)[1]])")
-    changed = np.flatnonzero(drawn[0] != drawn[1])
     at = np.stack([changed % wide, changed // wide], axis=1)
     away = np.linalg.norm(at[:, None] - np.array(places), axis=2)
     assert (away.min(axis=1) < near + 1).all()
     assert (away[:, list(PLACE).index("T_shaft")] < near).sum() > near**2
 
 
+# Which pixels differ: compared in the page, as half a million numbers take seconds to come here.
+CHANGED = """if (a.length !== b.length) throw new Error("pictures of different sizes");
+  return a.map((pixel, i) => (pixel === b[i] ? -1 : i)).filter((i) => i >= 0);"""
 DRAWN = """(windows) => {  // one number per pixel, from the lower left
   const v = viewer, gl = v.gl;
   if (!windows) v.labelled = () => [];
@@ -354,19 +240,16 @@ DRAWN = """(windows) => {  // one number per pixel, from the lower left
 }"""
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_a_browser_without_gl_says_so_in_one_message(tmp_path):
-    playwright = pytest.importorskip("playwright.sync_api")
+def test_a_browser_without_gl_says_so_in_one_message(browser, tmp_path):
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
-    with playwright.sync_playwright() as engine:
-        browser = engine.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-3d-apis"])
-        page, faults = browser.new_page(), []
-        page.on("pageerror", lambda fault: faults.append(str(fault)))
-        page.goto((tmp_path / "v.html").as_uri())
-        page.wait_for_selector("#fault:visible")
-        assert "no WebGL 2" in page.inner_text("#fault")
-        assert page.inner_text("#title") == "motor"
-        browser.close()
+    without = browser.browser_type.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-3d-apis"])
+    page, faults = without.new_page(), []
+    page.on("pageerror", lambda fault: faults.append(str(fault)))
+    page.goto((tmp_path / "v.html").as_uri())
+    page.wait_for_selector("#fault:visible")
+    assert "no WebGL 2" in page.inner_text("#fault")
+    assert page.inner_text("#title") == "motor"
+    without.close()
     assert faults == []
 
 
@@ -379,7 +262,6 @@ def section(page, axis: str, share: float, part: str | None = None) -> np.ndarra
     return rows[first : first + count].reshape(-1, 3, 3)
 
 
-TOP = "viewer.pick($('gl').clientWidth * 0.45, $('gl').clientHeight * 0.5)"
 SECTION = """(() => {
   const v = viewer, out = new Float32Array(9 * v.section.spans.reduce((n, [, count]) => n + count, 0));
   v.gl.bindBuffer(v.gl.ARRAY_BUFFER, v.section.buffer); v.gl.getBufferSubData(v.gl.ARRAY_BUFFER, 0, out);
@@ -387,47 +269,18 @@ SECTION = """(() => {
 })()"""
 
 
-def test_flux_of_a_linear_field_is_the_conductivity_times_its_slope():
-    """Fourier: 100 K/m along the axis and 50 K/m across it in parts of their own conductivities, to rounding."""
-    k = {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
-    across, along = np.array(list(k.values()))[NODES.owner].T
-    assert nodal_flux(NODES, 100.0 * NODES.points[:, 2], k) == pytest.approx(0.1 * along)
-    assert nodal_flux(NODES, 50.0 * NODES.points[:, 1], k) == pytest.approx(0.05 * across)
-
-
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_the_browser_mixes_the_same_heat_flux(tmp_path):
+def test_the_browser_mixes_the_same_heat_flux(browser, tmp_path):
     """Node by node within what rounding of the shapes leaves: 0.1 K over the shortest edge."""
     one, k = recorded(before=False), {part: (2.0 + i, 30.0 + i) for i, part in enumerate(NODES.parts)}
     file = tmp_path / "viewer.html"
     file.write_text(render(document("motor", NODES, [one], PLACE, k)), encoding="utf-8")
     expected = nodal_flux(NODES, one.fields[-1], k)
-    with drawn_by_a_browser(file) as (page, _):
+    with tab(browser, file) as (page, _):
         page.select_option("#layer", "2")
         assert page.inner_text("#unit") == "kW/m²"
         found = np.array(page.evaluate("Array.from(viewer.values)"))[: 2 * NODES.size : 2]
         assert page.evaluate("viewer.range[1]") >= np.quantile(expected, 0.95)
     assert np.abs(found - expected).max() < 0.02 * expected.max()
-
-
-def mapped() -> Recorded:
-    """One residual tells more along the axis, the other less; the left half is known, the right a guess."""
-    share = (NODES.points[:, 2] - NODES.points[:, 2].min()) / np.ptp(NODES.points[:, 2])
-    between = ErrorMap(tuple(PLACE), np.stack([share, 0.3 * (1.0 - share)], axis=1), 1.0 - share)
-    part = NODES.parts[:2]
-    T = {name: np.linspace(20.0, 60.0 + i, TIMES.size) for i, name in enumerate(part)}
-    run = NetworkRun(T, {part: np.linspace(0.0, -120.0, TIMES.size)}, {part: 3.0})
-    return replace(recorded(), error_map=between, network=run)
-
-
-def test_errors_between_sensors_are_told_by_residuals():
-    """The packed map is the map within two hundredths of a residual; silent sensors tell nothing."""
-    one = mapped()
-    packed = packed_maps([one.error_map], NODES)
-    assert np.abs(mixed(packed["gains"]).T - one.error_map.gain).max() < 1.5 * ERROR
-    assert np.abs(mixed(packed["told"])[0] - one.error_map.explained).max() < 1.5 * SHARE
-    silent = one.error_map.at({name: np.array([np.nan]) for name in PLACE})
-    assert (silent == 0.0).all()
 
 
 INSIDE = """() => [...document.querySelectorAll("button, input, select")].filter((e) => {
@@ -442,15 +295,14 @@ OVERLAPS = """() => {
 }"""
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_errors_and_network_stand_in_the_page_at_every_width(tmp_path):
+def test_errors_and_network_stand_in_the_page_at_every_width(browser, tmp_path):
     """Painted and hatched as the map says, the network beside or below, no control out of sight, a silent console."""
     one = mapped()
     page_text = render(document("motor", NODES, [one], PLACE, mesh=motor(24)))
     (tmp_path / "v.html").write_text(page_text, encoding="utf-8")
     residual = {c.name: one.comparison.residual(c) for c in one.comparison.channels}
     expected = one.error_map.at(residual)[:, -1]
-    with drawn_by_a_browser(tmp_path / "v.html", 1280, 700) as (page, said):
+    with tab(browser, tmp_path / "v.html", 1280, 700) as (page, said):
         assert page.is_visible("#network")
         page.select_option("#layer", "3")  # waits until it is there: the first picture does without
         page.wait_for_function("!viewer.dirty")
@@ -465,7 +317,7 @@ def test_errors_and_network_stand_in_the_page_at_every_width(tmp_path):
         for width in (1280, 800, 400):
             page.set_viewport_size({"width": width, "height": 700})
             page.set_checked("#networked", True)
-            page.wait_for_function("!viewer.dirty")
+            still(page)
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             assert page.evaluate(INSIDE) == []
             assert page.evaluate(OVERLAPS) == 0
@@ -493,11 +345,10 @@ COLUMN = """(share) => {  // of the picture's height that is drawn over at that 
 }"""
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(tmp_path):
+def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(browser, tmp_path):
     text = render(document("motor", NODES, [recorded()], PLACE, revisions=["2: a", "1: b"]))
     (tmp_path / "v.html").write_text(text, encoding="utf-8")
-    with drawn_by_a_browser(tmp_path / "v.html", 900, 600) as (page, said):
+    with tab(browser, tmp_path / "v.html", 900, 600) as (page, said):
         column = []
         for place in (0, 300, 700):
             page.evaluate("(place) => { $('wipe').value = place; $('wipe').oninput(); }", place)
@@ -509,6 +360,7 @@ def test_a_line_stands_between_two_revisions_and_three_labels_on_a_small_page(tm
         page.evaluate("viewer.sensors = Array(9).fill(viewer.sensors[0])")
         assert page.evaluate("viewer.labelled().length") == 6
         page.set_viewport_size({"width": 400, "height": 600})
+        still(page)
         assert page.evaluate("viewer.labelled().length") == 3
     assert said == []
 
@@ -523,11 +375,10 @@ LABELS = """(tilt) => {  // boxes of the labels as they are drawn, in pixels of 
 }"""
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
-def test_labels_stand_inside_the_picture_and_clear_of_the_title(tmp_path):
+def test_labels_stand_inside_the_picture_and_clear_of_the_title(browser, tmp_path):
     """In a low picture, turned so that sensors come near its upper edge."""
     write_viewer(tmp_path / "v.html", "a motor with a name " * 3, NODES, [recorded()], PLACE)
-    with drawn_by_a_browser(tmp_path / "v.html", 1000, 300) as (page, said):
+    with tab(browser, tmp_path / "v.html", 1000, 300) as (page, said):
         title = page.evaluate("[$('title').offsetWidth, $('title').offsetHeight]")
         boxes = [box for tilt in np.linspace(-1.4, 1.4, 15) for box in page.evaluate(LABELS, float(tilt))]
         high = page.evaluate("$('gl').clientHeight")
