@@ -85,10 +85,24 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
     """
     from viz.data import Comparison
 
-    earlier = before_last(folder)
-    before = None if earlier is None else readings(earlier, test)
+    earlier = _before_last(folder)
+    before = None if earlier is None else _readings(earlier, test)
     agreement = folder.limits(test) if limits is None else limits
-    return Comparison(test, readings(folder.case, test), agreement, before, accepted(folder.case, test))
+    return Comparison(test, _readings(folder, test), agreement, before, accepted(folder.case, test))
+
+
+def _readings(folder: Folder, test: Test) -> dict[str, Array]:
+    """As `readings`, from an earlier command where it compared this very model."""
+    if folder.stored is None:
+        return readings(folder.case, test)
+    return {c.name: folder.stored.readings[test.name][:, j] for j, c in enumerate(test.channels)}
+
+
+@once
+def _before_last(folder: Folder) -> Folder | None:
+    """The folder of that case."""
+    case = before_last(folder)
+    return None if case is None else replace(folder, case=case)
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
