@@ -96,7 +96,9 @@ def ran(name: str, case: Path) -> int:
 async def pressed(case: Path) -> int:
     """The workbench with a tab in which "Calibrate" is pressed; 2 where the page then shows an error."""
     os.environ["TRAME_ARGS"] = "--server"
-    tabs = Tabs(bench(load_case(case), lambda message: None))
+    opened = bench(load_case(case))
+    await opened.compared()
+    tabs = Tabs(opened)
     with suppress(web.HTTPFound):  # on to the tab that was made
         await tabs.new(None)  # type: ignore[arg-type]
     session = next(iter(tabs.open.values())).session

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 from collections.abc import Mapping, Sequence
@@ -20,6 +19,7 @@ from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
 from lumped.transfer.laws import CLOCK
 from thermoscope.caches import cache_folder
+from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from thermoscope.files import write_whole
@@ -40,7 +40,7 @@ def wanted(network: Network, requested: bool | None) -> bool:
 
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
-    file = cache_folder() / f"belief-{case_key(folder)}.npz"
+    file = cache_folder() / f"belief-{LAYOUT}-{case_key(folder)}.npz"
     cached = recalled(file, lambda path: _from_cache(folder, path))
     if cached is not None:
         return cached
@@ -71,22 +71,6 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
         read=read,
         offset=offset,
     )
-
-
-def case_key(folder: Folder) -> str:
-    """Of everything that decides: the case's files, the machine, and what was calibrated."""
-    settings, model = folder.settings, folder.case.model
-    content = hashlib.sha256(repr((LAYOUT, model.effects, sorted(model.values.items()), model.revision)).encode())
-    files = [settings.path / "case.toml", settings.network, *(f for e in settings.tests for f in (e.file, e.sheet))]
-    for file in files:
-        if file is not None and Path(file).is_file():
-            content.update(Path(file).read_bytes())
-    for test in folder.case.tests:
-        for c in test.channels:
-            content.update(np.ascontiguousarray(c.y).tobytes())
-    if folder.built is not None:
-        content.update(repr((folder.built.meshing, folder.built.machine.sections)).encode())
-    return content.hexdigest()[:20]
 
 
 def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:

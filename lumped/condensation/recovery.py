@@ -87,7 +87,7 @@ class Shapes:
 
 
 def locate(shape: PartShape, xyz: Array, part: str) -> tuple[Ints, Array]:
-    """Unknowns and their weights at a point, or the nearest unknown within 3 mm of the part."""
+    """Unknowns and their weights at a point, or at a point of the part within 3 mm."""
     near = np.atleast_1d(shape.tree.query(xyz, k=min(200, len(shape.tets)))[1])
     corners = shape.xyz[shape.tets[near]]
     edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2)
@@ -105,13 +105,18 @@ def locate(shape: PartShape, xyz: Array, part: str) -> tuple[Ints, Array]:
 
 
 def _anywhere(shape: PartShape, xyz: Array, part: str, distance: float, nearest: Array) -> tuple[Ints, Array]:
+    """In the element whose nearest mix of corners is closest: a surface that was measured ends beside the mesh."""
     corners = shape.xyz[shape.tets]
-    inside = ((corners.min(1) <= xyz + 1e-9) & (corners.max(1) >= xyz - 1e-9)).all(1)
-    for tet in np.flatnonzero(inside):
-        p = corners[tet]
-        inner = np.linalg.solve((p[1:] - p[0]).T, xyz - p[0])
-        if min(inner.min(), 1 - inner.sum()) > -1e-6:
-            return shape.elements.row(int(tet), np.array([1 - inner.sum(), *inner]))
+    near = np.flatnonzero(((corners.min(1) <= xyz + SNAP_M) & (corners.max(1) >= xyz - SNAP_M)).all(1))
+    if near.size:
+        first, edges = corners[near, 0], np.moveaxis(corners[near, 1:] - corners[near, :1], 1, 2)
+        inner = np.linalg.solve(edges, (xyz - first)[:, :, None])[:, :, 0]
+        weights = np.clip(np.column_stack([1 - inner.sum(1), inner]), 0.0, 1.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        away = np.linalg.norm(np.einsum("ij,ijk->ik", weights, corners[near]) - xyz, axis=1)
+        best = int(np.argmin(away))
+        if away[best] <= SNAP_M:
+            return shape.elements.row(int(near[best]), weights[best])
     spot, mm = np.round(1e3 * xyz, 1), np.round(1e3 * nearest, 1)
     raise InputError(
         f"the point {spot.tolist()} mm is not in part '{part}'",

@@ -52,7 +52,7 @@ def main() -> None:
     from thermoscope.workbench.serve import application, serve
 
     case, access = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
-    app = application(with_motor(case), access, lambda message: None)
+    app = application(with_motor(case), access)
     serve(app, access, 0, lambda url: print(url, flush=True))
 
 

@@ -29,6 +29,7 @@ from validation.parameters.unknowns import matching, working
 if TYPE_CHECKING:
     from geom import Machine
     from lumped.condensation.error_budget import ErrorBudget
+    from thermoscope.case_folder.stored_comparison import StoredComparison
     from thermoscope.pipeline import Built
     from validation.comparison.compare import Comparison
 
@@ -63,7 +64,7 @@ class Folder:
         """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
         from thermoscope.verification.error_budget import budgets_of
 
-        return budgets_of(self, self.case.tests)
+        return budgets_of(self, self.case.tests) if self.stored is None else self.stored.budgets
 
     @property
     def numeric_K(self) -> dict[str, dict[str, float]]:
@@ -71,15 +72,22 @@ class Folder:
         return {name: dict(budget.total_K) for name, budget in self.budgets.items()}
 
     @cached_property
+    def stored(self) -> StoredComparison | None:
+        """What an earlier command computed of this very model; None where none did."""
+        from thermoscope.case_folder.stored_comparison import stored_comparison
+
+        return stored_comparison(self)
+
+    @cached_property
     def compared(self) -> Comparison:
         """The model against every test: the one comparison that tables, pictures and pages show; computed once."""
-        from validation.comparison.compare import compare
+        from thermoscope.case_folder.stored_comparison import new_comparison
 
-        return compare(self.case, budgets=self.numeric_K)
+        return new_comparison(self) if self.stored is None else self.stored.comparison
 
     def limits(self, test: Test) -> dict[str, float]:
         """Channel -> the largest error that counts as agreement (K); of this test alone unless all are compared."""
-        if "compared" in vars(self):
+        if "compared" in vars(self) or self.stored is not None:
             return self.compared.limits[test.name]
         from thermoscope.verification.error_budget import budgets_of
         from validation.comparison.compare import judged_error, physical

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.disk_cache import recalled
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
+from thermoscope.caches import cache_folder
+from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
+from thermoscope.files import write_whole
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
@@ -85,10 +91,24 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
     """
     from viz.data import Comparison
 
-    earlier = before_last(folder)
-    before = None if earlier is None else readings(earlier, test)
+    earlier = _before_last(folder)
+    before = None if earlier is None else _readings(earlier, test)
     agreement = folder.limits(test) if limits is None else limits
-    return Comparison(test, readings(folder.case, test), agreement, before, accepted(folder.case, test))
+    return Comparison(test, _readings(folder, test), agreement, before, accepted(folder.case, test))
+
+
+def _readings(folder: Folder, test: Test) -> dict[str, Array]:
+    """As `readings`, from an earlier command where it compared this very model."""
+    if folder.stored is None:
+        return readings(folder.case, test)
+    return {c.name: folder.stored.readings[test.name][:, j] for j, c in enumerate(test.channels)}
+
+
+@once
+def _before_last(folder: Folder) -> Folder | None:
+    """The folder of that case."""
+    case = before_last(folder)
+    return None if case is None else replace(folder, case=case)
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
@@ -119,10 +139,22 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     """Coldest and hottest temperature (degC) of all tests, with the model now and before its last step.
 
     Pictures, films, recordings, viewer and workbench of a case take their colours from it, so that they compare.
+    Kept by content: every one of them asks for it.
     """
-    models = [case for case in (folder.case, before_last(folder)) if case is not None]
-    every = [fields(case, test, nodes, RANGE_FRAMES)[1] for case in models for test in case.tests]
-    return min(float(T.min()) for T in every), max(float(T.max()) for T in every)
+    models = [of for of in (folder, _before_last(folder)) if of is not None]
+    file = cache_folder() / f"range-{'-'.join(map(result_key, models))}.json"
+    cached = recalled(file, _range_in)
+    if cached is not None:
+        return cached
+    every = [fields(of.case, test, nodes, RANGE_FRAMES)[1] for of in models for test in of.case.tests]
+    low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
+    write_whole(file, json.dumps([low, high]))
+    return low, high
+
+
+def _range_in(file: Path) -> tuple[float, float]:
+    low, high = json.loads(file.read_text(encoding="utf-8"))
+    return float(low), float(high)
 
 
 def _run(case: Case, test: Test) -> tuple[Network, Run]:

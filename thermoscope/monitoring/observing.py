@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,8 +14,8 @@ from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, RUNNING
-from thermoscope.bands import case_key
 from thermoscope.caches import cache_folder
+from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import Rows
@@ -38,7 +37,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     network, values = model_of(folder)
     network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
-    file = cache_folder() / f"observer-{_key(folder)}.npz"
+    file = cache_folder() / f"observer-{LAYOUT}-{case_key(folder)}.npz"
     cached = recalled(file, _from_cache)
     if cached is not None:
         return design_of(network, values, cached, tests, folder.case.doubt)
@@ -54,10 +53,6 @@ def designed(folder: Folder, progress: Progress) -> Design:
 def _from_cache(file: Path) -> Lesson:
     with np.load(file) as archive:
         return Lesson(tuple(str(b) for b in archive["bodies"]), archive["table"], archive["constants"])
-
-
-def _key(folder: Folder) -> str:
-    return hashlib.sha256(repr((LAYOUT, case_key(folder))).encode()).hexdigest()[:20]
 
 
 def started(design: Design, sensors: Sequence[Channel], first: Rows) -> Observer:

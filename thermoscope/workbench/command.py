@@ -18,6 +18,7 @@ def serve(case: str, host: str, port: int) -> int:
     prepare()  # loads packages while the case is opened
     access = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
     with progress() as tell:
-        app = application(open_case_for_writing(case, tell), access, tell)
+        folder = open_case_for_writing(case, tell)
+    app = application(folder, access)
     run(app, access, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
     return 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from thermoscope.case_folder.history import History
+from thermoscope.case_folder.runs import by_interest
 from thermoscope.workbench import revisions as ledger
 from thermoscope.workbench import tables as rows
 from thermoscope.workbench.appearance import Appearance
@@ -17,8 +18,8 @@ from viz.live.curves import sensor as sensor_figure
 CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
-    "busy": False, "job": {"title": "", "message": "", "percent": None}, "error": "", "outcome": None, "report": "",
-    "viewer": "", "viewer_rest": "", "preparing": "",
+    "busy": False, "comparing": False, "job": {"title": "", "message": "", "percent": None},
+    "error": "", "outcome": None, "report": "", "viewer": "", "viewer_rest": "", "preparing": "", "limits": {},
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
     "effects": [], "revision": 0, "steps": [], "can_undo": False,
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
@@ -29,12 +30,14 @@ START: dict[str, Any] = {
 class Display:
     """The part of a tab that only looks. `server` is a trame server; the page is drawn from its state."""
 
+    look: Appearance | None  # None until the first comparison is there
+
     def __init__(self, bench: Bench, server: Any) -> None:
-        self.bench, self.server, self.look = bench, server, bench.first
-        self._scale = rows.largest(bench.first)
+        self.bench, self.server, self.look = bench, server, None
+        self._scale = 0.0, 0.0
         self.state.update({**START, "case_name": bench.folder.case.name, "why_flat": bench.why_flat})
-        self.state.test, self.state.sensor = rows.worst(bench.first)
-        self.state.test_names = [t["name"] for t in bench.first.errors["tests"]]
+        self.state.test, self.state.revision = by_interest(bench.folder)[0].name, bench.folder.history.last.number
+        self.state.test_names = [test.name for test in bench.folder.case.tests]
         self.state.change("test")(lambda **_: self.choose_test())
 
     @property
@@ -47,7 +50,9 @@ class Display:
 
     def model(self, history: History, look: Appearance) -> None:
         """Another model: its errors, curves and temperatures."""
-        self.look = look
+        if self.look is None:
+            self.state.test, self.state.sensor = rows.worst(look)
+        self.look, self.state.limits = look, look.limits
         last, errors = history.last, look.errors
         self.state.effects, self.state.revision = list(last.effects), last.number
         self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
@@ -59,7 +64,7 @@ class Display:
 
     def choose_test(self) -> None:
         """The sensors of the chosen test."""
-        if self.state.test not in self.look.curves:
+        if self.look is None or self.state.test not in self.look.curves:
             return
         self.state.sensors = rows.channels(self.look, self.state.test, self._scale[1])
         self.select(self.state.sensor)
@@ -67,13 +72,15 @@ class Display:
     def select(self, name: str) -> None:
         """The curves of a sensor; a name that is no sensor of the test means the first one."""
         names = [s["name"] for s in self.state.sensors]
+        if self.look is None or not names:
+            return
         self.state.sensor = name if name in names else names[0]
         figure = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
         self.state.curve = figure.to_plotly_json()
 
     def next_sensor(self, step: int) -> None:
         """The one below (1) or above (-1) in the list."""
-        names = [s["name"] for s in self.state.sensors]
+        names = [s["name"] for s in self.state.sensors] or [""]
         self.select(names[(names.index(self.state.sensor) + step) % len(names)])
 
     def paper(self, dark: bool, diagnosis: dict[str, Any] | None) -> None:

@@ -12,9 +12,11 @@ from typing import Any
 
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
+from thermoscope.commands.show.viewer import stored_documents
 from thermoscope.console.terminal import Progress
 from thermoscope.workbench.appearance import Appearance, appearance_of
 from thermoscope.workbench.jobs import Job, StoppedError
+from thermoscope.workbench.steps import comparing_job
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
 PARTS = 2  # of a machine: its temperatures, then what takes longer
@@ -105,21 +107,42 @@ class Machines:
             self.documents = [*self.documents, (drawing.history, document)][-MOST_DOCUMENTS:]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Bench:
-    """folder : the case as opened;  first : its model when it was opened;  machines : of the models that tabs showed"""
+    """folder : the case as opened;  first : its model when it was opened, None until it is compared
+
+    machines : of the models that tabs showed
+    """
 
     folder: Folder
-    first: Appearance
+    first: Appearance | None = None
     machines: Machines = field(default_factory=Machines)
+    _comparing: asyncio.Task[Appearance] | None = None
+    _job: Job | None = None
 
     @property
     def why_flat(self) -> str:
         """Why there is no machine to show; empty where there is one."""
         return NO_MACHINE if self.folder.built is None else ""
 
+    async def compared(self) -> Appearance:
+        """The model when it was opened, compared once for all tabs that wait. FailedError, StoppedError"""
+        if self.first is None:
+            if self._comparing is None:
+                self._job = comparing_job(self.folder)
+                self._comparing = asyncio.get_running_loop().create_task(self._job.run(lambda message: None))
+            self.first = await asyncio.shield(self._comparing)
+        return self.first
 
-def bench(folder: Folder, tell: Progress) -> Bench:
-    """Run the model once on every test."""
-    tell("running the model on every test")
-    return Bench(folder, appearance_of(folder))
+    def stop(self) -> None:
+        """End what is under way."""
+        self.machines.stop()
+        if self._job is not None:
+            self._job.stop()
+
+
+def bench(folder: Folder) -> Bench:
+    """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
+    parts = stored_documents(folder)
+    drawn = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
+    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(drawn))

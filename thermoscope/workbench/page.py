@@ -121,6 +121,7 @@ def _machine(session: Session) -> None:
             ':data-sensor="sensor"',
             ':data-dark="dark"',
             ':data-rest="viewer_rest"',
+            ':data-limits="JSON.stringify(limits)"',
             ":title=\"'the machine: ' + test\"",
         ]
         html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer",
@@ -130,7 +131,9 @@ def _machine(session: Session) -> None:
 
 def _curve() -> None:
     label = "'readings and model of ' + sensor + ' in ' + test + ', and their difference'"
-    with html.Div(classes="card curve", id="curve", **pictured(label)):
+    with html.Div(v_if=("comparing",), classes="card curve"):
+        html.Div(classes="waiting", **aria("aria-hidden", "true"))
+    with html.Div(v_if=("!comparing",), classes="card curve", id="curve", **pictured(label)):
         plotly.Figure(
             state_variable_name="curve", display_mode_bar=("false",), responsive=("true",), display_logo=("false",),
             style="width: 100%; height: 100%",
@@ -139,7 +142,7 @@ def _curve() -> None:
 
 def _messages(session: Session) -> None:
     with html.Div(**aria("role", "status")):
-        with html.Div(v_if=("busy",), classes="card job", id="job"):
+        with html.Div(v_if=("busy && !comparing",), classes="card job", id="job"):
             html.B("{{ job.title }}")
             html.Span("{{ job.message }}", classes="faint", id="job-message")
             v3.VProgressLinear(
@@ -160,7 +163,9 @@ def _messages(session: Session) -> None:
 def _errors() -> None:
     with html.Div(classes="card", id="errors"):
         html.H2("Error of every test")
-        html.P("all: {{ rms }} K; the sensors' own uncertainty explains {{ floor }} K", classes="faint")
+        html.P("the model is being compared with every test", v_if=("comparing",), classes="faint", id="comparing")
+        html.P("all: {{ rms }} K; the sensors' own uncertainty explains {{ floor }} K", v_if=("rms",), classes="faint")
+        _skeleton("test_names.length")
         with html.Div(
             v_for="t in tests", key="t.name", classes=("'bar' + (t.role === 'hold-out' ? ' held' : '')",),
             id=("'error-' + t.name",),         ):  # fmt: skip
@@ -171,10 +176,16 @@ def _errors() -> None:
             html.Span("{{ t.before && t.before !== t.rmse ? t.before + ' → ' : '' }}{{ t.rmse }} K", classes="value")
 
 
+def _skeleton(count: str) -> None:
+    """Grey bars where rows will stand."""
+    html.Div(v_if=("comparing",), v_for=f"i in {count}", key="i", classes="waiting row", **aria("aria-hidden", "true"))
+
+
 def _sensors(session: Session) -> None:
     with html.Div(classes="card", id="sensors"):
         html.H2("Sensors in {{ test }}")
         html.P(RULE, classes="faint")
+        _skeleton("8")
         with html.Button(
             v_for="s in sensors", key="s.name", type="button",
             classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),

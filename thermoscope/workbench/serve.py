@@ -7,16 +7,16 @@ import os
 import secrets
 import signal
 from collections.abc import AsyncIterator, Callable
+from contextlib import suppress
 
 from aiohttp import web
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.console.terminal import Progress
 from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.dropped import LARGEST
-from thermoscope.workbench.jobs import prepare
-from thermoscope.workbench.machines import bench
+from thermoscope.workbench.jobs import FailedError, StoppedError, prepare
+from thermoscope.workbench.machines import Bench, bench
 from thermoscope.workbench.steps import drawing_job
 from thermoscope.workbench.tabs import Tabs
 
@@ -31,18 +31,14 @@ def token_for(token: str | None) -> str:
     return token or secrets.token_urlsafe(24)
 
 
-def application(folder: Folder, access: AccessControl, tell: Progress, largest_drop: int = LARGEST) -> web.Application:
-    """The pages of a case, for those who have access.  largest_drop : of files dropped on a page (bytes)"""
+def application(folder: Folder, access: AccessControl, largest_drop: int = LARGEST) -> web.Application:
+    """The pages of a case, for those who have access; model and machine are prepared once it is served.
+
+    largest_drop : of files dropped on a page (bytes)
+    """
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
     prepare()
-    job = drawing_job(folder)
-    if folder.built is not None:
-        job.start()  # beside the comparison, so that the machine is there as soon as the page
-    try:
-        opened = bench(folder, tell)
-    except BaseException:
-        job.stop()
-        raise
+    opened = bench(folder)
     tabs = Tabs(opened, largest_drop)
     app = web.Application(middlewares=[access.middleware])
     app.router.add_get("/", tabs.new)
@@ -51,21 +47,30 @@ def application(folder: Folder, access: AccessControl, tell: Progress, largest_d
     app.router.add_post("/tab/{tab}/recordings", tabs.receive)
 
     async def sweeping(_: web.Application) -> AsyncIterator[None]:
+        first = asyncio.create_task(_prepared(opened))
+
         async def sweep() -> None:
             while True:
                 await asyncio.sleep(SWEEP_S)
                 await tabs.sweep()
 
         task = asyncio.create_task(sweep())
-        if folder.built is not None:
-            opened.machines.drawing(folder, lambda _: job)
         yield
         task.cancel()
         await tabs.close()
-        opened.machines.stop()
+        opened.stop()
+        await asyncio.gather(first, return_exceptions=True)
 
     app.cleanup_ctx.append(sweeping)
     return app
+
+
+async def _prepared(opened: Bench) -> None:
+    """Before anyone asks: the machine is drawn and the model compared, each beside the other."""
+    if opened.folder.built is not None and opened.machines.find(opened.folder.history) is None:
+        opened.machines.drawing(opened.folder, drawing_job)
+    with suppress(FailedError, StoppedError):  # every tab that waits is told
+        await opened.compared()
 
 
 def serve(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:

@@ -41,7 +41,7 @@ class Session:
         self._job: Job | None = None
         self._drawing: Drawing | None = None
         self._on_screen: History | None = None
-        self._known: list[tuple[Revision, Appearance]] = [(self.history.last, bench.first)]
+        self._known: list[tuple[Revision, Appearance]] = []
 
     @property
     def folder(self) -> Folder:
@@ -54,10 +54,29 @@ class Session:
 
     def open(self) -> None:
         """Show the model, and the last diagnosis if it is of this model; then what others have made of it since."""
+        if self.bench.first is None:
+            started(self._compare())
+            return
+        self._known = [(self.history.last, self.bench.first)]
         self.shown.model(self.history, self.bench.first)
         self.diagnosis = current_diagnosis(self.folder)
         self.shown.show_candidates(self.diagnosis)
         started(self.take_over())
+
+    async def _compare(self) -> None:
+        """Wait for the first comparison, with the machine as soon as it is drawn."""
+        started(self.machine())
+        with self.state:
+            self.state.busy = self.state.comparing = True
+        try:
+            await self.bench.compared()
+        except (FailedError, StoppedError) as fault:
+            self._complain(str(fault))
+        finally:
+            with self.state:
+                self.state.busy = self.state.comparing = False
+                if self.bench.first is not None:
+                    self.open()
 
     async def diagnose(self) -> None:
         """Look for what is missing."""
@@ -156,6 +175,8 @@ class Session:
         """The model on the machine, for the browser to draw: made beside whatever else is calculated."""
         if self.bench.folder.built is None:
             return
+        if self._drawing is not None and self._drawing.history == self.history and not self._drawing.stopped:
+            return  # it is waited for already
         self._leave()
         if self._on_screen == self.history:
             return
@@ -180,11 +201,11 @@ class Session:
                 self._leave()
 
     def _draw(self, document: Mapping[str, Any]) -> None:
-        """Another machine in the browser, judged by the errors that are shown."""
-        from viz.viewer.page import render, with_limits
+        """Another machine in the browser; which errors count as agreement, the page tells it."""
+        from viz.viewer.page import render
 
         self._on_screen = self.history
-        self.viewer_page = render(with_limits(document, self.shown.look.limits))
+        self.viewer_page = render(document)
         with self.state:
             self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""
 

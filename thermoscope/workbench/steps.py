@@ -33,11 +33,16 @@ def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]
     """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
     from thermoscope.commands.show.viewer import viewer_documents
 
-    parts = viewer_documents(folder, tell, agreement=False)
+    parts = viewer_documents(folder, tell)
     yield next(parts)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     yield from parts
+
+
+def comparing_job(folder: Folder) -> Job:
+    """What compares a model with every test, in a process of its own."""
+    return Job(appearance, folder)
 
 
 def drawing_job(folder: Folder) -> Job:

@@ -18,6 +18,7 @@ DARK = 0.55  # of the middle of the shadow
 MARGIN = 0.25  # of the machine's size, around the shadow
 SAMPLES = 200_000  # points on the machine that throw it
 SOFT = 0.035  # share of the machine's size over which the shadow fades
+FADE = 0.04  # share of its size beyond which nothing of the shadow of what stands there is seen
 
 
 def shadow(shapes: Sequence[Shape], theme: Theme) -> Any:
@@ -37,9 +38,17 @@ def shadow(shapes: Sequence[Shape], theme: Theme) -> Any:
     rgba[..., 3] = (255 * DARK * share).astype(np.uint8)
     actor = pyvista.Actor(mapper=pyvista.DataSetMapper(plane))
     actor.texture = pyvista.Texture(np.ascontiguousarray(rgba[::-1]))
+    actor.texture.InterpolateOn()
     actor.prop.lighting = False
     actor.ForceTranslucentOn()
     return actor
+
+
+def shaded(points: Array, low_m: float) -> Array:
+    """(4, 3) m corners on the ground, at the height low_m, of what the shadow of some points darkens."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    fade = FADE * float(max(high[0] - low[0], high[2] - low[2]))
+    return np.array([[x, low_m, z] for x in (low[0] - fade, high[0] + fade) for z in (low[2] - fade, high[2] + fade)])
 
 
 def _scattered(shapes: Sequence[Shape]) -> Array:

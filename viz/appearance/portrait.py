@@ -16,7 +16,7 @@ from geom.description.roles import Role
 from viz.appearance.body import Body, Finish
 from viz.appearance.cutting import cut_body
 from viz.appearance.dressed import dressed
-from viz.appearance.ground import shadow
+from viz.appearance.ground import shaded, shadow
 from viz.colours import LIGHT, Theme, heat
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Wedge
@@ -70,6 +70,7 @@ def staged(
     p, bodies = _stage(theme, size), dressed(machine)
     painted = [_add(p, pieces, *kind, warm) for kind, pieces in _gathered(bodies, wedge).items()]
     points = framed(machine, bodies)
+    points = np.concatenate([points, shaded(points, float(points[:, 1].min()))])
     p.add_actor(shadow([b.shape for b in bodies], theme), reset_camera=False, pickable=False)
     scene.look(p, points, view, room)
     if warm is not None:

@@ -415,8 +415,9 @@ class Viewer {
     const k = Math.round(this.place), { measured } = this.test;
     const all = this.test.sensors.map((s, j) => {
       const read = measured[k * measured.columns + j], y = Number.isNaN(read) ? null : read, residual = this.residual(j, k, this.right);
-      const verdict = residual === null ? 3 : Math.abs(residual) <= s.limit ? 0 : residual > 0 ? 1 : 2;
-      const weight = s.channel === this.chosen ? Infinity : residual === null ? -1 : Math.abs(residual) / s.limit;
+      const off = residual === null ? -1 : Math.abs(residual), judged = residual !== null && s.limit !== null;
+      const verdict = !judged ? 3 : off <= s.limit ? 0 : residual > 0 ? 1 : 2;
+      const weight = s.channel === this.chosen ? Infinity : judged ? off / s.limit : off;
       return { ...s, y, residual, verdict, weight };
     });
     this.sensors = all.filter((s) => s.xyz);
@@ -428,6 +429,10 @@ class Viewer {
     const list = $("sensors"), held = [...list.querySelectorAll("button")].indexOf(document.activeElement);
     list.replaceChildren(...all.map((s) => line(s.name, s.y === null ? "–" : `${s.y.toFixed(1)} °C  ${signed(s.residual)} K`, `rgb(${TINTS[s.verdict].map((c) => 255 * c)})`, () => this.pin(s.channel), s.channel === this.chosen)));
     if (held >= 0) list.querySelectorAll("button")[held].focus();
+  }
+  judged(limits) {  // the largest errors that count as agreement: test -> sensor -> K
+    for (const t of data.tests) for (const s of t.sensors) s.limit = limits[t.test]?.[s.channel] ?? null;
+    this.readings();
   }
   pin(channel) {  // a sensor gets a label and a larger dot, whatever the others miss
     this.chosen = channel;
@@ -844,6 +849,7 @@ function wired(v) {
     const k = data.tests.findIndex((t) => t.test === said.test);
     if (k >= 0 && k !== v.number) { $("test").value = k; v.choose(k); }
     if (said.dark !== undefined) document.documentElement.dataset.theme = said.dark ? "dark" : "light";
+    if (said.limits) v.judged(said.limits);
     if (said.sensor) v.pin(said.sensor);
     if (said.rest) opened(said.rest).then(({ errors, network }) => { v.flows(network); if (errors) v.told(errors); });
     again();

@@ -89,6 +89,20 @@ def test_a_point_reads_what_the_field_shows(motor):
     assert coolest <= row.weights @ x[row.index] <= hottest
 
 
+def test_a_point_beside_a_surface_reads_the_surface(motor):
+    """A millimetre off the middle of an outer facet whose corners are further away than a reading may be moved."""
+    network = motor.network
+    shape, x = network.recovery.parts["yoke"], steady_state(network, POINT, 20.0)[: len(network.states)]
+    facets = shape.xyz[shape.tets[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]]].reshape(-1, 3, 3)
+    middle = facets.mean(axis=1)
+    far = np.linalg.norm(facets - middle[:, None], axis=2).min(axis=1) > 0.005
+    there = middle[far][np.argmax(np.hypot(*middle[far, :2].T))]
+    beside = there + 0.001 * np.array([*(there[:2] / np.hypot(*there[:2])), 0.0])
+    at, off = (network.recovery.row("yoke", xyz) for xyz in (there, beside))
+    rise = np.ptp(network.recovery.of_part("yoke", x))
+    assert off.weights @ x[off.index] == pytest.approx(at.weights @ x[at.index], abs=0.05 * rise)
+
+
 def test_a_point_outside_its_part_is_refused(motor):
     with pytest.raises(InputError, match=r"is not in part 'yoke'.*nearest point"):
         motor.network.recovery.row("yoke", np.array([1.0, 1.0, 1.0]))

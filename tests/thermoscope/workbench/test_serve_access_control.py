@@ -66,7 +66,7 @@ async def running(folder, access, **options):
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    runner = web.AppRunner(application(folder, access, lambda message: None, **options))
+    runner = web.AppRunner(application(folder, access, **options))
     await runner.setup()
     await web.TCPSite(runner, "127.0.0.1", port).start()
     try:
@@ -200,7 +200,7 @@ def test_serve_always_asks_for_a_token(folder, monkeypatch):
     """The command makes one on loopback too, and prints it with the address."""
     controls = []
     monkeypatch.delenv("THERMOSCOPE_TOKEN", raising=False)
-    monkeypatch.setattr("thermoscope.workbench.serve.application", lambda folder, access, tell: controls.append(access))
+    monkeypatch.setattr("thermoscope.workbench.serve.application", lambda folder, access: controls.append(access))
     monkeypatch.setattr("thermoscope.workbench.serve.serve", lambda *given: None)
     for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0"):
         assert serve(str(folder.settings.path), host, 0) == 0

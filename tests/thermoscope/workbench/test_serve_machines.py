@@ -9,9 +9,9 @@ import pytest
 
 from thermoscope.case_folder.history import History
 from thermoscope.workbench import serve
-from thermoscope.workbench.access_control import AccessControl
-from thermoscope.workbench.jobs import FailedError, Job, StoppedError
-from thermoscope.workbench.machines import Machines
+from thermoscope.workbench.appearance import Appearance
+from thermoscope.workbench.jobs import FailedError, StoppedError
+from thermoscope.workbench.machines import Bench, Machines
 from thermoscope.workbench.steps import drawing_job
 
 FIRST, REST = {"fields": 1}, {"network": 2}
@@ -28,6 +28,15 @@ def counted(folder, tell):
     if folder.fault:
         raise ValueError(folder.fault)
     yield REST
+
+
+def compared(folder, tell):
+    """Stands for the first comparison; it ends only while the machine is drawn."""
+    if folder.fault:
+        raise ValueError(folder.fault)
+    while not Path(folder.log).exists():
+        time.sleep(0.01)
+    return Appearance({"rmse_K": 1.0}, {})
 
 
 @pytest.fixture
@@ -129,23 +138,34 @@ def test_a_job_may_begin_before_there_is_a_loop(folder):
 
 
 def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
-    """By count: a comparison that fails began with one drawing under way, and ends it."""
-    log, jobs = Path(folder.log), []
+    """Both begin with the server, before anyone asks; all tabs wait for one comparison."""
+    monkeypatch.setattr("thermoscope.workbench.steps.appearance", compared)
 
-    class Counted(Job):
-        def start(self):
-            super().start()
-            jobs.append(self)
+    async def main():
+        bench = Bench(folder)
+        task = asyncio.create_task(serve._prepared(bench))
+        looks = await asyncio.gather(bench.compared(), bench.compared())
+        await task
+        rest = await bench.machines.drawings[0].parts[1] if bench.machines.drawings else REST
+        bench.stop()
+        return looks, bench.first, rest
 
-    def comparing(folder, tell):
-        while not log.exists():
-            time.sleep(0.01)
-        raise ValueError("no readings")
+    (one, other), first, rest = asyncio.run(main())
+    assert one is other is first
+    assert rest == REST
+    assert first.errors == {"rmse_K": 1.0}
+    assert Path(folder.log).read_text() == "x"
 
-    Path(folder.go).unlink()
-    monkeypatch.setattr("thermoscope.workbench.steps.Job", Counted)
-    monkeypatch.setattr(serve, "bench", comparing)
-    with pytest.raises(ValueError, match="no readings"):
-        serve.application(folder, AccessControl("127.0.0.1", "x" * 16), print)
-    jobs[0]._process.join(30)
-    assert (len(jobs), jobs[0]._process.is_alive(), log.read_text()) == (1, False, "x")
+
+def test_a_comparison_that_fails_is_said_to_every_tab(folder, monkeypatch):
+    monkeypatch.setattr("thermoscope.workbench.steps.appearance", compared)
+    folder.built, folder.fault = None, "no readings"
+
+    async def main():
+        bench = Bench(folder)
+        await serve._prepared(bench)
+        with pytest.raises(FailedError, match="no readings"):
+            await bench.compared()
+        return bench.first
+
+    assert asyncio.run(main()) is None

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from geom.disk_cache import atomic_write
+from geom.disk_cache import atomic_write, recalled
 from geom.errors import InputError
 from thermoscope.caches import cache_folder
+from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
@@ -26,6 +29,7 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.files import write_whole
 from validation.case import Test
 from validation.threads import side_by_side
 
@@ -56,16 +60,42 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
 
 def viewer_page(folder: Folder, tell: Progress) -> str:
     """The page of an open case that has a machine: all its tests."""
-    from viz.viewer.page import render
+    from viz.viewer.page import render, with_limits
 
-    return render({key: value for part in viewer_documents(folder, tell) for key, value in part.items()})
+    parts = list(viewer_documents(folder, tell))
+    return render(with_limits({key: value for part in parts for key, value in part.items()}, folder.compared.limits))
 
 
-def viewer_documents(folder: Folder, tell: Progress, agreement: bool = True) -> Iterator[dict[str, Any]]:
+def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     """What the page draws: first the machine, temperatures and readings, then the rest, which takes longer.
 
-    agreement : with the largest errors that count as agreement, for which the model runs many times more
+    Without the errors that count as agreement, for which the model runs many times more. Kept by content.
     """
+    parts = stored_documents(folder)
+    if parts is not None:
+        yield from parts
+        return
+    making = _documents(folder, tell)
+    yield (first := next(making))
+    rest = list(making)
+    write_whole(_file(folder), json.dumps([first, *rest]))
+    yield from rest
+
+
+def stored_documents(folder: Folder) -> list[dict[str, Any]] | None:
+    """What the page draws, from the cache; None where this very model was not drawn before."""
+    if folder.built is None:
+        return None
+    return recalled(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
+
+
+def _file(folder: Folder) -> Path:
+    models = repr((revisions(folder), folder.history.last, sorted(folder.positions.items())))
+    content = hashlib.sha256((result_key(folder, "viz") + models).encode()).hexdigest()[:20]
+    return cache_folder() / f"viewer-{content}.json"
+
+
+def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz import split
     from viz.viewer.error_map import ErrorMap
     from viz.viewer.page import Earlier, Recorded, analysis_document, field_document
@@ -80,7 +110,7 @@ def viewer_documents(folder: Folder, tell: Progress, agreement: bool = True) -> 
         times, now = fields(folder.case, test, nodes, FRAMES)
         before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
         rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
-        return Recorded(comparison_of(folder, test, None if agreement else {}), times, now, before, rest)
+        return Recorded(comparison_of(folder, test, {}), times, now, before, rest)
 
     def analysis(run: Recorded) -> Recorded:
         test = run.comparison.test

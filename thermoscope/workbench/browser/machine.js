@@ -7,8 +7,8 @@
   const frame = () => document.getElementById("viewer");
   const say = (words) => frame()?.contentWindow.postMessage(words, location.origin);
   const tell = () => {
-    const { test, sensor, dark, rest } = frame()?.dataset ?? {};
-    if (test) say({ test, sensor, dark: dark === "true" });
+    const { test, sensor, dark, rest, limits } = frame()?.dataset ?? {};
+    if (test) say({ test, sensor, dark: dark === "true", limits: JSON.parse(limits) });
     if (rest && rest !== given) complete(given = rest);
   };
   let given = "";
@@ -17,7 +17,7 @@
     if (frame()?.dataset.rest === address) say({ rest });
   };
   new MutationObserver(tell).observe(document, {
-    subtree: true, attributes: true, attributeFilter: ["data-test", "data-sensor", "data-dark", "data-rest"],
+    subtree: true, attributes: true, attributeFilter: ["data-test", "data-sensor", "data-dark", "data-rest", "data-limits"],
   });
   addEventListener("message", (event) => {
     if (event.source !== frame()?.contentWindow || event.origin !== location.origin) return;

@@ -1,0 +1,86 @@
+"""The comparison of a machine's case, kept by content: it takes many runs, and every picture and page asks for it."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.disk_cache import recalled
+from lumped.condensation.error_budget import ErrorBudget, PlaceError
+from thermoscope.caches import cache_folder
+from thermoscope.case_folder.content import result_key
+from thermoscope.files import write_whole
+from validation.comparison.compare import ChannelError, Comparison, TestError, compare, physical
+from validation.comparison.predict import predict
+from validation.comparison.uncertainty import Uncertainty
+from validation.parameters.unknowns import working
+
+if TYPE_CHECKING:
+    from thermoscope.case_folder.folder import Folder
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StoredComparison:
+    """comparison, budgets : as of Folder;  readings : test -> (n_time, n_channel) degC, what its sensors would read"""
+
+    comparison: Comparison
+    budgets: Mapping[str, ErrorBudget]
+    readings: Mapping[str, Array]
+
+
+def stored_comparison(folder: Folder) -> StoredComparison | None:
+    """From the cache; None where this very model was not compared before, and for a network declared by hand."""
+    return None if folder.built is None else recalled(_file(folder), lambda path: _read(folder, path))
+
+
+def new_comparison(folder: Folder) -> Comparison:
+    """Run the model on every test, and keep what comes of it. Networks declared by hand are quick and are not kept."""
+    result = compare(folder.case, budgets=folder.numeric_K)
+    if folder.built is not None:
+        write_whole(_file(folder), _written(folder, result))
+    return result
+
+
+def _file(folder: Folder) -> Path:
+    return cache_folder() / f"comparison-{result_key(folder)}.npz"
+
+
+def _written(folder: Folder, result: Comparison) -> bytes:
+    network, values = working(folder.case)[0], physical(folder.case)
+    readings = [predict(network, test, values).y for test in folder.case.tests]  # the runs are remembered
+    document = {
+        "tests": [asdict(test) for test in result.tests],
+        "budgets": {name: [asdict(p) for p in budget.places] for name, budget in folder.budgets.items()},
+    }
+    out = io.BytesIO()
+    np.savez_compressed(out, json.dumps(document), *readings)
+    return out.getvalue()
+
+
+def _read(folder: Folder, file: Path) -> StoredComparison:
+    with np.load(file) as archive:
+        document = json.loads(str(archive["arr_0"]))
+        readings = [archive[f"arr_{i + 1}"] for i in range(len(document["tests"]))]
+    model = folder.case.model
+    tests = tuple(_test(row) for row in document["tests"])
+    effects = tuple(e.name for e in model.effects)
+    comparison = Comparison(folder.case.name, model.revision, effects, tests, model.network.identities)
+    budgets = {
+        name: ErrorBudget(tuple(PlaceError(**p) for p in places)) for name, places in document["budgets"].items()
+    }
+    names = [test.name for test in folder.case.tests]
+    return StoredComparison(comparison, budgets, dict(zip(names, readings, strict=True)))
+
+
+def _test(row: Mapping[str, Any]) -> TestError:
+    channels = tuple(ChannelError(**c) for c in row["channels"])
+    return TestError(row["name"], row["role"], channels, tuple(Uncertainty(**u) for u in row["uncertainty"]))
