@@ -144,5 +144,5 @@ class Bench:
 def bench(folder: Folder) -> Bench:
     """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
     parts = stored_documents(folder)
-    drawn = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
-    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(drawn))
+    machines = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
+    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(machines))
