@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -44,7 +44,7 @@ from validation.inference.posterior import (
     unknown_heat,
     weights,
 )
-from validation.inference.refits import NOWHERE, WarmFits, finely, noise_of_refits, refitted
+from validation.inference.refits import NOWHERE, WarmFits, finely, noise_of_refits, refitted, weighty_refits
 from validation.inference.result import Diagnosis
 from validation.inference.several import further
 from validation.inference.steadiness import steady
@@ -129,23 +129,26 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     if noise is not None or update is not evidence:
         evidence = converged(under(update, noise or update.fit.noise))
         warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-        hypotheses, heat = weighed(case, evidence, heat_scan, fit.noise, progress, warm_fits)
+        again = weighty_refits(hypotheses)
+        hypotheses, heat = weighed(case, evidence, heat_scan, fit.noise, progress, warm_fits, again)
     every = further(case, evidence, finely(evidence, hypotheses), progress)
     return Posterior(evidence, tuple(against_nothing(every)), tuple(heat), against)
 
 
 def weighed(
-    case: Case, evidence: Evidence, heat_scan: Scan, loudest: Noise, progress: Progress, warm_fits: WarmFits = NOWHERE
-) -> tuple[list[Hypothesis], list[MissingHeat]]:
+    case: Case, evidence: Evidence, heat_scan: Scan, loudest: Noise, progress: Progress, warm_fits: WarmFits = NOWHERE,
+    again: Collection[tuple[int, ...]] = (),
+) -> tuple[list[Hypothesis], list[MissingHeat]]:  # fmt: skip
     """All hypotheses, those that carry weight refitted, and where heat is missing.
 
     loudest : the noise that nothing asks for;  warm_fits : members -> a refit of theirs that may go on
+    again : members of what is refitted in any case
     """
     heat = heat_scan.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
     loud, ones = under(evidence, loudest), singles(evidence)
     every = [*ones, *pairs(evidence, ones), *unknown_heat({w.place: w.log_bayes for w in heat})]
     every = averaged(every, loud, log_evidence(loud) - log_evidence(evidence))
-    return refitted(evidence, answered(evidence, every, case.answers), progress, warm_fits), heat
+    return refitted(evidence, answered(evidence, every, case.answers), progress, warm_fits, again), heat
 
 
 def sharpened(evidence: Evidence, also: Sequence[int] = (), rounds: int = 2) -> Evidence:

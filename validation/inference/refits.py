@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
@@ -47,14 +47,16 @@ NEARLY, MOST_LINEAR = 0.4, 3  # linear amplitude, and how many, of effects that 
 
 def refitted(
     evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress,
-    warm_fits: WarmFits = NOWHERE,
+    warm_fits: WarmFits = NOWHERE, again: Collection[tuple[int, ...]] = (),
 ) -> list[Hypothesis]:  # fmt: skip
     """The hypotheses with those that carry weight refitted, until none does that is not.
 
     warm_fits : members -> a refit of theirs under another noise
+    again : members of what carried weight there, and may do so here though its tangents promise too little
     """
     out = list(hypotheses)
-    far = dict.fromkeys([*exchanged(evidence, out), *far_from_prior(evidence, out), *rivals(out)])
+    weighty = [i for i, h in enumerate(out) if h.members in again]
+    far = dict.fromkeys([*exchanged(evidence, out), *far_from_prior(evidence, out), *rivals(out), *weighty])
     together(evidence, out, list(far), progress, warm_fits)
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
@@ -64,6 +66,12 @@ def refitted(
         for size in (1, 2):  # two begin where one of them was fitted alone
             together(evidence, out, [i for i in due if len(out[i].members) == size], progress, warm_fits)
     return with_smaller_shortfall(hypotheses, out)
+
+
+def weighty_refits(hypotheses: Sequence[Hypothesis]) -> list[tuple[int, ...]]:
+    """Members of what carries weight once it is refitted."""
+    P = shares(hypotheses)
+    return [h.members for p, h in zip(P, hypotheses, strict=True) if p > WEIGHT and h.fit and h.members]
 
 
 def together(

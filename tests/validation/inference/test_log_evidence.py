@@ -23,7 +23,7 @@ from validation.inference.evidence import (
     without_effects,
 )
 from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
-from validation.inference.refits import refitted
+from validation.inference.refits import WEIGHT, refitted, shares, weighty_refits
 from validation.inference.score import total
 from validation.inference.several import further
 from validation.measurement.noise import Level, Noise
@@ -100,6 +100,21 @@ def test_three_effects_are_found_one_beside_the_other(evidence):
     found = every[int(np.argmax(probabilities(every)))]
     assert isinstance(found, Hypothesis)
     assert {sharp.names[k] for k in found.members} == set(NAMES[:3])
+
+
+def test_what_carried_weight_under_one_noise_is_refitted_under_the_next(evidence):
+    """Though its tangents promise too little there: a rival must not vanish because it was not looked at again."""
+    ones = singles(evidence)
+    every = [*ones, *pairs(evidence, ones)]
+    once = refitted(evidence, every)
+    weighty = weighty_refits(once)
+    assert weighty
+    assert all(p > WEIGHT for p, h in zip(shares(once), once, strict=True) if h.members in weighty)
+    idle = next(h.members for h in reversed(once) if h.members and not h.fit)
+    warm_fits = {h.members: h.fit for h in once if h.fit and h.members}
+    twice = {h.members: h for h in refitted(evidence, every, warm_fits=warm_fits, again=[idle]) if h.members}
+    assert twice[idle].fit is not None
+    assert sum(h.fit is not None for h in twice.values()) == 1 + sum(h.fit is not None for h in once if h.members)
 
 
 def to_the_end(evidence, network, unknowns, theta, held):
