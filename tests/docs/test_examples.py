@@ -13,7 +13,7 @@ WRITES = {
     "residuals": ["residuals-1.png", "residuals-2.png", "parity.html"],
     "machine": ["machine.svg"],
 }
-LONG = {"residuals"}  # a measured case, calibrated
+LONG = {"residuals", "fan_for_a_while"}  # which calibrate a measured case, and diagnose
 TESTED_ELSEWHERE = {"hust", "tclab"}
 
 
@@ -27,7 +27,7 @@ def test_example(name, root, tmp_path, monkeypatch):
     assert all((tmp_path / file).stat().st_size > 1000 for file in WRITES[name])
 
 
-@pytest.mark.parametrize("name", REFERENCE)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.heavy] if n in LONG else []) for n in REFERENCE])
 def test_example_against_its_reference(name, root):
     left = runpy.run_path(str(root / "examples" / f"{name}.py"))
     assert np.shape(left["computed"]) == np.shape(left["expected"])

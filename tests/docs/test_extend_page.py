@@ -183,6 +183,7 @@ def test_a_correlation_carries_heat(used):
     assert json.loads(used(FILM))["rise"] == pytest.approx(5.0 / (5.31 * 0.0314), rel=0.02)
 
 
+@pytest.mark.heavy
 def test_a_picture_is_drawn_by_the_command(used, root, tmp_path):
     code = "import sys; sys.argv[0] = 'thermoscope'; from thermoscope.cli import main; main()"
     case = root / "cases" / "tclab"

@@ -42,6 +42,7 @@ def rest(network, **switches):
     return steady(network, {**LOAD, **switches}, {"ambient": 20.0}, None, rows)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("name", "on"), [("pmsm-m1", (1, 0)), ("pmsm-m1-plate", (0, 1))])
 def test_on_one_base_it_is_that_machine(both, name, on):
     """Within 1 % of the rise: the mesh has other layers, and the other foot's print meets the air."""

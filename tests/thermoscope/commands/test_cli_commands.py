@@ -158,6 +158,7 @@ def test_help_loads_nothing_slow():
     assert done.stdout.strip() == "[]", done.stderr
 
 
+@pytest.mark.heavy
 def test_compare_loads_what_runs_a_network_alone(case):
     """Most of what a comparison of few nodes takes is loading packages: NumPy and Numba are needed, these are not."""
     slow = ["pandas", "scipy.special", "scipy.sparse", "scipy.optimize", "scipy.stats", "scipy.interpolate", "tkinter",

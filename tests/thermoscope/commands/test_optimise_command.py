@@ -55,7 +55,10 @@ def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
         (("--limit", "winding=155", "--vary", "current_A=9:2"), "'current_A=9:2' is no range"),
         (("--limit", "winding=155", "--vary", "current_A", "--method", "ga"), "'ga' is no method"),
         (("--limit", "winding=155", "--vary", "current_A", "--torque", "5"), "nothing says what current"),
-        (("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"), "no Dask scheduler"),
+        pytest.param(
+            ("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"), "no Dask scheduler",
+            marks=pytest.mark.heavy,  # ten seconds, in which a scheduler may answer
+        ),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_one_message(tmp_path, contents, arguments, message):

@@ -45,6 +45,7 @@ def said(case, commands):
     return [(int(code), text) for text, code in parts]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("commands", [
     ("test compare CASE --why", "model calibrate CASE", "explain diagnose CASE", "model add CASE convection@flange"),
     ("test doctor CASE", "explain effects CASE", "use simulate CASE", "use export CASE --as json",

@@ -20,6 +20,7 @@ def built():
     return build(load_machine("pmsm-m1-no-base"), 0.1, 36, small)
 
 
+@pytest.mark.heavy
 def test_laws_point_by_point_move_heat_to_where_it_is_hot(built):
     """All heat leaves; in steady state little changes in the mean, and the hottest copper gets hotter."""
     shares, solver = loss_shares(built.machine, built.network), Solver(built.field)

@@ -193,6 +193,7 @@ def test_a_lid_open_for_ten_minutes_is_named_with_its_times():
     assert found.events[0].value == pytest.approx(OPEN, rel=0.2)
 
 
+@pytest.mark.heavy
 def test_a_lid_open_three_times_is_one_event():
     spans = ((1000.0, 1400.0), (2400.0, 2800.0), (4000.0, 4400.0))
     best = diagnose(bench((("noon", spans),), 5.0), plan=False).odds[0]
@@ -213,6 +214,7 @@ def test_a_repeat_that_the_others_do_not_predict_is_left_out():
     assert repeats(e, lid, Event.of({"noon": spans[:1]}), fit.values) == Event.of({"noon": spans[:1]})
 
 
+@pytest.mark.heavy
 def test_a_fan_in_one_test_is_named_with_its_test():
     whole = diagnose(bench((("noon", ((0.0, 5980.0),)),), 1.0), plan=False)
     assert whole.odds[0].effects == ("convection.constant@body in noon",)
@@ -256,6 +258,7 @@ def test_masses_and_joints_cannot_differ_between_tests():
                     "loss.heat": True}  # fmt: skip
 
 
+@pytest.mark.heavy
 def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
     """In truth a third of the heat is missing above a load of 0.7, in three tests that go from low to high."""
     net, cases = two_bodies(), []

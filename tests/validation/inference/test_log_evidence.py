@@ -91,6 +91,7 @@ def test_a_larger_noise_can_only_help_what_explains_less(evidence):
     assert same.nats - wide[0].nats == pytest.approx(best.log_bayes, rel=1e-6)  # the same noise twice changes nothing
 
 
+@pytest.mark.heavy
 def test_three_effects_are_found_one_beside_the_other(evidence):
     case = Truth(12, three).case()
     sharp = sharpened(evidence)

@@ -151,14 +151,20 @@ def two(limit=140.0):
     return Pumped(p.network, p.values, p.inputs, p.boundaries, p.space, p.spots, 1, aimed=(PEAK, AUXILIARY))
 
 
+@pytest.fixture(scope="module")
+def grid():
+    """1600 designs on a grid, and the problem."""
+    p = two()
+    return p, [p.of(np.array([a, b])) for a in np.linspace(0.5, 2.0, 40) for b in np.linspace(0.5, 2.0, 40)]
+
+
 @pytest.mark.parametrize("method", [nsga2, unsga3])
-def test_the_search_covers_what_a_brute_force_grid_covers(method):
+def test_the_search_covers_what_a_brute_force_grid_covers(grid, method):
     """Hypervolume within 2 % of that of 1600 designs on a grid."""
     from pymoo.indicators.hv import HV
 
-    p = two()
-    grid = [p.of(np.array([a, b])) for a in np.linspace(0.5, 2.0, 40) for b in np.linspace(0.5, 2.0, 40)]
-    able = np.array([[d.objectives[PEAK], d.objectives[AUXILIARY]] for d in grid if d.feasible])
+    p, designs = grid
+    able = np.array([[d.objectives[PEAK], d.objectives[AUXILIARY]] for d in designs if d.feasible])
     found = pareto_set(p, method, Effort(40, 25))
     volume = HV(ref_point=REFERENCE)
     ours = np.array([[d.performance.objectives[o] for o in p.aimed] for d in found])

@@ -16,10 +16,10 @@ from viz.appearance.shape import joined
 from viz.rendering.cut import QUARTER
 from viz.rendering.nodes import SplitMesh
 
-MACHINES = (
-    "series-dc-100kw-air", "series-dc-100kw-jacket-two-zigzag", "tefc-industrial", "tefc-industrial-radial",
-    "ipmsm-48s8p-jacket", "pmsm-m1",
+LARGE = (
+    "series-dc-100kw-air", "series-dc-100kw-jacket-two-zigzag", "tefc-industrial-radial", "ipmsm-48s8p-jacket",
 )  # fmt: skip
+MACHINES = (*(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE), "tefc-industrial", "pmsm-m1")
 
 
 @pytest.fixture(scope="module", params=MACHINES)
