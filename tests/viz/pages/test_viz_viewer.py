@@ -218,6 +218,7 @@ def test_what_hides_a_labelled_sensor_is_ghosted_around_it(browser, tmp_path):
     write_viewer(tmp_path / "v.html", "motor", NODES, [recorded()], PLACE)
     with tab(browser, tmp_path / "v.html") as (page, _):
         page.select_option("#axis", "-1")
+        still(page)
         changed = np.array(page.evaluate(f"() => {{ const [a, b] = [true, false].map({DRAWN}); {CHANGED} }}"))
         wide, near = page.evaluate("[viewer.gl.drawingBufferWidth, WINDOW]")
         places = page.evaluate("viewer.sensors.map((s) => [viewer.pixel(s)[0], $('gl').height - viewer.pixel(s)[1]])")
