@@ -1,6 +1,7 @@
 """Shared by all tests: one thread per process, files of long tests first, the command line, the small case."""
 
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,6 +10,11 @@ from hypothesis import settings
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+# Byte code is kept, though containers often ask for none: every worker, and every program that a test starts, would
+# compile all code anew.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # The same random examples on every run: a test that fails, fails for everyone.
 settings.register_profile("repeatable", derandomize=True)
