@@ -12,11 +12,9 @@ from typing import Any
 
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History
-from thermoscope.commands.show.viewer import stored_documents
 from thermoscope.console.terminal import Progress
-from thermoscope.workbench.appearance import Appearance, appearance_of
+from thermoscope.workbench.appearance import Appearance
 from thermoscope.workbench.jobs import Job, StoppedError
-from thermoscope.workbench.steps import comparing_job
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
 PARTS = 2  # of a machine: its temperatures, then what takes longer
@@ -125,11 +123,11 @@ class Bench:
         """Why there is no machine to show; empty where there is one."""
         return NO_MACHINE if self.folder.built is None else ""
 
-    async def compared(self) -> Appearance:
+    async def compared(self, job_of: Callable[[Folder], Job]) -> Appearance:
         """The model when it was opened, compared once for all tabs that wait. FailedError, StoppedError"""
         if self.first is None:
             if self._comparing is None:
-                self._job = comparing_job(self.folder)
+                self._job = job_of(self.folder)
                 self._comparing = asyncio.get_running_loop().create_task(self._job.run(lambda message: None))
             self.first = await asyncio.shield(self._comparing)
         return self.first
@@ -139,10 +137,3 @@ class Bench:
         self.machines.stop()
         if self._job is not None:
             self._job.stop()
-
-
-def bench(folder: Folder) -> Bench:
-    """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
-    parts = stored_documents(folder)
-    drawn = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
-    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(drawn))

@@ -13,11 +13,13 @@ from aiohttp import web
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
+from thermoscope.commands.show.viewer import stored_documents
 from thermoscope.workbench.access_control import AccessControl
+from thermoscope.workbench.appearance import appearance_of
 from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import FailedError, StoppedError, prepare
-from thermoscope.workbench.machines import Bench, bench
-from thermoscope.workbench.steps import drawing_job
+from thermoscope.workbench.machines import Bench, Machines
+from thermoscope.workbench.steps import comparing_job, drawing_job
 from thermoscope.workbench.tabs import Tabs
 
 SWEEP_S = 30.0  # between looks for idle tabs
@@ -65,12 +67,19 @@ def application(folder: Folder, access: AccessControl, largest_drop: int = LARGE
     return app
 
 
+def bench(folder: Folder) -> Bench:
+    """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
+    parts = stored_documents(folder)
+    documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
+    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))
+
+
 async def _prepared(opened: Bench) -> None:
     """Before anyone asks: the machine is drawn and the model compared, each beside the other."""
     if opened.folder.built is not None and opened.machines.find(opened.folder.history) is None:
         opened.machines.drawing(opened.folder, drawing_job)
     with suppress(FailedError, StoppedError):  # every tab that waits is told
-        await opened.compared()
+        await opened.compared(comparing_job)
 
 
 def serve(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:

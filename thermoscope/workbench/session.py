@@ -69,7 +69,7 @@ class Session:
         with self.state:
             self.state.busy = self.state.comparing = True
         try:
-            await self.bench.compared()
+            await self.bench.compared(steps.comparing_job)
         except (FailedError, StoppedError) as fault:
             self._complain(str(fault))
         finally:

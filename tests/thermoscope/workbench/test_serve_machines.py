@@ -12,7 +12,7 @@ from thermoscope.workbench import serve
 from thermoscope.workbench.appearance import Appearance
 from thermoscope.workbench.jobs import FailedError, StoppedError
 from thermoscope.workbench.machines import Bench, Machines
-from thermoscope.workbench.steps import drawing_job
+from thermoscope.workbench.steps import comparing_job, drawing_job
 
 FIRST, REST = {"fields": 1}, {"network": 2}
 
@@ -128,7 +128,7 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
     async def main():
         bench = Bench(folder)
         task = asyncio.create_task(serve._prepared(bench))
-        looks = await asyncio.gather(bench.compared(), bench.compared())
+        looks = await asyncio.gather(bench.compared(comparing_job), bench.compared(comparing_job))
         await task
         rest = await bench.machines.drawings[0].parts[1] if bench.machines.drawings else REST
         bench.stop()
@@ -149,7 +149,7 @@ def test_a_comparison_that_fails_is_said_to_every_tab(folder, monkeypatch):
         bench = Bench(folder)
         await serve._prepared(bench)
         with pytest.raises(FailedError, match="no readings"):
-            await bench.compared()
+            await bench.compared(comparing_job)
         return bench.first
 
     assert asyncio.run(main()) is None

@@ -1,6 +1,6 @@
 // Curves are drawn by Plotly, 4.6 MB of script: the page and the machine do not wait for it.
 (() => {
-  const AFTER = 500, LATEST = 4000; // ms: after the machine's first picture; after the page where no machine is drawn
+  const AFTER = 500, LATEST = 4000, LONGEST = 30000; // ms: after the machine's first picture, without one, with a slow one
   let begun = false;
   const begin = () => {
     if (begun) return;
@@ -16,7 +16,8 @@
   const watched = new MutationObserver(() => {
     if (!document.getElementById("missing")) return;
     watched.disconnect();
-    setTimeout(begin, document.querySelector(".machine .flat") ? 0 : LATEST);
+    setTimeout(begin, LONGEST);
+    setTimeout(() => document.getElementById("viewer") || begin(), document.querySelector(".machine .flat") ? 0 : LATEST);
   });
   watched.observe(document, { subtree: true, childList: true });
   addEventListener("message", (event) => {
