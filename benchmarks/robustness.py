@@ -40,7 +40,8 @@ from small_case import small_case  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
-from thermoscope.workbench.machines import bench  # noqa: E402
+from thermoscope.workbench.serve import bench  # noqa: E402
+from thermoscope.workbench.steps import comparing_job  # noqa: E402
 from thermoscope.workbench.tabs import Tabs  # noqa: E402
 
 COMMANDS = {
@@ -97,7 +98,7 @@ async def pressed(case: Path) -> int:
     """The workbench with a tab in which "Calibrate" is pressed; 2 where the page then shows an error."""
     os.environ["TRAME_ARGS"] = "--server"
     opened = bench(load_case(case))
-    await opened.compared()
+    await opened.compared(comparing_job)
     tabs = Tabs(opened)
     with suppress(web.HTTPFound):  # on to the tab that was made
         await tabs.new(None)  # type: ignore[arg-type]

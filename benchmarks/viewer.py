@@ -169,7 +169,8 @@ def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
     finally:
         server.terminate()
         server.wait()
-    return [first, len(pictures) / spent, 1e-6 * sum(pictures) / spent, 1e3 * used / max(len(pictures), 1)]
+    each = 1e3 / len(pictures) if pictures else 0.0
+    return [first, len(pictures) / spent, 1e-6 * sum(pictures) / spent, each * used]
 
 
 def listening(port: int) -> None:
@@ -250,7 +251,8 @@ def moved(page: Any, clock: Any, seconds: float, act: Callable[[Any, int], None]
         step += 1
         act(page, step)
     drawn, after = page.evaluate("window.drawn"), cpu(clock)
-    return [drawn / spent, *(1e3 * (after[kind] - before[kind]) / drawn for kind in ("renderer", "GPU"))]
+    each = 1e3 / drawn if drawn else 0.0
+    return [drawn / spent, *(each * (after[kind] - before[kind]) for kind in ("renderer", "GPU"))]
 
 
 def turned(page: Any, step: int) -> None:
@@ -278,9 +280,14 @@ def rows(size_m: float, seconds: float) -> list[dict[str, Any]]:
     mine = {one["measure"]: one["ours"] for one in out}
     name = "pyvista's live trame view"
     for measure, unit, value in zip(LIVE, ("s", "1/s", "MB/s", "ms"), live, strict=False):
-        both = {"ours": mine[measure], "ratio": mine[measure] / value} if measure in mine else {"ours": 0.0}
-        out.append({"case": case, "measure": measure, "unit": unit, **both, "peer": value, "peer_name": name})
+        both = against(mine[measure], value) if measure in mine else {"ours": 0.0, "peer": value}
+        out.append({"case": case, "measure": measure, "unit": unit, **both, "peer_name": name})
     return out
+
+
+def against(ours: float, peer: float) -> dict[str, Any]:
+    """Both and their ratio; a peer that drew nothing while it was watched has none, and the row says so."""
+    return {"ours": ours, "peer": peer} | ({"ratio": ours / peer} if peer > 0 else {"remark": "the peer drew nothing"})
 
 
 def row(case: str, measure: str, unit: str, values: list[float]) -> dict[str, Any]:
@@ -288,8 +295,7 @@ def row(case: str, measure: str, unit: str, values: list[float]) -> dict[str, An
     out = {"case": case, "measure": measure, "unit": unit, "ours": values[0]}
     if len(values) == 1:
         return out
-    peer_name = "pyvista's trame view (export_html)"
-    return {**out, "peer": values[1], "peer_name": peer_name, "ratio": values[0] / values[1]}
+    return {**out, **against(values[0], values[1]), "peer_name": "pyvista's trame view (export_html)"}
 
 
 def main() -> None:
@@ -309,6 +315,7 @@ def main() -> None:
     for one in found:
         beside = f" {one['peer_name']} {one['peer']:8.3g}" if "peer" in one else ""
         beside += f"  ratio {one['ratio']:.2g}" if "ratio" in one else ""
+        beside += f"  {one['remark']}" if "remark" in one else ""
         print(f"{one['measure']:38} {one['ours']:8.3g} {one['unit']:4}{beside}")
     if asked.json:
         asked.json.write_text(json.dumps(document, indent=1))

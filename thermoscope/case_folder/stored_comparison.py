@@ -46,7 +46,7 @@ def new_comparison(folder: Folder) -> Comparison:
     """Run the model on every test, and keep what comes of it. Networks declared by hand are quick and are not kept."""
     result = compare(folder.case, budgets=folder.numeric_K)
     if folder.built is not None:
-        write_whole(_file(folder), _packed(folder, result))
+        write_whole(_file(folder), _archive(folder, result))
     return result
 
 
@@ -54,7 +54,7 @@ def _file(folder: Folder) -> Path:
     return cache_folder() / f"comparison-{result_key(folder)}.npz"
 
 
-def _packed(folder: Folder, result: Comparison) -> bytes:
+def _archive(folder: Folder, result: Comparison) -> bytes:
     network, values = working(folder.case)[0], physical(folder.case)
     readings = [predict(network, test, values).y for test in folder.case.tests]  # the runs are remembered
     document = {

@@ -21,7 +21,7 @@ START: dict[str, Any] = {
     "busy": False, "comparing": False, "job": {"title": "", "message": "", "percent": None},
     "error": "", "outcome": None, "report": "", "viewer": "", "viewer_rest": "", "preparing": "", "limits": {},
     "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
-    "effects": [], "revision": 0, "steps": [], "can_undo": False,
+    "plotly": "", "plots": 0, "effects": [], "revision": 0, "steps": [], "can_undo": False,
     "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
     "drop": None, "dragged": "", "made": "",
 }  # fmt: skip

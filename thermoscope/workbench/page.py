@@ -6,9 +6,11 @@ from importlib.resources import files
 from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
-from trame.widgets import client, html, plotly
+from trame.widgets import client, html
 from trame.widgets import trame as extra
 from trame.widgets import vuetify3 as v3
+from trame_client.widgets.core import AbstractElement
+from trame_plotly import module as plotly
 
 from thermoscope.workbench.session import Session, started
 from validation.comparison.uncertainty import RULE
@@ -16,7 +18,8 @@ from validation.comparison.uncertainty import RULE
 KEYS = (
     ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"),
 )  # fmt: skip
-BROWSER = ("drop", "machine")  # scripts of the page
+BROWSER = ("drop", "machine", "plots")  # scripts of the page
+PLOTLY = {"displayModeBar": "false", "displaylogo": "false", "responsive": "true"}
 HINT = (
     "Keys: j, k sensors · arrows, +, −, 0 view · space plays · d diagnose · u undo · r report · Tab, Enter everywhere"
 )
@@ -49,8 +52,21 @@ def _browser_code(session: Session) -> None:
     """What the page runs besides its templates, from this package and nowhere else."""
     code = str(files("thermoscope.workbench").joinpath("browser"))
     session.shown.server.enable_module(
-        {"serve": {"__thermoscope": code}, "scripts": [f"__thermoscope/{name}.js" for name in BROWSER]}
+        {
+            "serve": {"__thermoscope": code, **plotly.serve},
+            "scripts": [f"__thermoscope/{name}.js" for name in BROWSER],
+        }
     )
+    session.state.plotly = plotly.scripts[0]  # plots.js loads it
+
+
+def _figure(name: str) -> None:
+    """A figure of the page's state, once there is what draws it: looked up by name then, not with the page."""
+    options = [f':{key}="{value}"' for key, value in PLOTLY.items()]
+    AbstractElement("component", raw_attrs=[
+        'v-if="plots"', ":is=\"'trame-plotly'\"", ':key="plots"', f':data="{name}.data"', f':layout="{name}.layout"',
+        *options, 'style="width: 100%; height: 100%"',
+    ])  # fmt: skip
 
 
 def aria(attribute: str, value: str) -> dict[str, list[str]]:
@@ -134,10 +150,8 @@ def _curve() -> None:
     with html.Div(v_if=("comparing",), classes="card curve"):
         html.Div(classes="waiting", **aria("aria-hidden", "true"))
     with html.Div(v_if=("!comparing",), classes="card curve", id="curve", **pictured(label)):
-        plotly.Figure(
-            state_variable_name="curve", display_mode_bar=("false",), responsive=("true",), display_logo=("false",),
-            style="width: 100%; height: 100%",
-        )  # fmt: skip
+        html.Div(v_if=("!plots",), classes="waiting", **aria("aria-hidden", "true"))
+        _figure("curve")
 
 
 def _messages(session: Session) -> None:
@@ -210,10 +224,7 @@ def _missing(session: Session) -> None:
             _candidates(session)
             label = "'which of the candidates look alike: a matrix of their likeness'"
             with html.Div(v_if=("has_confusion",), classes="confusion", id="confusion", **pictured(label)):
-                plotly.Figure(
-                    state_variable_name="confusion", display_mode_bar=("false",), responsive=("true",),
-                    style="width: 100%; height: 100%",
-                )  # fmt: skip
+                _figure("confusion")
             html.P("{{ verdict.unseen }}", classes="faint")
             html.P("{{ a }}", v_for="a in verdict.ahead", key="a", classes="faint")
 

@@ -16,21 +16,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMALL = 0.01  # of the total: smaller exits are drawn as one
-WARMS, ELSEWHERE = "warms the machine", "elsewhere"
+WARMS, COOLS, ELSEWHERE = "warms the machine", "the machine cools", "elsewhere"
 LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
 GAP = 0.065  # of the total between ribbons: nearly the height of a name; less where there are many
 
 
 @paper.styled
 def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> Figure:
-    """Losses on the left, exits and what is stored on the right (W)."""
-    left = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
-    right = exits(heat)
+    """Losses and what a machine that cools gives up on the left, exits and what is stored on the right (W)."""
+    left, right = entries(heat), exits(heat)
     total = sum(left.values())
-    if total <= 0:
+    if sum(heat.losses.values()) <= 0:
         raise InputError("no losses to draw", "sankey", "a machine that is running")
     figure, (ax,) = paper.subplots(8.4, 4.4)
-    _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION), total)
+    _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION) | {COOLS: ORANGE}, total)
     _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
     ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
@@ -38,6 +37,13 @@ def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = No
     ax.axis("off")
     ax.set_title(title, loc="left")
     return paper.save(figure, png)
+
+
+def entries(heat: Heat) -> dict[str, float]:
+    """Losses by size, then what the machine gives up where more leaves it than is lost."""
+    losses = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
+    least = SMALL * sum(losses.values())
+    return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
 
 
 def exits(heat: Heat) -> dict[str, float]:

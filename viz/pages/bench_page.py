@@ -23,6 +23,7 @@ DECISIVE = 2.0  # one-sigma distances from which a reading speaks for one of two
 class BenchPage:
     """driven : name of the test that the plan changes;  made : date and versions
     holding : what to hold when: name, from and to (s), value in the unit of its name
+    hottest_C : the hottest reading of all tests so far (degC)
     """
 
     case: str
@@ -30,6 +31,7 @@ class BenchPage:
     driven: str
     holding: list[tuple[str, float, float, float]]
     provenance: str = ""
+    hottest_C: float | None = None
 
 
 def write_bench_page(page: BenchPage, path: str | Path) -> Path:
@@ -54,11 +56,21 @@ def render(page: BenchPage) -> str:
     table += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
     parts = [
-        head + html.text(says), html.section("Drive", table),
+        head + html.text(says) + _careful(page), html.section("Drive", table),
         html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _decisive(plan)),
         f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
     ]  # fmt: skip
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
+
+
+def _careful(page: BenchPage) -> str:
+    """A warning where a sensor would read more than any has read: nobody knows yet what bears it."""
+    peaks = {c.name: max(float(y[c.name].max()) for y in page.plan.curves.values()) for c in page.plan.test.channels}
+    name = max(peaks, key=lambda channel: peaks[channel])
+    if page.hottest_C is None or peaks[name] <= page.hottest_C:
+        return ""
+    says = f"Careful: {short(name)} would reach {peaks[name]:.0f} °C; no test has read more than"
+    return html.text(f"{says} {page.hottest_C:.0f} °C. Stop before anything gets too hot.")
 
 
 def _decisive(plan: PredictedCurves) -> str:

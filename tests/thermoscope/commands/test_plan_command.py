@@ -13,6 +13,7 @@ from thermoscope.commands.show.plan import plan
 from validation.planning.candidate_tests import Experiment
 from validation.revision.predicted_curves import UNCHANGED, PredictedCurves, predicted_curves, schedule
 from viz.figures.experiment import predicted
+from viz.pages.bench_page import BenchPage, render
 
 RIVALS = ("convection@flange", "radiation@flange")
 
@@ -27,6 +28,15 @@ def test_the_page_names_a_test_and_every_hypothesis(case, tmp_path):
     assert found["closest_sigma"] > 2
     assert all(word in text for word in ("Tomorrow: cool-down with wind on and off, 4 h", *RIVALS, "flange", "12"))
     assert "http" not in text.replace("http://www.w3.org", "")
+
+
+@pytest.mark.parametrize(("above_K", "said"), [(-5.0, True), (5.0, False)])
+def test_what_no_test_has_read_yet_is_said(case, above_K, said):
+    folder = load_case(case)
+    found = predicted_curves(folder.case, {"a": folder.case.model})
+    peak = max(float(y.max()) for y in found.curves["a"].values())
+    text = render(BenchPage("three", found, "town", [], hottest_C=peak + above_K))
+    assert (f"would reach {peak:.0f} °C; no test has read more than {peak + above_K:.0f} °C" in text) == said
 
 
 @pytest.mark.parametrize(

@@ -90,9 +90,15 @@ def test_ribbons_carry_their_watts():
     assert "shaft" not in text
 
 
-@pytest.mark.parametrize("count", [1, 14])
-def test_ribbons_stay_inside_the_drawing(count):
-    (ax,) = sankey_of_losses(Heat({f"loss {i}": 100.0 for i in range(count)}, (), {"housing": 1.0})).axes
+def test_what_a_cooling_machine_gives_up_comes_in_with_its_losses():
+    text = paper.svg(sankey_of_losses(Heat({"copper": 300.0}, (), {"housing": 390.0})), "s").replace("\u00a0", " ")
+    shown = ["copper  300 W", "the machine cools  90 W", "390 W", "housing  390 W"]
+    assert [word for word in shown if word not in text] == []
+
+
+@pytest.mark.parametrize(("count", "out"), [(1, 1.0), (14, 1.0), (3, 900.0)])
+def test_ribbons_stay_inside_the_drawing(count, out):
+    (ax,) = sankey_of_losses(Heat({f"loss {i}": 100.0 for i in range(count)}, (), {"housing": out})).axes
     low, high = ax.get_ylim()
     for ribbon in ax.patches:
         y = ribbon.get_path().vertices[:, 1]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import open_case
@@ -31,8 +33,10 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         file = out or Path("out") / f"{folder.case.name}-plan.html"
         last = folder.case.tests[-1]
         write_bench_page(
-            BenchPage(folder.case.name, curves, last.name, schedule(curves.test, last), provenance()), file
-        )
+            BenchPage(
+                folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)
+            ), file
+        )  # fmt: skip
     document = {
         "case": folder.case.name, "test": curves.experiment.name, "hours": curves.experiment.hours,
         "hypotheses": list(curves.curves), "closest_sigma": curves.closest(), "page": str(file),
@@ -40,6 +44,11 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
     }  # fmt: skip
     give(document, target, lambda: Answer(f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"))
     return 0
+
+
+def hottest(folder: Folder) -> float:
+    """The hottest reading of all tests (degC)."""
+    return max(float(np.nanmax(c.y)) for test in folder.case.tests for c in test.channels if np.isfinite(c.y).any())
 
 
 def suspected(folder: Folder) -> list[str]:
