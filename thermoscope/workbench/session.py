@@ -38,6 +38,7 @@ class Session:
         self.dropped: Dropped | None = None
         self.viewer_page = self.viewer_rest = ""
         self._refused: Revision | None = None
+        self._closed = False
         self._job: Job | None = None
         self._drawing: Drawing | None = None
         self._on_screen: History | None = None
@@ -75,7 +76,7 @@ class Session:
         finally:
             with self.state:
                 self.state.busy = self.state.comparing = False
-                if self.bench.first is not None:
+                if self.bench.first is not None and not self._closed:
                     self.open()
 
     async def diagnose(self) -> None:
@@ -231,7 +232,13 @@ class Session:
         if self._job is not None:
             self._job.stop()
 
+    @property
+    def calculates(self) -> bool:
+        """Whether something runs for this tab alone; the first comparison is for all."""
+        return bool(self.state.busy) and not self.state.comparing
+
     def close(self) -> None:
+        self._closed = True
         self.stop()
         self._leave()
 

@@ -23,6 +23,12 @@ if TYPE_CHECKING:
 NICENESS = 5  # how much a process of ours gives way to the browser, which draws what it has meanwhile
 
 
+def first_appearance(folder: Folder, tell: Progress) -> Appearance:
+    """The model as it was opened; its machine, for which a page waits, goes first."""
+    _give_way()
+    return appearance(folder, tell)
+
+
 def appearance(folder: Folder, tell: Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
@@ -35,14 +41,18 @@ def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]
 
     parts = viewer_documents(folder, tell)
     yield next(parts)
+    _give_way()
+    yield from parts
+
+
+def _give_way() -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    yield from parts
 
 
 def comparing_job(folder: Folder) -> Job:
     """What compares a model with every test, in a process of its own."""
-    return Job(appearance, folder)
+    return Job(first_appearance, folder)
 
 
 def drawing_job(folder: Folder) -> Job:

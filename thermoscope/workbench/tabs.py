@@ -152,7 +152,7 @@ class Tabs:
         """End the sessions that nobody has looked at for `idle_s` and that calculate nothing."""
         now = time.monotonic()
         for name, tab in list(self.open.items()):
-            if not tab.connected and not tab.session.state.busy and now - tab.left > idle_s:
+            if not tab.connected and not tab.session.calculates and now - tab.left > idle_s:
                 await self.open.pop(name).close()
 
     async def close(self) -> None:

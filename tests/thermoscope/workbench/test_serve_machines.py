@@ -139,7 +139,7 @@ def test_a_job_may_begin_before_there_is_a_loop(folder):
 
 def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
     """Both begin with the server, before anyone asks; all tabs wait for one comparison."""
-    monkeypatch.setattr("thermoscope.workbench.steps.appearance", compared)
+    monkeypatch.setattr("thermoscope.workbench.steps.first_appearance", compared)
 
     async def main():
         bench = Bench(folder)
@@ -158,7 +158,7 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
 
 
 def test_a_comparison_that_fails_is_said_to_every_tab(folder, monkeypatch):
-    monkeypatch.setattr("thermoscope.workbench.steps.appearance", compared)
+    monkeypatch.setattr("thermoscope.workbench.steps.first_appearance", compared)
     folder.built, folder.fault = None, "no readings"
 
     async def main():
