@@ -67,13 +67,6 @@ def application(folder: Folder, access: AccessControl, largest_drop: int = LARGE
     return app
 
 
-def bench(folder: Folder) -> Bench:
-    """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
-    parts = stored_documents(folder)
-    documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
-    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))
-
-
 async def _prepared(opened: Bench) -> None:
     """Before anyone asks: the machine is drawn and the model compared, each beside the other."""
     if opened.folder.built is not None and opened.machines.find(opened.folder.history) is None:
@@ -119,5 +112,5 @@ def _address(access: AccessControl, port: int) -> str:
 def _bench(folder: Folder) -> Bench:
     """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
     parts = stored_documents(folder)
-    machines = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
-    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(machines))
+    documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
+    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))

@@ -58,15 +58,16 @@ def sampled(steps: Mapping[str, SampleStep]) -> str:
     worst = max(steps.values(), key=lambda s: s.error_K)
     if worst.sensor is None:
         return f"readings and model are compared {sentence}, as recorded"
-    fast = f", where {worst.node} follows in {_duration(worst.time_constant_s)}" if worst.node else ""
+    tau_s = worst.time_constant_s
+    fast = "" if tau_s is None else f", where {worst.node} follows in {_duration(tau_s)}"
     return (
         f"readings and model are compared {sentence}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
     )
 
 
-def _duration(seconds: float | None) -> str:
+def _duration(seconds: float) -> str:
     """In hours from two on: a node that nothing cools follows in weeks."""
-    hours = (seconds or 0.0) / 3600.0
+    hours = seconds / 3600.0
     return f"{hours:.0f} h" if hours >= 2.0 else f"{seconds:.3g} s"
 
 
