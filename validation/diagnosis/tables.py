@@ -308,10 +308,10 @@ def unsteady(posterior: Posterior, choice: Decision) -> str:
     if not choice.others:
         return ""
     names, d = posterior.evidence.names, choice.others[0]
-    other = " and ".join(names[g[0]] for g in d.groups) or {"adequate": "nothing missing"}.get(
-        d.verdict, "unknown heat"
-    )
-    claimed = "" if choice.verdict in ("adequate", "outside") else "no single name is given: "
+    other = " and ".join(" or ".join(names[k] for k in g[:2]) for g in d.groups)
+    other = other or {"adequate": "nothing missing"}.get(d.verdict, "unknown heat")
+    how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
+    claimed = "" if choice.verdict in ("adequate", "outside") else how
     return f"; {claimed}every second sample alone leads to {d.verdict} ({other})"
 
 

@@ -61,6 +61,7 @@ def refitted(
     for _ in range(ROUNDS):
         P = shares(promised(hypotheses, out))
         due = [i for i in np.argsort(-P) if P[i] > WEIGHT and out[i].members and out[i].fit is None][:MOST]
+        due = due or between(out)[:MOST]
         if not due:
             break
         for size in (1, 2):  # two begin where one of them was fitted alone
@@ -72,6 +73,26 @@ def weighty_refits(hypotheses: Sequence[Hypothesis]) -> list[tuple[int, ...]]:
     """Members of what carries weight once it is refitted."""
     P = shares(hypotheses)
     return [h.members for p, h in zip(P, hypotheses, strict=True) if p > WEIGHT and h.fit and h.members]
+
+
+def between(hypotheses: Sequence[Hypothesis]) -> list[int]:
+    """Pairs without a refit that only exchange what weighty pairs exchange already, most probable first.
+
+    Where a + b and c + b and a + d carry weight, a and c may stand for each other, and c + d is weighed as the three
+    are. Its tangents alone promise too little as often as theirs, and whether it is refitted would hang on chance.
+    """
+    weighty = [m for m in weighty_refits(hypotheses) if len(m) == 2]
+    partners: dict[int, set[int]] = {}
+    for a, b in weighty:
+        partners.setdefault(a, set()).add(b)
+        partners.setdefault(b, set()).add(a)
+
+    def closes(m: tuple[int, ...]) -> bool:
+        return any(partners.get(m[0], set()) & partners[a] for a in partners.get(m[1], ()))
+
+    P = shares(hypotheses)
+    return [int(i) for i in np.argsort(-P, kind="stable")
+            if len(hypotheses[i].members) == 2 and hypotheses[i].fit is None and closes(hypotheses[i].members)]
 
 
 def together(

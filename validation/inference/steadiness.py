@@ -38,7 +38,9 @@ def differs(choice: Decision, other: Decision) -> bool:
     if not choice.groups or len(choice.groups) != len(other.groups):
         return (choice.verdict, len(choice.groups)) != (other.verdict, len(other.groups))
     members = {k for g in choice.groups for k in g}
-    return not {g[0] for g in other.groups} <= members or (choice.verdict == "named" != other.verdict)
+    names, again = ({g[0] for g in d.groups if len(g) == 1} for d in (choice, other))
+    less_sure = not names <= again or choice.verdict == "named" != other.verdict
+    return not {g[0] for g in other.groups} <= members or less_sure
 
 
 def united(groups: tuple[tuple[int, ...], ...], more: tuple[tuple[int, ...], ...]) -> tuple[tuple[int, ...], ...]:

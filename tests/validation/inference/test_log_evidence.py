@@ -1,5 +1,7 @@
 """The evidence of a noise against the dense normal distribution, and three effects found one beside the other."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from playground import Truth, wind
@@ -23,7 +25,7 @@ from validation.inference.evidence import (
     without_effects,
 )
 from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
-from validation.inference.refits import WEIGHT, refitted, shares, weighty_refits
+from validation.inference.refits import WEIGHT, between, refitted, shares, weighty_refits
 from validation.inference.score import total
 from validation.inference.several import further
 from validation.measurement.noise import Level, Noise
@@ -116,6 +118,17 @@ def test_what_carried_weight_under_one_noise_is_refitted_under_the_next(evidence
     twice = {h.members: h for h in refitted(evidence, every, warm_fits=warm_fits, again=[idle]) if h.members}
     assert twice[idle].fit is not None
     assert sum(h.fit is not None for h in twice.values()) == 1 + sum(h.fit is not None for h in once if h.members)
+
+
+def test_a_pair_that_exchanges_what_weighty_pairs_exchange_is_refitted_however_little_tangents_promise(evidence):
+    """Of two members that stand for each other beside one partner, neither is left out beside another."""
+    weighty = [Hypothesis(m, log_bayes=10.0, fit=evidence.fit) for m in ((0, 2), (1, 2), (0, 3))]
+    fourth, apart = Hypothesis((1, 3), log_bayes=-20.0), Hypothesis((2, 3), log_bayes=-20.0)
+    assert between([Hypothesis(), *weighty, apart, fourth]) == [5]
+    assert between([Hypothesis(), *weighty, apart, replace(fourth, fit=evidence.fit)]) == []
+    for i in range(3):  # without one of the three nothing says that they stand for each other
+        idle = [replace(h, log_bayes=-20.0) if i == j else h for j, h in enumerate(weighty)]
+        assert between([Hypothesis(), *idle, apart, fourth]) == []
 
 
 def to_the_end(evidence, network, unknowns, theta, held):

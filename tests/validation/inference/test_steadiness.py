@@ -76,6 +76,15 @@ def test_the_order_within_a_group_is_no_other_verdict():
     assert choice == whole
 
 
+def test_one_of_several_is_not_named_where_half_of_the_instants_do_not_name_it():
+    whole, half = Decision("several", ((0,), (1,)), 0.9), Decision("several", ((0, 2), (1,)), 0.9)
+    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    assert (choice.verdict, choice.groups) == ("several", ((0, 2), (1,)))
+    told = unsteady(posterior(), choice)
+    assert "not all are named: every second sample alone leads to several" in told
+    assert f"{NAMES[0]} or {NAMES[2]} and {NAMES[1]}" in told
+
+
 def test_what_one_group_has_joins_no_other():
     assert united(((0,), (1,)), ((0, 2, 1),)) == ((0, 2), (1,))
     assert united(((0,), (1,)), ((0,), (2,))) == ((0,), (1, 2))
