@@ -28,6 +28,7 @@ from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
 from validation.parameters.unknowns import effects_of, to_value, working
+from validation.threads import side_by_side
 
 if TYPE_CHECKING:
     from viz.data import Comparison
@@ -89,12 +90,17 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
 
     limits : channel -> the largest error that counts as agreement (K); None to have them worked out
     """
-    from viz.data import Comparison
-
     earlier = _before_last(folder)
     before = None if earlier is None else _readings(earlier, test)
     agreement = folder.limits(test) if limits is None else limits
-    return Comparison(test, _readings(folder, test), agreement, before, accepted(folder.case, test))
+    return replace(current_comparison(folder, test), limits=agreement, before=before)
+
+
+def current_comparison(folder: Folder, test: Test) -> Comparison:
+    """A test against the model as it is, without what counts as agreement."""
+    from viz.data import Comparison
+
+    return Comparison(test, _readings(folder, test), {}, None, accepted(folder.case, test))
 
 
 def _readings(folder: Folder, test: Test) -> dict[str, Array]:
@@ -141,15 +147,28 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     Pictures, films, recordings, viewer and workbench of a case take their colours from it, so that they compare.
     Kept by content: every one of them asks for it.
     """
-    models = [of for of in (folder, _before_last(folder)) if of is not None]
-    file = cache_folder() / f"range-{'-'.join(map(result_key, models))}.json"
-    cached = recalled(file, _range_in)
+    cached = recalled(_range_file(folder), _range_in)
     if cached is not None:
         return cached
-    every = [fields(of.case, test, nodes, RANGE_FRAMES)[1] for of in models for test in of.case.tests]
+    runs = [(of.case, test) for of in _now_and_before(folder) for test in of.case.tests]
+    every = side_by_side(lambda run: fields(*run, nodes, RANGE_FRAMES)[1], runs)
     low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
-    write_whole(file, json.dumps([low, high]))
+    write_whole(_range_file(folder), json.dumps([low, high]))
     return low, high
+
+
+def stored_range(folder: Folder) -> tuple[float, float] | None:
+    """The same (degC) where it is known already, else that of the model before; None where neither is."""
+    of_all = (recalled(_range_file(of), _range_in) for of in _now_and_before(folder))
+    return next((limits for limits in of_all if limits is not None), None)
+
+
+def _now_and_before(folder: Folder) -> list[Folder]:
+    return [of for of in (folder, _before_last(folder)) if of is not None]
+
+
+def _range_file(folder: Folder) -> Path:
+    return cache_folder() / f"range-{'-'.join(map(result_key, _now_and_before(folder)))}.json"
 
 
 def _range_in(file: Path) -> tuple[float, float]:

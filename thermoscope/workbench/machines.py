@@ -17,7 +17,7 @@ from thermoscope.workbench.appearance import Appearance
 from thermoscope.workbench.jobs import Job, StoppedError
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
-PARTS = 2  # of a machine: its temperatures, then what takes longer
+PARTS = 3  # of a machine: in one test, in every test, then what takes longest
 NO_MACHINE = "This case has a network declared by hand, so there is no machine to show."
 
 Document = dict[str, Any]
@@ -127,10 +127,16 @@ class Bench:
         """The model when it was opened, compared once for all tabs that wait. FailedError, StoppedError"""
         if self.first is None:
             if self._comparing is None:
-                self._job = job_of(self.folder)
-                self._comparing = asyncio.get_running_loop().create_task(self._job.run(lambda message: None))
+                self._comparing = asyncio.get_running_loop().create_task(self._compare(job_of(self.folder)))
             self.first = await asyncio.shield(self._comparing)
         return self.first
+
+    async def _compare(self, job: Job) -> Appearance:
+        """Once the first picture of the machine is there, or cannot be had: both want all of the computer."""
+        self._job = job
+        if self.machines.drawings:
+            await asyncio.wait([self.machines.drawings[0].parts[0]])
+        return await job.run(lambda message: None)
 
     def stop(self) -> None:
         """End what is under way."""

@@ -37,6 +37,7 @@ class Session:
         self.diagnosis: dict[str, Any] | None = None
         self.dropped: Dropped | None = None
         self.viewer_page = self.viewer_rest = ""
+        self._rest: dict[str, Any] = {}
         self._refused: Revision | None = None
         self._closed = False
         self._job: Job | None = None
@@ -188,11 +189,11 @@ class Session:
         mine = self._drawing = self.bench.machines.drawing(self.folder, steps.drawing_job)
         mine.hear(self._preparing)
         try:
-            for part, show in zip(mine.parts, (self._draw, self._complete), strict=True):
+            for number, part in enumerate(mine.parts):
                 document = await asyncio.shield(part)
                 if self._drawing is not mine:
                     return  # another model was to be drawn
-                show(document)
+                (self._complete if number else self._draw)(document)
         except StoppedError:
             return
         except FailedError as fault:
@@ -206,13 +207,14 @@ class Session:
         from viz.viewer.page import render
 
         self._on_screen = self.history
-        self.viewer_page = render(document)
+        self.viewer_page, self._rest = render(document), {}
         with self.state:
             self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""
 
     def _complete(self, document: Mapping[str, Any]) -> None:
-        """The rest of the machine that the browser draws already."""
-        self.viewer_rest = json.dumps(document)
+        """More of the machine that the browser draws already."""
+        self._rest = {**self._rest, **document}  # all of it, whichever part the browser asks for first
+        self.viewer_rest = json.dumps(self._rest)
         with self.state:
             self.state.viewer_rest = f"viewer-rest.json?{time.time_ns()}"
 

@@ -91,8 +91,11 @@ def between(hypotheses: Sequence[Hypothesis]) -> list[int]:
         return any(partners.get(m[0], set()) & partners[a] for a in partners.get(m[1], ()))
 
     P = shares(hypotheses)
-    return [int(i) for i in np.argsort(-P, kind="stable")
-            if len(hypotheses[i].members) == 2 and hypotheses[i].fit is None and closes(hypotheses[i].members)]
+    return [
+        int(i)
+        for i in np.argsort(-P, kind="stable")
+        if len(hypotheses[i].members) == 2 and hypotheses[i].fit is None and closes(hypotheses[i].members)
+    ]
 
 
 def together(

@@ -46,13 +46,23 @@ def packed_looks(
     """
     if cache is None:
         return _packed(machine, nodes, wedge)
-    file = cache / f"looks-{_key(machine, nodes, wedge)}.json"
-    cached = recalled(file, lambda path: dict(json.loads(path.read_text(encoding="utf-8"))))
-    if cached is None:
-        cached = _packed(machine, nodes, wedge)
-        with atomic_write(file) as partial:
-            partial.write_text(json.dumps(cached), encoding="utf-8")
-    return cached
+    looks = cached_looks(machine, nodes, cache, wedge)
+    if looks is None:
+        looks = _packed(machine, nodes, wedge)
+        with atomic_write(_file(machine, nodes, wedge, cache)) as partial:
+            partial.write_text(json.dumps(looks), encoding="utf-8")
+    return looks
+
+
+def cached_looks(machine: Machine, nodes: SplitMesh, cache: Path, wedge: Wedge = QUARTER) -> dict[str, Any] | None:
+    """The same from the cache; None where this machine was not shaped before."""
+    return recalled(
+        _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
+    )
+
+
+def _file(machine: Machine, nodes: SplitMesh, wedge: Wedge, cache: Path) -> Path:
+    return cache / f"looks-{_key(machine, nodes, wedge)}.json"
 
 
 def _key(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> str:

@@ -86,26 +86,45 @@ def field_document(
     conductivity: Mapping[str, tuple[float, float]] | None, revisions: Sequence[str],
     limits: tuple[float, float] | None, machine: Machine | None, cache: Path | None = None,
 ) -> dict[str, Any]:  # fmt: skip
-    """The machine, its temperatures and readings in every test.
+    """The machine, its temperatures and readings in every test: both of the following."""
+    looks = None if machine is None else packed_looks(machine, nodes, cache=cache)
+    shape = machine_document(title, nodes, conductivity, looks)
+    return {**shape, **temperature_document(nodes, tests, positions, conductivity, revisions, limits)}
 
-    conductivity : part -> across and along the axis (W/m/K), for heat flux;  revisions : names of a test's states
-    limits : of the colours (degC), wider where a state is beyond;  machine : is drawn as it looks, too
-    cache : folder of machines as they look
+
+def machine_document(
+    title: str, nodes: SplitMesh, conductivity: Mapping[str, tuple[float, float]] | None, looks: dict[str, Any] | None
+) -> dict[str, Any]:
+    """The machine without temperatures, and the colours of all that a page shows.
+
+    conductivity : part -> across and along the axis (W/m/K), for heat flux;  looks : of `packed_looks`
     """
-    every = [part for t in tests for part in t.states]
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
-    ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
-    low, high = rounded(min(ends), max(ends))
     return {
         "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(nodes.tets[order]),
         "faces": packed_integers(_faces(nodes)[order, None]), "parts": _parts(nodes, colours),
-        "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K),
-        "revisions": list(revisions), "tests": _tests(tests, positions), "marks": marks(low, high),
-        "change_marks": _change(tests), "heat": _palette(heat()), "missing": _palette(missing()),
-        "k": conductivity and [conductivity[name] for name in nodes.parts], "power": _palette(power()),
-        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
-        "looks": machine and packed_looks(machine, nodes, cache=cache),
+        "looks": looks, "k": conductivity and [conductivity[name] for name in nodes.parts],
+        "heat": _palette(heat()), "missing": _palette(missing()), "power": _palette(power()),
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
+    }  # fmt: skip
+
+
+def temperature_document(
+    nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None, revisions: Sequence[str],
+    limits: tuple[float, float] | None,
+) -> dict[str, Any]:  # fmt: skip
+    """Temperatures and readings of tests; those of more tests replace them.
+
+    revisions : names of a test's states;  limits : of the colours (degC), wider where a state is beyond
+    """
+    every = [part for t in tests for part in t.states]
+    ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
+    low, high = rounded(min(ends), max(ends))
+    return {
+        "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K), "revisions": list(revisions),
+        "tests": _tests(tests, positions), "marks": marks(low, high), "change_marks": _change(tests),
+        "flux_marks": conductivity and _flux(nodes, tests, conductivity),
     }  # fmt: skip
 
 

@@ -116,7 +116,7 @@ class Viewer {
     this.size = Math.hypot(...this.frame[0].map((v, k) => v - this.frame[1][k]));
   }
   first() {  // all of the machine, as large as leaves room for labels on both sides
-    this.turn = -1.0; this.tilt = 0.35; this.zoom = 1;
+    this.turn = TURN; this.tilt = TILT; this.zoom = 1;
     const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((k) => this.frame[i >> k & 1][k]));
     for (let i = 0; i < 2; i++) {  // nearer means more perspective, so once more
       this.matrix();
@@ -183,6 +183,15 @@ class Viewer {
     if (data.looks) this.looks = this.dressed();
     $("axis").options[0].hidden = $("axis").options[0].disabled = !data.looks;
     $("axis").value = data.looks ? "3" : "0";
+  }
+  dress() {  // as it looks, in place of the mesh; what was turned or cut meanwhile stays so
+    const still = this.turn === TURN && this.tilt === TILT, unchosen = $("axis").value === "0";
+    this.looks = this.dressed();
+    $("axis").options[0].hidden = $("axis").options[0].disabled = false;
+    if (unchosen) $("axis").value = "3";
+    this.bounds();
+    if (still) this.first();
+    this.slice();
   }
   get whole() { return this.own ??= this.bare(); }
   get solid() { return $("axis").value === "3" ? this.looks : this.whole; }
@@ -265,7 +274,7 @@ class Viewer {
     this.test = data.tests[k];
     const options = $("layer").options, several = this.test.states.length > 1;
     options[1].disabled = !several; options[2].disabled = !data.k; options[3].disabled = !data.errors;
-    this.number = k;
+    this.number = k; $("test").value = k;
     this.sure();
     if (options[$("layer").selectedIndex].disabled) $("layer").value = "0";
     $("wiping").hidden = !several;
@@ -279,6 +288,34 @@ class Viewer {
     this.network = new Network($("network"), network);
     $("networked").checked = innerWidth >= WIDE;
     this.beside($("networked").checked);
+  }
+  async more(rest) {  // what the first picture did without: temperatures of every test, then the rest
+    const { errors, network, ...every } = rest;
+    if (every.tests && !this.complete) {
+      this.complete = true;
+      if (data.looks) delete every.looks;
+      Object.assign(data, await opened(every));
+      if (every.looks) this.dress();
+      this.listed();
+      this.choose(Math.max(0, this.numbered(this.wanted ?? this.test.test)));
+      if (this.limits) this.judged(this.limits);
+    }
+    if (network !== undefined && !this.network) this.flows(await opened(network));
+    if (errors && !data.errors) this.told(await opened(errors));
+  }
+  listed() {  // tests and revisions to choose from
+    $("test").replaceChildren(...data.tests.map((t, k) => new Option(t.name, k)));
+    const states = data.tests[0].states.length;
+    for (const side of ["left", "right"]) {
+      $(side).replaceChildren(...data.revisions.slice(0, states).map((name, k) => new Option(name, k)));
+      $(side).value = Math.min(this[side], states - 1);
+    }
+  }
+  numbered(name) { return data.tests.findIndex((t) => t.test === name); }
+  want(name) {  // the test of that name, at once or as soon as it is there
+    this.wanted = name;
+    const k = this.numbered(name);
+    if (k >= 0 && k !== this.number) this.choose(k);
   }
   told(errors) {  // what residuals tell between the sensors
     data.errors = errors; $("layer").options[3].disabled = false;
@@ -431,6 +468,7 @@ class Viewer {
     if (held >= 0) list.querySelectorAll("button")[held].focus();
   }
   judged(limits) {  // the largest errors that count as agreement: test -> sensor -> K
+    this.limits = limits;
     for (const t of data.tests) for (const s of t.sensors) s.limit = limits[t.test]?.[s.channel] ?? null;
     this.readings();
   }
@@ -768,6 +806,7 @@ const SHARES = 16;  // viz.viewer.looks
 const COARSE = 0.5;  // of the pixels along a side, in rough pictures
 const REST = 200;  // ms without a movement until the picture is smooth
 const CREASE = 0.77;  // cosine of 40 degrees
+const TURN = -1.0, TILT = 0.35;  // radians: a machine from its side and a little from above
 const WINDOW = 22, ABOVE = 0.01;  // pixels around a labelled sensor in which what hides it is ghosted; of the machine's size
 const NEAR = 12, STILL = 4;  // pixels from a dot that mean its sensor; that a pointer moves in a click
 const SMALL = 560;  // pixels of a picture below which three sensors have labels: six would cover the machine
@@ -791,16 +830,11 @@ function line(name, value, colour, act, on) {  // a dot of the colour, the name,
 
 function wired(v) {
   const c = $("gl"), again = () => { v.dirty = true; };
-  $("test").replaceChildren(...data.tests.map((t, k) => new Option(t.name, k)));
-  $("test").onchange = (e) => v.choose(+e.target.value);
+  v.listed();
+  $("test").onchange = (e) => v.want(data.tests[e.target.value].test);
   $("layer").onchange = () => { v.recolour(); v.move(v.time); };
   $("wipe").oninput = again;
-  for (const side of ["left", "right"]) {
-    const states = data.tests[0].states.length;
-    $(side).replaceChildren(...data.revisions.slice(0, states).map((name, k) => new Option(name, k)));
-    $(side).value = v[side];
-    $(side).onchange = (e) => { v[side] = +e.target.value; v.move(v.time); };
-  }
+  for (const side of ["left", "right"]) $(side).onchange = (e) => { v[side] = +e.target.value; v.move(v.time); };
   $("axis").onchange = $("cut").oninput = () => { v.slice(); again(); };
   $("time").oninput = (e) => { v.play(false); v.move(e.target.value / 1000); };
   $("play").onclick = () => v.play(!v.playing);
@@ -846,12 +880,11 @@ function wired(v) {
     if (source !== parent || parent === window) return;
     const said = words ?? {};
     if (keys[said.key]) keys[said.key]();
-    const k = data.tests.findIndex((t) => t.test === said.test);
-    if (k >= 0 && k !== v.number) { $("test").value = k; v.choose(k); }
+    if (said.test) v.want(said.test);
     if (said.dark !== undefined) document.documentElement.dataset.theme = said.dark ? "dark" : "light";
     if (said.limits) v.judged(said.limits);
     if (said.sensor) v.pin(said.sensor);
-    if (said.rest) opened(said.rest).then(({ errors, network }) => { v.flows(network); if (errors) v.told(errors); });
+    if (said.rest) v.more(said.rest);
     again();
   };
   $("networked").onchange = (e) => v.beside(e.target.checked);

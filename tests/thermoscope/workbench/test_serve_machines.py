@@ -1,4 +1,4 @@
-"""A model's machine is drawn once, beside everything else, for all tabs that wait for it; temperatures come first."""
+"""A model's machine is drawn once, beside everything else, for all tabs that wait for it; one test comes first."""
 
 import asyncio
 import time
@@ -14,7 +14,7 @@ from thermoscope.workbench.jobs import FailedError, StoppedError
 from thermoscope.workbench.machines import Bench, Machines
 from thermoscope.workbench.steps import comparing_job, drawing_job
 
-FIRST, REST = {"fields": 1}, {"network": 2}
+FIRST, EVERY, REST = {"fields": 1, "points": 4}, {"fields": 3}, {"network": 2}
 
 
 def counted(folder, tell):
@@ -22,30 +22,36 @@ def counted(folder, tell):
     with Path(folder.log).open("a") as log:
         log.write("x")
     tell("half 1/2")
+    wait_for(folder.begin)
     yield FIRST
-    while not Path(folder.go).exists():
-        time.sleep(0.01)
+    wait_for(folder.go)
     if folder.fault:
         raise ValueError(folder.fault)
+    yield EVERY
     yield REST
+
+
+def wait_for(file):
+    while not Path(file).exists():
+        time.sleep(0.01)
 
 
 def compared(folder, tell):
     """Stands for the first comparison; it ends only while the machine is drawn."""
+    Path(folder.compared).touch()
     if folder.fault:
         raise ValueError(folder.fault)
-    while not Path(folder.log).exists():
-        time.sleep(0.01)
+    wait_for(folder.log)
     return Appearance({"rmse_K": 1.0}, {})
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.setattr("thermoscope.workbench.steps.machine_documents", counted)
-    (tmp_path / "go").touch()  # what holds the rest back where it is not there
-    return SimpleNamespace(
-        history=History(), log=str(tmp_path / "log"), go=str(tmp_path / "go"), fault="", built="a machine"
-    )
+    files = {name: str(tmp_path / name) for name in ("log", "begin", "go", "compared")}
+    for name in ("begin", "go"):  # what holds the first picture and the rest back where they are not there
+        Path(files[name]).touch()
+    return SimpleNamespace(history=History(), fault="", built="a machine", **files)
 
 
 async def ended(machines):
@@ -67,7 +73,7 @@ def test_two_tabs_wait_for_one_drawing(folder):
         second.hear(heard[1].append)
         early = await first.parts[0], first.parts[1].done()
         Path(folder.go).touch()
-        rest = await second.parts[1]
+        rest = await second.parts[2]
         await ended(machines)
         return machines, early, rest, heard
 
@@ -76,7 +82,7 @@ def test_two_tabs_wait_for_one_drawing(folder):
     assert rest == REST
     assert Path(folder.log).read_text() == "x"
     assert heard == (["starting", "half 1/2"], ["starting", "half 1/2"])
-    assert machines.find(folder.history) == {**FIRST, **REST}
+    assert machines.find(folder.history) == {**FIRST, **EVERY, **REST}
     assert machines.drawings == []
 
 
@@ -88,7 +94,7 @@ def test_a_machine_without_its_rest_is_shown_and_drawn_anew_when_asked_again(fol
         drawing = machines.drawing(folder, drawing_job)
         first = await drawing.parts[0]
         with pytest.raises(FailedError, match="no covariance"):
-            await drawing.parts[1]
+            await drawing.parts[2]
         await ended(machines)
         return first, machines.find(folder.history), machines.drawings
 
@@ -101,7 +107,7 @@ def test_a_tab_that_leaves_stops_nobody_else(folder):
         drawing.hear(stays.append)
         drawing.hear(left.append)
         drawing.leave(left.append)
-        return await drawing.parts[1], left
+        return await drawing.parts[2], left
 
     assert asyncio.run(main()) == (REST, ["starting"])
 
@@ -131,9 +137,9 @@ def test_a_job_may_begin_before_there_is_a_loop(folder):
 
     async def main():
         drawing = Machines().drawing(folder, lambda _: job)
-        return await drawing.parts[0], await drawing.parts[1]
+        return [await part for part in drawing.parts]
 
-    assert asyncio.run(main()) == (FIRST, REST)
+    assert asyncio.run(main()) == [FIRST, EVERY, REST]
     assert Path(folder.log).read_text() == "x"
 
 
@@ -146,7 +152,7 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
         task = asyncio.create_task(serve._prepared(bench))
         looks = await asyncio.gather(bench.compared(comparing_job), bench.compared(comparing_job))
         await task
-        rest = await bench.machines.drawings[0].parts[1] if bench.machines.drawings else REST
+        rest = await bench.machines.drawings[0].parts[2] if bench.machines.drawings else REST
         bench.stop()
         return looks, bench.first, rest
 
@@ -155,6 +161,32 @@ def test_the_machine_is_drawn_while_the_model_is_compared(folder, monkeypatch):
     assert rest == REST
     assert first.errors == {"rmse_K": 1.0}
     assert Path(folder.log).read_text() == "x"
+
+
+@pytest.mark.parametrize("succeeds", [True, False])
+def test_the_comparison_waits_for_the_first_picture_or_until_there_will_be_none(folder, monkeypatch, succeeds):
+    """Two cores cannot do both at once, and the page waits for the picture."""
+    monkeypatch.setattr("thermoscope.workbench.steps.first_appearance", compared)
+    Path(folder.begin).unlink()
+
+    async def main():
+        bench = Bench(folder)
+        task = asyncio.create_task(serve._prepared(bench))
+        while not Path(folder.log).exists():
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.2)
+        early = Path(folder.compared).exists()
+        if succeeds:
+            Path(folder.begin).touch()
+        else:
+            bench.machines.stop()
+        await task
+        bench.stop()
+        return early, bench.first
+
+    early, first = asyncio.run(main())
+    assert not early
+    assert first is not None
 
 
 def test_a_comparison_that_fails_is_said_to_every_tab(folder, monkeypatch):

@@ -15,8 +15,9 @@ from geom import build_mesh, load_machine
 from viz import split
 from viz.viewer.error_map import ERROR
 from viz.viewer.flux import nodal_flux
+from viz.viewer.looks import packed_looks
 from viz.viewer.low_rank import ERROR_K
-from viz.viewer.page import Earlier, document, render
+from viz.viewer.page import Earlier, document, machine_document, render, temperature_document
 
 pytestmark = pytest.mark.heavy
 LARGEST = 1e6  # bytes of a page
@@ -36,10 +37,16 @@ def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def shipped():
-    """The page of a mesh as fine as that of its case, with five tests of an hour and three models each."""
-    machine, rng = load_machine("series-dc-100kw"), np.random.default_rng(2)
-    nodes = split(build_mesh(machine, CASE_MESH_M))
+def meshed():
+    """A machine and the nodes of a mesh as fine as that of its case."""
+    machine = load_machine("series-dc-100kw")
+    return machine, split(build_mesh(machine, CASE_MESH_M))
+
+
+@pytest.fixture(scope="module")
+def shipped(meshed):
+    """Its page, with five tests of an hour and three models each."""
+    (machine, nodes), rng = meshed, np.random.default_rng(2)
     times = np.linspace(0.0, 3600.0, 61)
     readings = recorded().comparison.model
     tests = [
@@ -62,6 +69,34 @@ def test_the_script_leaves_time_for_sixty_pictures_a_second(browser, shipped, tm
     assert said == []
     assert 0.0 < spent["turn"] < SIXTIETH_MS
     assert 0.0 < spent["move"] < SIXTIETH_MS
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_what_follows_the_first_picture_leaves_what_was_chosen(browser, meshed, tmp_path, moved):
+    """First one test on the mesh; then every test and the machine as it looks. A test may be wanted before it is there,
+    and a machine that was turned or cut meanwhile stays so."""
+    (machine, nodes), times = meshed, np.linspace(0.0, 3600.0, 61)
+    one = replace(recorded(before=False), times=times, fields=paced(nodes, times, np.random.default_rng(3)))
+    two = replace(one, comparison=replace(one.comparison, test=replace(one.comparison.test, name="later")))
+    early = temperature_document(nodes, [one], PLACE, None, ["now"], None)
+    (tmp_path / "v.html").write_text(render(machine_document("m", nodes, None, None) | early), encoding="utf-8")
+    every = temperature_document(nodes, [one, two], PLACE, None, ["now"], (-100.0, 200.0))
+    with tab(browser, tmp_path / "v.html") as (page, said):
+        assert page.evaluate("[viewer.test.test, $('axis').value, $('test').options.length]") == ["hour", "0", 1]
+        page.evaluate("viewer.want('later'); viewer.judged({ later: { T_shaft: 0.5 } });")
+        if moved:
+            page.select_option("#axis", "2")
+            page.keyboard.press("ArrowLeft")
+        page.evaluate("(rest) => viewer.more(rest)", {"looks": packed_looks(machine, nodes), **every})
+        page.wait_for_function("!viewer.dirty && viewer.smooth")
+        assert page.evaluate("[viewer.test.test, $('axis').value, $('test').value]") == [
+            "later", "2" if moved else "3", "1"
+        ]  # fmt: skip
+        assert page.evaluate("viewer.turn < TURN") == moved
+        assert page.evaluate("viewer.test.sensors.find((s) => s.channel === 'T_shaft').limit") == 0.5
+        assert page.evaluate("[viewer.range[0], viewer.range[1]]") == [every["marks"][0], every["marks"][-1]]
+        assert page.evaluate("$('axis').options[0].disabled") is False
+    assert said == []
 
 
 SIXTIETH_MS = 1000.0 / 60.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,8 +23,10 @@ from thermoscope.case_folder.runs import (
     before_last,
     by_interest,
     comparison_of,
+    current_comparison,
     fields,
     readings,
+    stored_range,
     temperature_range,
 )
 from thermoscope.commands.open_case import open_case
@@ -31,6 +34,7 @@ from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
 from thermoscope.files import write_whole
 from validation.case import Test
+from validation.parameters.unknowns import working
 from validation.threads import side_by_side
 
 MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while the page is made
@@ -67,9 +71,10 @@ def viewer_page(folder: Folder, tell: Progress) -> str:
 
 
 def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
-    """What the page draws: first the machine, temperatures and readings, then the rest, which takes longer.
+    """What the page draws, in three parts: the machine in one test, then in all of them, then what takes longest.
 
-    Without the errors that count as agreement, for which the model runs many times more. Kept by content.
+    Keys of a later part replace those of an earlier one. Without the errors that count as agreement, for which the
+    model runs many times more. Kept by content.
     """
     parts = stored_documents(folder)
     if parts is not None:
@@ -77,8 +82,9 @@ def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]
         return
     making = _documents(folder, tell)
     yield (first := next(making))
+    yield (every := next(making))
     rest = list(making)
-    write_whole(_file(folder), json.dumps([first, *rest]))
+    write_whole(_file(folder), json.dumps([first, every, *rest]))  # before the last part: who has it may end this
     yield from rest
 
 
@@ -98,13 +104,16 @@ def _file(folder: Folder) -> Path:
 def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz import split
     from viz.viewer.error_map import ErrorMap
-    from viz.viewer.page import Earlier, Recorded, analysis_document, field_document
+    from viz.viewer.looks import cached_looks, packed_looks
+    from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
 
     if folder.built is None:
         right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
         raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
-    nodes, earlier = split(folder.built.mesh), before_last(folder)
+    machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), before_last(folder)
     others = [at_revision(folder, r) for r in revisions(folder)[2:]]
+    conductivity = {part.name: machine.conductivity(part.name) for part in machine.parts}
+    names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)] or ["now"]
 
     def played(test: Test) -> Recorded:
         times, now = fields(folder.case, test, nodes, FRAMES)
@@ -118,16 +127,24 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
         between = ErrorMap(tuple(c.name for c in channels), gain.mean, gain.explained)
         return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
 
+    tell("running the model on a first test")
+    order, cache = by_interest(folder), cache_folder()
+    working(folder.case)  # one network for both of the following
+    with ThreadPoolExecutor() as pool:
+        looks = cached_looks(machine, nodes, cache)  # to make them takes longer than all else of the first picture
+        shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
+        comparison = pool.submit(current_comparison, folder, order[0])
+        run = fields(folder.case, order[0], nodes, FRAMES)
+    first, limits = [Recorded(comparison.result(), *run)], stored_range(folder)
+    now = temperature_document(nodes, first, folder.positions, conductivity, names[:1], limits)
+    yield shape.result() | now
     tell("running every test")
-    limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
-    tests = side_by_side(played, by_interest(folder))
-    conductivity = {part.name: folder.built.machine.conductivity(part.name) for part in folder.built.machine.parts}
-    names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)]
-    tell("drawing the machine")
-    yield field_document(
-        folder.case.name, nodes, tests, folder.positions, conductivity, names or ["now"], limits, folder.built.machine,
-        cache_folder(),
-    )  # fmt: skip
+    with ThreadPoolExecutor() as pool:
+        dressed = pool.submit(packed_looks, machine, nodes, cache=cache)
+        limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
+        tests = side_by_side(played, order)
+        now = temperature_document(nodes, tests, folder.positions, conductivity, names, limits)
+    yield {"looks": dressed.result()} | now
     tell("residuals between the sensors, and heat flows")
     yield analysis_document(side_by_side(analysis, tests), nodes, folder.built.mesh)
 
