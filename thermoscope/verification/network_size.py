@@ -97,7 +97,7 @@ def smallest_network(
     enrichment = None if good else enrich(reduction, cases, limit, rounds, points, guides, tell=progress)
     condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
     last = reduction if enrichment is None else enrichment.reduction
-    built = Built(machine, ready.mesh, ready.field, motor_network(machine, condensed), ready.meshing)
+    built = Built(machine, ready.mesh, motor_network(machine, condensed), ready.meshing)
     return NetworkSize(built, last, limit, table, enrichment)
 
 
