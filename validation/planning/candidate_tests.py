@@ -24,18 +24,21 @@ class Experiment:
     """A change of a test's inputs and boundaries.
 
     needs : quantities it makes no sense without;  hours : time on the bench, for which the test at hand is repeated
+    current_factor : of all currents, up to 1, so that nothing gets too hot: see permissible_current
     """
 
     name: str
     change: Change
     needs: tuple[str, ...] = ()
     hours: float = 4.0
+    current_factor: float = 1.0
 
     def modified(self, test: Test, network: Network) -> Test:
         """The planned test; its channels have no readings yet."""
         base = repeated(test, self.hours)
         inputs, boundaries = self.change(base.time, dict(base.inputs), dict(base.boundaries), network)
-        return replace(base, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries)
+        planned = replace(base, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries)
+        return planned.scaled(dict.fromkeys(inputs_measuring(network, inputs, "current"), self.current_factor))
 
 
 def repeated(test: Test, hours: float) -> Test:

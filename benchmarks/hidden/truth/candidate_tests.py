@@ -78,13 +78,20 @@ CANDIDATE_TESTS: Mapping[str, tuple[Step, ...]] = {
 MINUTES = 240.0
 
 
-def carried_out(name: str, base: Plan) -> Plan:
-    """The plan of a candidate test, to be calibrated with: its four hours are the base's record, over and over."""
+def scaled_currents(factor: float) -> Step:
+    return lambda at, u: {k: factor * v if k.endswith("_A") else v for k, v in u.items()}
+
+
+def carried_out(name: str, base: Plan, factor: float = 1.0) -> Plan:
+    """The plan of a candidate test, to be calibrated with: its four hours are the base's record, over and over.
+
+    factor : on all currents, as it was planned
+    """
 
     def inputs(rng: np.random.Generator, at: Array) -> Inputs:
         once = at[at < 60.0 * base.minutes]
         u = {k: np.resize(v, at.size) for k, v in base.inputs(rng, once).items()}
-        for step in CANDIDATE_TESTS[name]:
+        for step in (*CANDIDATE_TESTS[name], scaled_currents(factor)):
             u = step(at, u)
         return u
 
