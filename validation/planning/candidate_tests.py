@@ -69,6 +69,18 @@ def _set(**levels: float | Callable[[Array], Array]) -> Change:
     return change
 
 
+def _turning(speed: Callable[[Array], Array]) -> Change:
+    """Speeds (rpm) given as a function of time, all lowered to what the record reaches, unless it only stands still."""
+
+    def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
+        levels = speed(time)
+        tops = {name: np.max(np.abs(inputs[name])) for name in inputs_measuring(network, inputs, "speed")}
+        share = {name: min(top / levels.max(), 1.0) if top else 1.0 for name, top in tops.items()}
+        return {**inputs, **{name: share[name] * levels for name in tops}}, boundaries
+
+    return change
+
+
 def _bars_off(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
     """The currents of cages: bars that stand still under direct current carry none."""
     read = [(n, role(network, s.place)) for s in network.sources if s.kind == "copper" for n in s.law.reads]
@@ -133,10 +145,10 @@ def _half(quantity: str) -> Change:
 STILL = _then(_set(speed=0.0), _bars_off)
 STANDING = _then(STILL, _set(vehicle_speed=0.0))
 IDLE = _set(current=0.0, torque=0.0, vehicle_speed=0.0)
-SPINNING = _then(IDLE, _set(speed=1000.0))
+SPINNING = _then(IDLE, _turning(lambda time: np.full_like(time, 1000.0)))
 COOLING = _then(STILL, _set(vehicle_speed=_on_off(12.0)))
 BLOWN = _then(STILL, _set(vehicle_speed=_on_off(8.0)))
-TWO_SPEEDS = _set(speed=_on_off(1500.0, 2))
+TWO_SPEEDS = _turning(_on_off(1500.0, 2))
 EVEN, HEAVY = _even(1.0), _even(OVERLOAD)
 CANDIDATE_TESTS = (
     Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current",)),

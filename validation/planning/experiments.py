@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
+from lumped.model.multipliers import values_of
 from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.inference.evidence import Evidence
@@ -28,8 +29,8 @@ def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
     Currents are those that the most probable rival permits. To ask all would be better, and cost a run more for each.
     """
-    before, network = evidence.tests[-1], evidence.network
-    limits = heat_limits(models.best.network, models.best.values, evidence.tests)
+    before, network, best = evidence.tests[-1], evidence.network, models.best
+    limits = heat_limits(best.network, values_of(best.network, best.values), evidence.tests)
     candidates = {e.name: (e, plan) for e, plan in permissible_tests(before, network, [limits])}
     return [
         Experiment(

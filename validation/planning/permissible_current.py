@@ -139,14 +139,15 @@ def _crossing(runs: Sequence[tuple[float, Array]], target: float) -> float:
 def current_levels(plan: Test, before: Test, network: Network) -> tuple[CurrentLevel, ...]:
     """What the currents of a planned test amount to, beside the test it was made from; those that never flow left out.
 
-    Where a current is held, or switched, that is its level; else the root mean square of the record that is driven.
+    Where a current is held, or switched, that is its level; else the rms of one turn of the record that is driven.
     """
-    levels = {name: _level(plan.inputs[name]) for name in inputs_measuring(network, plan.inputs, "current")}
+    turn = before.time.size
+    levels = {name: _level(plan.inputs[name], turn) for name in inputs_measuring(network, plan.inputs, "current")}
     rms = {name: float(np.sqrt(np.mean(np.asarray(before.inputs[name], float) ** 2))) for name in levels}
     return tuple(CurrentLevel(name, level, level / rms[name]) for name, level in levels.items() if level and rms[name])
 
 
-def _level(current: Array) -> float:
+def _level(current: Array, turn: int) -> float:
     flowing = np.abs(current[current != 0.0])
-    held = flowing.size > 0 and np.ptp(flowing) <= 1e-9 * flowing.max()
-    return float(flowing.max()) if held else float(np.sqrt(np.mean(current**2)))
+    even = flowing.size > 0 and np.ptp(flowing) <= 1e-9 * flowing.max()
+    return float(flowing.max()) if even else float(np.sqrt(np.mean(current[:turn] ** 2)))

@@ -52,7 +52,7 @@ def render(page: BenchPage) -> str:
     closest = plan.closest()
     word = "decides" if closest >= DECISIVE else "does not decide"
     says = f"The two closest hypotheses come apart by {closest:.1f} of the sensors' own sigma (rms): this test {word}."
-    table = html.table(["hold", "from", "to", "at"], [*_held(page), *_scaled_records(page)])
+    table = html.table(["hold", "from", "to", "at"], [*_steps(page), *_scaled_records(page)])
     table += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
     table += _currents(page)
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
@@ -64,15 +64,15 @@ def render(page: BenchPage) -> str:
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
 
 
-def _held(page: BenchPage) -> list[list[html.Cell]]:
+def _steps(page: BenchPage) -> list[list[html.Cell]]:
     return [[name, _clock(a), _clock(b), value] for name, a, b, value in page.holding]
 
 
 def _scaled_records(page: BenchPage) -> list[list[html.Cell]]:
     """Currents that go as they were recorded, but smaller."""
-    plan, held = page.plan, {name for name, *_ in page.holding}
+    plan, listed = page.plan, {name for name, *_ in page.holding}
     factor, end = plan.experiment.current_factor, _clock(plan.test.time[-1] - plan.test.time[0])
-    scaled = [c.input for c in plan.currents if c.input not in held] if factor < 1.0 else []
+    scaled = [c.input for c in plan.currents if c.input not in listed] if factor < 1.0 else []
     return [[name, _clock(0.0), end, f"{factor:.2f} of the record"] for name in scaled]
 
 

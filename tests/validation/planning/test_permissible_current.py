@@ -172,10 +172,10 @@ def test_currents_are_told_in_ampere_and_as_share_of_their_rms():
     before = driven()
     rms = float(np.sqrt(np.mean(before.inputs["current_A"] ** 2)))
     plans = planned(before)
-    for name, held in ((HELD, rms), ("heating at standstill, then cooling down", 1.3 * rms), (RECORDED, rms)):
+    for name, level_A in ((HELD, rms), ("heating at standstill, then cooling down", 1.3 * rms), (RECORDED, rms)):
         experiment, plan = plans[name]
         (level,) = current_levels(plan, before, MODEL)
         assert level.input == "current_A"
-        assert level.level_A == pytest.approx(experiment.current_factor * held)
+        assert level.level_A == pytest.approx(experiment.current_factor * level_A)
         assert level.share_of_rms == pytest.approx(level.level_A / rms)
     assert current_levels(plans["spin without current"][1], before, MODEL) == ()
