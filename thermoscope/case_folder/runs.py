@@ -13,16 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
-from geom.disk_cache import recalled
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
-from thermoscope.caches import cache_folder
+from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.files import write_whole
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
@@ -143,12 +141,12 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     """
     models = [of for of in (folder, _before_last(folder)) if of is not None]
     file = cache_folder() / f"range-{'-'.join(map(result_key, models))}.json"
-    cached = recalled(file, _range_in)
+    cached = recalled_result(file, _range_in)
     if cached is not None:
         return cached
     every = [fields(of.case, test, nodes, RANGE_FRAMES)[1] for of in models for test in of.case.tests]
     low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
-    write_whole(file, json.dumps([low, high]))
+    store_result(file, json.dumps([low, high]))
     return low, high
 
 
