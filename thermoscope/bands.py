@@ -51,7 +51,7 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
             offset=posterior.offset,
             said=json.dumps([posterior.names, posterior.fitted]),
         )
-        store_result(file, out.getvalue())
+        store_result(file, out.getvalue(), "belief")
     return posterior
 
 

@@ -32,24 +32,24 @@ def recalled_result(file: Path, read: Callable[[Path], Result]) -> Result | None
     return result
 
 
-def store_result(file: Path, content: str | bytes) -> None:
+def store_result(file: Path, content: str | bytes, kind: str) -> None:
     """Write KIND-KEY.SUFFIX, and drop what of its kind was not used for longest, beyond MOST_FILES and MOST_BYTES.
 
     What is made from files that are expensive, such as meshes, is not for this: it is made again where it is missing.
     """
     write_whole(file, content)
     total = 0
-    for number, (_, size, path) in enumerate(_last_used(file)):
+    for number, (_, size, path) in enumerate(_last_used(file, kind)):
         total += size
         if path != file and (number >= MOST_FILES or total > MOST_BYTES):
             with suppress(OSError):  # another process dropped it first, or has it open on Windows
                 path.unlink()
 
 
-def _last_used(file: Path) -> list[tuple[int, int, Path]]:
-    """When (ns), bytes and path of all files of its kind, the last used one first, and the file itself before all."""
+def _last_used(file: Path, kind: str) -> list[tuple[int, int, Path]]:
+    """When (ns), bytes and path of all files of a kind, the last used one first, and the file itself before all."""
     out = []
-    for path in file.parent.glob(f"{file.name.partition('-')[0]}-*"):
+    for path in file.parent.glob(f"{kind}-*"):
         with suppress(OSError):
             status = path.stat()
             out.append((status.st_mtime_ns, status.st_size, path))

@@ -17,7 +17,7 @@ def few(monkeypatch):
 def stored(folder, key, content="x", kind="viewer"):
     """A result whose last use was `key` seconds after the first."""
     file = folder / f"{kind}-{key}.json"
-    store_result(file, content)
+    store_result(file, content, kind)
     os.utime(file, (key, key))
     return file
 
@@ -72,8 +72,8 @@ def test_what_another_process_drops_first_is_no_fault(tmp_path, few, monkeypatch
         stored(tmp_path, key)
     listed = caches._last_used
 
-    def late(file):
-        entries = listed(file)
+    def late(file, kind):
+        entries = listed(file, kind)
         (tmp_path / "viewer-1.json").unlink()
         return entries
 

@@ -146,7 +146,7 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
         return cached
     every = [fields(of.case, test, nodes, RANGE_FRAMES)[1] for of in models for test in of.case.tests]
     low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
-    store_result(file, json.dumps([low, high]))
+    store_result(file, json.dumps([low, high]), "range")
     return low, high
 
 

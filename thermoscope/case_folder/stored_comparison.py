@@ -44,7 +44,7 @@ def new_comparison(folder: Folder) -> Comparison:
     """Run the model on every test, and keep what comes of it. Networks declared by hand are quick and are not kept."""
     result = compare(folder.case, budgets=folder.numeric_K)
     if folder.built is not None:
-        store_result(_file(folder), _archive(folder, result))
+        store_result(_file(folder), _archive(folder, result), "comparison")
     return result
 
 

@@ -44,7 +44,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     lesson = taught(network, values, bodies, table, tests, folder.case.doubt, progress)
     out = io.BytesIO()
     np.savez_compressed(out, bodies=np.array(bodies), table=table, constants=lesson.constants)
-    store_result(file, out.getvalue())
+    store_result(file, out.getvalue(), "observer")
     return design_of(network, values, lesson, tests, folder.case.doubt)
 
 

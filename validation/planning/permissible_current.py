@@ -12,7 +12,7 @@ they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -28,6 +28,7 @@ from validation.comparison.predict import heat_model, record
 from validation.effects.sites import solids
 from validation.inference.result import CurrentLevel
 from validation.planning.candidate_tests import Experiment, candidate_tests, inputs_measuring
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 BEARABLE_C = 80.0  # what the least of a machine bears: magnets without a suffix (80), class Y insulation (90)
@@ -60,7 +61,7 @@ def heat_limits(network: Network, values: Mapping[str, float], tests: Sequence[T
     """By a calibrated model over the tests at hand."""
     bare, heat = heat_model(network, values)
     rows = [place.mean for place in solids(bare)]
-    each = np.max([_hottest(bare, heat, rows, test) for test in tests], axis=0)
+    each = np.max(side_by_side(lambda test: _hottest(bare, heat, rows, test), tests), axis=0)
     return HeatLimits(bare, heat, rows, np.minimum(np.max(each), np.maximum(each, BEARABLE_C)))
 
 
@@ -70,36 +71,33 @@ def _hottest(network: Network, values: Mapping[str, float], rows: Sequence[Row],
 
 def permissible_tests(
     test: Test, network: Network, models: Sequence[HeatLimits], only: str | None = None
-) -> Iterator[tuple[Experiment, Test]]:
+) -> list[tuple[Experiment, Test]]:
     """The candidate tests with currents that every model permits; those that no current makes cool enough are left out.
 
     test : at hand, from which they are made;  only : the name of one, None for all
     """
-    for experiment, plan in candidate_tests(test, network):
-        if only not in (None, experiment.name):
-            continue
-        permitted = _permitted(experiment, plan, network, models)
-        if permitted is not None:
-            yield permitted
+    names = inputs_measuring(network, test.inputs, "current")
+    candidates = [(e, plan) for e, plan in candidate_tests(test, network) if only in (None, e.name)]
+    factors = side_by_side(lambda one: _factor(one[1], names, models), candidates, lambda one: one[1].time.size)
+    return [
+        (replace(e, current_factor=factor), plan.scaled(dict.fromkeys(names, factor)))
+        for (e, plan), factor in zip(candidates, factors, strict=True) if factor is not None
+    ]  # fmt: skip
 
 
-def _permitted(
-    experiment: Experiment, plan: Test, network: Network, models: Sequence[HeatLimits]
-) -> tuple[Experiment, Test] | None:
-    names = inputs_measuring(network, plan.inputs, "current")
-    if not names:
-        return experiment, plan
+def _factor(plan: Test, names: Sequence[str], models: Sequence[HeatLimits]) -> float | None:
+    """Each model after the other: most plans stay below the next one's limits with what the ones before permit."""
     factor = 1.0
-    for model in models:
-        share = permissible_factor(partial(_excess_at, model, plan, names, factor))
+    for model in models if names else ():
+        share = permissible_factor(partial(_excess_at, model, plan.scaled(dict.fromkeys(names, factor)), names))
         if share is None:
             return None
         factor *= share
-    return replace(experiment, current_factor=factor), plan.scaled(dict.fromkeys(names, factor))
+    return factor
 
 
-def _excess_at(model: HeatLimits, plan: Test, names: Sequence[str], permitted: float, factor: float) -> Array:
-    return model.excess(plan.scaled(dict.fromkeys(names, permitted * factor)))
+def _excess_at(model: HeatLimits, plan: Test, names: Sequence[str], factor: float) -> Array:
+    return model.excess(plan.scaled(dict.fromkeys(names, factor)))
 
 
 def permissible_factor(excess: Callable[[float], Array]) -> float | None:

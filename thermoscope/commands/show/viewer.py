@@ -77,7 +77,7 @@ def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]
     making = _documents(folder, tell)
     yield (first := next(making))
     rest = list(making)
-    store_result(_file(folder), json.dumps([first, *rest]))
+    store_result(_file(folder), json.dumps([first, *rest]), "viewer")
     yield from rest
 
 
