@@ -52,11 +52,11 @@ def held_out(done: Revision) -> float:
 def followed(case: Case, label: Label, found: Answer) -> Answer | None:
     """The best test that is said to decide, carried out on the true machine, and what the diagnosis says then."""
     kind = KINDS[label.machine]
-    said = [name for name, gain, _ in found["next"] if gain >= DECISIVE and name in CANDIDATE_TESTS]
+    said = [(name, factor) for name, gain, _, factor in found["next"] if gain >= DECISIVE and name in CANDIDATE_TESTS]
     if found["verdict"] != "group" or not said:
         return None
-    name = said[0]
-    plan = carried_out(name, kind.plans[3])
+    name, factor = said[0]
+    plan = carried_out(name, kind.plans[3], factor)
     (record,) = measured(kind, label.seed, hidden_in(kind, label), (plan,))
     longer = replace(case, tests=(test_of(kind, case.model.network, record), *case.tests))
     return {"test": name, **answer(longer, plan=False)}

@@ -23,7 +23,7 @@ def summary(found: dict[str, Any]) -> dict:
         "odds": found.get("odds", []), "p_nothing": found.get("p_nothing"),
         "rmse_K": found["rmse_K"], "floor_K": found.get("floor_K", 0.0), "threshold": found.get("threshold", 0.0),
         "candidates": rows, "where": [[w["place"], w["evidence_nats"]] for w in found["where"][:5]],
-        "next": [[t["test"], t["predicted_gain"], t["hours"]] for t in found["next_tests"][:5]],
+        "next": [[t["test"], t["predicted_gain"], t["hours"], t["current_factor"]] for t in found["next_tests"][:5]],
         "pulls": [list(p.values()) if isinstance(p, dict) else list(p) for p in found["pulls"]],
         "cannot_see": [h["effect"] for h in found["cannot_see"]],
     }  # fmt: skip

@@ -2,6 +2,7 @@
 
 import ast
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -171,9 +172,10 @@ def test_what_is_carried_out_is_what_was_planned(kind):
     rng, four_hours = np.random.default_rng, np.arange(0.0, 14400.0, 30.0)
     at = np.arange(0.0, 60.0 * kind.plans[3].minutes, 30.0)
     base = Test("driven", "validate", at, kind.plans[3].inputs(rng(0), at), {}, (), 20.0)
-    for experiment, test in candidate_tests(base, network_of(kind.name)):
+    for factor, (experiment, _) in product((1.0, 0.7), candidate_tests(base, network_of(kind.name))):
         if experiment.name in CANDIDATE_TESTS:
-            asked = carried_out(experiment.name, kind.plans[3]).inputs(rng(0), four_hours)
+            test = replace(experiment, current_factor=factor).modified(base, network_of(kind.name))
+            asked = carried_out(experiment.name, kind.plans[3], factor).inputs(rng(0), four_hours)
             for key, planned in test.inputs.items():
                 np.testing.assert_allclose(asked[key], planned, err_msg=f"{experiment.name}: {key}")
 

@@ -9,15 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.disk_cache import recalled
 from geom.errors import InputError
 from lumped.integration.record import Record
 from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, RUNNING
-from thermoscope.caches import cache_folder
+from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import Rows
 from thermoscope.verification.error_budget import model_of
 from validation.case import Channel
@@ -38,7 +36,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.tests if t.role == "calibrate"]
     file = cache_folder() / f"observer-{LAYOUT}-{case_key(folder)}.npz"
-    cached = recalled(file, _from_cache)
+    cached = recalled_result(file, _from_cache)
     if cached is not None:
         return design_of(network, values, cached, tests, folder.case.doubt)
     progress("missing heat that the table of doubt allows")
@@ -46,7 +44,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     lesson = taught(network, values, bodies, table, tests, folder.case.doubt, progress)
     out = io.BytesIO()
     np.savez_compressed(out, bodies=np.array(bodies), table=table, constants=lesson.constants)
-    write_whole(file, out.getvalue())
+    store_result(file, out.getvalue(), "observer")
     return design_of(network, values, lesson, tests, folder.case.doubt)
 
 

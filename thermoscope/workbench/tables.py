@@ -83,7 +83,10 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
-    further_tests = [f"{o.kind} {o.what}: separates {', '.join(o.separates)}" for o in deciding(diagnosis)[:3]]
+    further_tests = [
+        f"{o.kind} {o.what}{f' ({o.how})' if o.how else ''}: separates {', '.join(o.separates)}"
+        for o in deciding(diagnosis)[:3]
+    ]
     hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
     return {
         "tone": tone,

@@ -83,10 +83,23 @@ class DetectionLimit:
 
 
 @dataclass(frozen=True)
+class CurrentLevel:
+    """input : a current;  level_A : at which it is held, else its rms;  share_of_rms : of the record at hand"""
+
+    input: str
+    level_A: float
+    share_of_rms: float
+
+    def document(self) -> dict:
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
 class Experiment:
     """What would separate hypotheses: "test", a candidate test, or "place", a further thermocouple in the same tests.
 
     separates : pairs;  predicted_gain : the deviance by which (20 is decisive);  hours : what it costs
+    currents : of a candidate test;  current_factor : by which they were brought down so that nothing gets too hot
     """
 
     kind: Literal["test", "place"]
@@ -95,11 +108,14 @@ class Experiment:
     predicted_gain: float
     hours: float
     why: str = ""
+    currents: tuple[CurrentLevel, ...] = ()
+    current_factor: float = 1.0
 
     def document(self) -> dict:
         """JSON: what is to be done stands under its kind."""
         of = {k: v for k, v in vars(self).items() if k not in ("kind", "name")}
-        return {self.kind: self.name, **of, "separates": list(self.separates)}
+        currents = [c.document() for c in self.currents]
+        return {self.kind: self.name, **of, "separates": list(self.separates), "currents": currents}
 
 
 @dataclass(frozen=True)

@@ -24,18 +24,21 @@ class Experiment:
     """A change of a test's inputs and boundaries.
 
     needs : quantities it makes no sense without;  hours : time on the bench, for which the test at hand is repeated
+    current_factor : of all currents, up to 1, so that nothing gets too hot: see permissible_current
     """
 
     name: str
     change: Change
     needs: tuple[str, ...] = ()
     hours: float = 4.0
+    current_factor: float = 1.0
 
     def modified(self, test: Test, network: Network) -> Test:
         """The planned test; its channels have no readings yet."""
         base = repeated(test, self.hours)
         inputs, boundaries = self.change(base.time, dict(base.inputs), dict(base.boundaries), network)
-        return replace(base, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries)
+        planned = replace(base, name=f"planned: {self.name}", inputs=inputs, boundaries=boundaries)
+        return planned.scaled(dict.fromkeys(inputs_measuring(network, inputs, "current"), self.current_factor))
 
 
 def repeated(test: Test, hours: float) -> Test:
@@ -62,6 +65,18 @@ def _set(**levels: float | Callable[[Array], Array]) -> Change:
         levels_in_time = {q: (v(time) if callable(v) else np.full_like(time, v)) for q, v in levels.items()}
         new = {name: v for q, v in levels_in_time.items() for name in inputs_measuring(network, inputs, q)}
         return {**inputs, **new}, boundaries
+
+    return change
+
+
+def _turning(speed: Callable[[Array], Array]) -> Change:
+    """Speeds (rpm) given as a function of time, all lowered to what the record reaches, unless it only stands still."""
+
+    def change(time: Array, inputs: Inputs, boundaries: Inputs, network: Network) -> tuple[Inputs, Inputs]:
+        levels = speed(time)
+        tops = {name: np.max(np.abs(inputs[name])) for name in inputs_measuring(network, inputs, "speed")}
+        share = {name: min(top / levels.max(), 1.0) if top else 1.0 for name, top in tops.items()}
+        return {**inputs, **{name: share[name] * levels for name in tops}}, boundaries
 
     return change
 
@@ -130,10 +145,10 @@ def _half(quantity: str) -> Change:
 STILL = _then(_set(speed=0.0), _bars_off)
 STANDING = _then(STILL, _set(vehicle_speed=0.0))
 IDLE = _set(current=0.0, torque=0.0, vehicle_speed=0.0)
-SPINNING = _then(IDLE, _set(speed=1000.0))
+SPINNING = _then(IDLE, _turning(lambda time: np.full_like(time, 1000.0)))
 COOLING = _then(STILL, _set(vehicle_speed=_on_off(12.0)))
 BLOWN = _then(STILL, _set(vehicle_speed=_on_off(8.0)))
-TWO_SPEEDS = _set(speed=_on_off(1500.0, 2))
+TWO_SPEEDS = _turning(_on_off(1500.0, 2))
 EVEN, HEAVY = _even(1.0), _even(OVERLOAD)
 CANDIDATE_TESTS = (
     Experiment("DC heating at standstill", _then(EVEN, STANDING), ("current",)),

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
+from lumped.model.multipliers import values_of
+from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import gram
-from validation.planning.candidate_tests import candidate_tests
+from validation.planning.candidate_tests import Experiment as Candidate
 from validation.planning.competing_models import CompetingModels
+from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
 from validation.planning.prediction import Plan, predicted_readings, refitted_gains, widened_error
 from validation.planning.separability import separable_pairs, separation
 
@@ -24,15 +27,27 @@ def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
     """Tests that separate the group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
+    Currents are those that the most probable rival permits. To ask all would be better, and cost a run more for each.
     """
-    left = refitted_gains(evidence, models, _planned(evidence, models))
-    return [Experiment("test", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours) for p in left]
+    before, network, best = evidence.tests[-1], evidence.network, models.best
+    limits = heat_limits(best.network, values_of(best.network, best.values), evidence.tests)
+    candidates = {e.name: (e, plan) for e, plan in permissible_tests(before, network, [limits])}
+    return [
+        Experiment(
+            "test", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours,
+            currents=current_levels(candidates[p.what][1], before, network),
+            current_factor=candidates[p.what][0].current_factor,
+        )
+        for p in refitted_gains(evidence, models, _planned(evidence, models, candidates))
+    ]  # fmt: skip
 
 
-def _planned(evidence: Evidence, models: CompetingModels) -> Iterator[Plan]:
+def _planned(
+    evidence: Evidence, models: CompetingModels, candidates: Mapping[str, tuple[Candidate, Test]]
+) -> Iterator[Plan]:
     fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in models.group))
-    for experiment, plan in candidate_tests(evidence.tests[-1], evidence.network):
+    for experiment, plan in candidates.values():
         try:
             test = predicted_readings(models.best, plan)
             parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])

@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
+from lumped.model.network import Network
 from validation.calibration.calibrate import no_progress
 from validation.case import Case, Model, Test
 from validation.comparison.predict import predict
+from validation.inference.result import CurrentLevel
 from validation.parameters.unknowns import working
 from validation.planning.candidate_tests import Experiment, candidate_tests
+from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
 from validation.revision.revise import add
 
 Array = NDArray[np.float64]
@@ -24,11 +27,15 @@ UNCHANGED = "nothing missing"  # the hypothesis that the model is right as it is
 
 @dataclass(frozen=True)
 class PredictedCurves:
-    """experiment, test : what would be driven;  curves : hypothesis -> channel -> (n_time,) degC"""
+    """experiment, test : what would be driven;  curves : hypothesis -> channel -> (n_time,) degC
+
+    currents : what they amount to
+    """
 
     experiment: Experiment
     test: Test
     curves: Mapping[str, Mapping[str, Array]]
+    currents: tuple[CurrentLevel, ...] = ()
 
     def spread_K(self, channel: str) -> float:
         """Largest rms difference between two hypotheses at a channel."""
@@ -62,29 +69,45 @@ def hypotheses(case: Case, effects: Sequence[str], tell: Progress = no_progress)
 
 
 def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | None = None) -> PredictedCurves:
-    """Of the named experiment, or of the one that per hour sets the closest two hypotheses furthest apart."""
-    planned = candidate_tests(case.tests[-1], working(case)[0])
-    names = [e.name for e, _ in planned]
+    """Of the named experiment, or of the one that per hour sets the closest two hypotheses furthest apart.
+
+    Currents are those that every hypothesis permits: each is held against what it says of the tests at hand.
+    """
+    before, network = case.tests[-1], working(case)[0]
+    names = [e.name for e, _ in candidate_tests(before, network)]
     if experiment is not None and experiment not in names:
         raise InputError(f"unknown test '{experiment}'", case.name, f"one of: {'; '.join(names)}")
-    predictions = [p for e, test in planned if experiment in (None, e.name) if (p := _predicted(case, models, e, test))]
+    hypothetical = {name: _network(case, model) for name, model in models.items()}
+    limits = [heat_limits(*model, case.tests) for model in hypothetical.values()]
+    predictions = [
+        PredictedCurves(e, test, curves, current_levels(test, before, network))
+        for e, test in permissible_tests(before, network, limits, experiment) if (curves := _curves(hypothetical, test))
+    ]  # fmt: skip
     if not predictions:
-        raise InputError("has no test that every hypothesis survives", case.name, "fewer hypotheses, or another test")
+        right = "fewer hypotheses, or another test"
+        raise InputError("has no test that keeps every hypothesis as cool as the tests so far", case.name, right)
     return max(predictions, key=lambda p: p.closest() / p.experiment.hours)
 
 
-def _predicted(case: Case, models: Mapping[str, Model], experiment: Experiment, test: Test) -> PredictedCurves | None:
+def _network(case: Case, model: Model) -> tuple[Network, dict[str, float]]:
+    """The network of a hypothesis, and those of the model's values that it has."""
+    network = working(replace(case, model=model))[0]
+    names = {p.name for p in network.parameters}
+    return network, {k: v for k, v in model.values.items() if k in names}
+
+
+def _curves(
+    hypothetical: Mapping[str, tuple[Network, Mapping[str, float]]], test: Test
+) -> dict[str, dict[str, Array]] | None:
     """None where a model runs away: it lacks what would cool it."""
     curves = {}
     try:
-        for name, model in models.items():
-            network = working(replace(case, model=model))[0]
-            names = {p.name for p in network.parameters}
-            y = predict(network, test, {k: v for k, v in model.values.items() if k in names}).y
+        for name, (network, values) in hypothetical.items():
+            y = predict(network, test, values).y
             curves[name] = {c.name: y[:, j] for j, c in enumerate(test.channels)}
     except ThermoscopeError:
         return None
-    return PredictedCurves(experiment, test, curves)
+    return curves
 
 
 def schedule(test: Test, before: Test) -> list[tuple[str, float, float, float]]:

@@ -11,6 +11,7 @@ from geom.disk_cache import atomic_write
 from viz.data import short
 from viz.figures.experiment import SENSORS, predicted
 from viz.pages import html
+from viz.pages.next_tests import currents
 
 if TYPE_CHECKING:
     from validation.revision.predicted_curves import PredictedCurves
@@ -51,9 +52,9 @@ def render(page: BenchPage) -> str:
     closest = plan.closest()
     word = "decides" if closest >= DECISIVE else "does not decide"
     says = f"The two closest hypotheses come apart by {closest:.1f} of the sensors' own sigma (rms): this test {word}."
-    rows = [(name, _clock(a), _clock(b), value) for name, a, b, value in page.holding]
-    table = html.table(["hold", "from", "to", "at"], rows)
+    table = html.table(["hold", "from", "to", "at"], [*_steps(page), *_scaled_records(page)])
     table += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
+    table += _currents(page)
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
     parts = [
         head + html.text(says) + _careful(page), html.section("Drive", table),
@@ -61,6 +62,30 @@ def render(page: BenchPage) -> str:
         f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
     ]  # fmt: skip
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
+
+
+def _steps(page: BenchPage) -> list[list[html.Cell]]:
+    return [[name, _clock(a), _clock(b), value] for name, a, b, value in page.holding]
+
+
+def _scaled_records(page: BenchPage) -> list[list[html.Cell]]:
+    """Currents that go as they were recorded, but smaller."""
+    plan, listed = page.plan, {name for name, *_ in page.holding}
+    factor, end = plan.experiment.current_factor, _clock(plan.test.time[-1] - plan.test.time[0])
+    scaled = [c.input for c in plan.currents if c.input not in listed] if factor < 1.0 else []
+    return [[name, _clock(0.0), end, f"{factor:.2f} of the record"] for name in scaled]
+
+
+def _currents(page: BenchPage) -> str:
+    """What the currents amount to, and why they are no larger."""
+    levels = currents([c.document() for c in page.plan.currents])
+    factor = page.plan.experiment.current_factor
+    says = [f"Currents: {levels}."] if levels else []
+    if factor < 1.0:
+        says += [
+            f"They are {factor:.2f} of what this test would have: the machine gets no hotter than in the tests so far."
+        ]
+    return html.text(" ".join(says)) if says else ""
 
 
 def _careful(page: BenchPage) -> str:

@@ -2,30 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 Document = Mapping[str, Any]
 
 
 class Offer(NamedTuple):
-    """kind : "test" or "sensor";  separates : pairs of effects;  gain : predicted deviance, 20 decides"""
+    """kind : "test" or "sensor";  separates : pairs of effects;  gain : predicted deviance, 20 decides
+
+    how : a test's currents, a sensor's way in
+    """
 
     kind: str
     what: str
     separates: list[str]
     gain: float
     hours: float | None
-    why: str
+    how: str
 
 
 def deciding(diagnosis: Document) -> list[Offer]:
     """Tests, then sensors, each best first, that are expected to tell at least one pair apart."""
     return [
-        Offer(kind, o[name], o["separates"], o["predicted_gain"], o.get("hours"), o.get("why", ""))
+        Offer(kind, o[name], o["separates"], o["predicted_gain"], o.get("hours"),
+              o.get("why") or currents(o.get("currents", [])))
         for kind, key, name in (("test", "next_tests", "test"), ("sensor", "next_sensors", "place"))
         for o in diagnosis.get(key, []) if o["separates"]
     ]  # fmt: skip
+
+
+def currents(levels: Sequence[Document]) -> str:
+    """The currents of a planned test, as its document lists them."""
+    return "; ".join(f"{c['input']} at {c['level_A']:.4g} A, {c['share_of_rms']:.2f} of its rms" for c in levels)
 
 
 def undecided(diagnosis: Document) -> str:

@@ -203,11 +203,11 @@ def _hidden(r: Report) -> str:
 
 def _next_tests(diagnosis: Document) -> str:
     """Tests and sensors that would tell a group apart, or that no test would."""
-    rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.why)
+    rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.how)
             for o in deciding(diagnosis)]  # fmt: skip
     if not rows:
         return html.text(undecided(diagnosis))
-    headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "why"]
+    headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "how"]
     return "<h3>What would decide</h3>" + html.table(headers, rows)
 
 

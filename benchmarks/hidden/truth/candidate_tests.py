@@ -28,6 +28,17 @@ def on_off(name: str, level: float, periods: int) -> Step:
     return step
 
 
+def no_faster(speed_rpm: Step) -> Step:
+    """The speeds of a step, brought down to the highest of the record; of one at standstill as they are."""
+
+    def step(at: Array, u: Inputs) -> Inputs:
+        top, new = np.abs(u["speed_rpm"]).max(), speed_rpm(at, u)
+        share = min(top / new["speed_rpm"].max(), 1.0) if top else 1.0
+        return {**new, "speed_rpm": share * new["speed_rpm"]}
+
+    return step
+
+
 def even_current(at: Array, u: Inputs) -> Inputs:
     return {k: np.full(at.size, np.sqrt(np.mean(v**2))) if k.endswith("_A") else v for k, v in u.items()}
 
@@ -65,8 +76,10 @@ CANDIDATE_TESTS: Mapping[str, tuple[Step, ...]] = {
     "DC heating at standstill": (even_current, no_bars, STILL),
     "heating at standstill, then cooling down": (overloaded_then_off, no_bars, STILL),
     "no load, fast and slow": (held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0), at_two_speeds),
-    "spin without current": (held(current_A=0.0, rotor_A=0.0, speed_rpm=1000.0, vehicle_speed_mps=0.0),),
-    "same current at two speeds": (even_current, on_off("speed_rpm", 1500.0, 2)),
+    "spin without current": (
+        held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0), no_faster(held(speed_rpm=1000.0)),
+    ),
+    "same current at two speeds": (even_current, no_faster(on_off("speed_rpm", 1500.0, 2))),
     "cool-down with wind on and off": (held(speed_rpm=0.0), no_bars, on_off("vehicle_speed_mps", 12.0, 3)),
     "blower on the machine at standstill": (even_current, held(speed_rpm=0.0), no_bars,
                                             on_off("vehicle_speed_mps", 8.0, 3)),
@@ -78,13 +91,20 @@ CANDIDATE_TESTS: Mapping[str, tuple[Step, ...]] = {
 MINUTES = 240.0
 
 
-def carried_out(name: str, base: Plan) -> Plan:
-    """The plan of a candidate test, to be calibrated with: its four hours are the base's record, over and over."""
+def scaled_currents(factor: float) -> Step:
+    return lambda at, u: {k: factor * v if k.endswith("_A") else v for k, v in u.items()}
+
+
+def carried_out(name: str, base: Plan, factor: float = 1.0) -> Plan:
+    """The plan of a candidate test, to be calibrated with: its four hours are the base's record, over and over.
+
+    factor : on all currents, as it was planned
+    """
 
     def inputs(rng: np.random.Generator, at: Array) -> Inputs:
         once = at[at < 60.0 * base.minutes]
         u = {k: np.resize(v, at.size) for k, v in base.inputs(rng, once).items()}
-        for step in CANDIDATE_TESTS[name]:
+        for step in (*CANDIDATE_TESTS[name], scaled_currents(factor)):
             u = step(at, u)
         return u
 

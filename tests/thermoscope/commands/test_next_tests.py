@@ -4,11 +4,11 @@ from thermoscope.commands.explain.next_tests import next_tests
 
 
 def shown(**document):
-    return str(next_tests({"next_tests": [], "next_sensors": [], **document}))
+    return "\n".join(map(str, next_tests({"next_tests": [], "next_sensors": [], **document})))
 
 
-def planned(name, gain, *separates):
-    return {"test": name, "separates": list(separates), "predicted_gain": gain, "hours": 2.0}
+def planned(name, gain, *separates, **more):
+    return {"test": name, "separates": list(separates), "predicted_gain": gain, "hours": 2.0, **more}
 
 
 def test_a_test_that_separates_is_shown_and_the_others_are_not():
@@ -25,3 +25,9 @@ def test_that_none_would_decide_is_said_with_the_nearest():
 
 def test_nothing_is_said_where_there_is_no_group():
     assert shown() == ""
+
+
+def test_the_current_of_a_test_is_told_in_ampere_and_as_share_of_its_rms():
+    level = {"input": "current_A", "level_A": 128.8, "share_of_rms": 0.938}
+    out = shown(next_tests=[planned("heating", 31.0, "a@b / c@d", currents=[level], current_factor=0.72)])
+    assert "Heating: current_A at 128.8 A, 0.94 of its rms." in out

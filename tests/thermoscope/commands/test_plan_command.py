@@ -39,6 +39,45 @@ def test_what_no_test_has_read_yet_is_said(case, above_K, said):
     assert (f"would reach {peak:.0f} °C; no test has read more than {peak + above_K:.0f} °C" in text) == said
 
 
+def test_every_hypothesis_keeps_the_machine_as_cool_as_the_tests_so_far(case):
+    """By the hotter one alone the currents would be larger: the page tells those that both permit."""
+    folder = load_case(case).case
+    model = replace(folder.model, values={**folder.model.values, "loss.copper": 3.0, "link.yoke-air": 0.5})
+    factors = {}
+    for name, models in {"a": {"a": folder.model}, "b": {"b": model}, "both": {"a": folder.model, "b": model}}.items():
+        found = predicted_curves(folder, models, "ambient raised by 20 K")
+        factors[name] = found.experiment.current_factor
+    assert factors["both"] == pytest.approx(min(factors["a"], factors["b"]), rel=0.01)
+    assert factors["both"] < 1.0
+
+
+def test_the_page_and_the_document_tell_the_currents_that_are_permitted(case, tmp_path):
+    """With the ambient raised the record itself would make the machine hotter than it was: it goes on, but smaller."""
+    page, target = tmp_path / "plan.html", tmp_path / "plan.json"
+    assert plan(str(case), RIVALS, "ambient raised by 20 K", page, str(target)) == 0
+    document, text = json.loads(target.read_text()), page.read_text()
+    (level,) = document["currents"]
+    factor, record = document["current_factor"], load_case(case).case.tests[-1].inputs["current_A"]
+    assert 0.5 < factor < 1.0
+    assert level["input"] == "current_A"
+    assert level["share_of_rms"] == pytest.approx(level["level_A"] / np.sqrt(np.mean(record**2)))
+    assert level["share_of_rms"] == pytest.approx(factor)
+    assert f"{factor:.2f} of the record" in text
+    assert f"Currents: current_A at {level['level_A']:.4g} A, {level['share_of_rms']:.2f} of its rms." in text
+
+
+@pytest.mark.parametrize(("factor", "says"), [(1.0, False), (0.8, True)])
+def test_only_currents_that_came_down_are_said_to(case, factor, says):
+    folder = load_case(case)
+    found = predicted_curves(folder.case, {"a": folder.case.model}, "cool-down with wind on and off")
+    text = render(
+        BenchPage("three", replace(found, experiment=replace(found.experiment, current_factor=factor)), "town", [])
+    )
+    assert ("0.80 of the record<" in text) == says
+    assert ("They are 0.80" in text) == says
+    assert "Currents: current_A at" in text
+
+
 @pytest.mark.parametrize(
     ("effects", "test", "words"),
     [((), None, "no diagnosis"), (("convection@flange",), "dance", "unknown test 'dance'"), (("a@b",), None, "a@b")],

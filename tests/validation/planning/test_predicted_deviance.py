@@ -66,6 +66,17 @@ def test_a_plan_is_as_long_as_it_says_and_repeats_what_it_does_not_change():
     np.testing.assert_array_equal(kept[720:1080], test.inputs["current_A"])
 
 
+def test_no_plan_is_faster_than_the_record():
+    """A machine that only stood still may turn as fast as the plan says: nothing tells what it bears."""
+    test = driven()[1][0]
+    for name, speed in (("spin without current", 1000.0), ("same current at two speeds", 1500.0)):
+        for top in (900.0, 1200.0, 3000.0):
+            record = replace(test, inputs={**test.inputs, "speed_rpm": np.linspace(0.0, -top, test.time.size)})
+            assert planned(name, record).inputs["speed_rpm"].max() == pytest.approx(min(top, speed))
+        still = replace(test, inputs={**test.inputs, "speed_rpm": np.zeros(test.time.size)})
+        assert planned(name, still).inputs["speed_rpm"].max() == speed
+
+
 def test_tests_at_one_speed_cannot_tell():
     first, second = raced()[1].fits
     assert abs(deviance_difference(first, second)) < GAP

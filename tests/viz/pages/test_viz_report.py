@@ -169,6 +169,12 @@ def test_only_what_would_decide_is_proposed():
     assert "spin" not in text
 
 
+def test_the_current_of_a_test_stands_beside_it():
+    level = {"input": "current_A", "level_A": 214.25, "share_of_rms": 0.923}
+    heat = {"test": "heating", "separates": ["a@b / c@d"], "predicted_gain": 44.0, "hours": 4.0, "currents": [level]}
+    assert "current_A at 214.2 A, 0.92 of its rms" in told(next_tests=[heat])
+
+
 def test_if_no_test_would_decide_the_report_says_so():
     spin = {"test": "spin without current", "separates": [], "predicted_gain": 3.0, "hours": 4.0}
     assert "No candidate test would tell them apart" in told(next_tests=[spin])

@@ -64,7 +64,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     candidates = document["candidates"]
     parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, effects), remaining,
-             *events(document), *contradiction(document.get("contradiction")), next_tests(document),
+             *events(document), *contradiction(document.get("contradiction")), *next_tests(document),
              in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)

@@ -88,6 +88,6 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
     destination = f"{document['written']} revisions written to {folder.settings.model_file}"
     outcome = destination if document["written"] else "nothing written"
-    further = "" if document["adequate"] else next_tests(document["diagnosis"])
+    further = [] if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
-    return Answer(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, further], more)
+    return Answer(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, *further], more)

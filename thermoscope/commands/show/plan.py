@@ -22,6 +22,7 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
     """A page to pin on the bench: what to drive next, and what each hypothesis predicts for it."""
     from validation.revision.predicted_curves import hypotheses, predicted_curves, schedule
     from viz.pages.bench_page import BenchPage, write_bench_page
+    from viz.pages.next_tests import currents
 
     if out is not None and (out.suffix != ".html" or out.is_dir()):
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
@@ -37,12 +38,15 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
                 folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)
             ), file
         )  # fmt: skip
+    levels = [c.document() for c in curves.currents]
     document = {
         "case": folder.case.name, "test": curves.experiment.name, "hours": curves.experiment.hours,
+        "currents": levels, "current_factor": curves.experiment.current_factor,
         "hypotheses": list(curves.curves), "closest_sigma": curves.closest(), "page": str(file),
         "sensors": [{"channel": c.name, "apart_K": curves.spread_K(c.name)} for c in curves.test.channels],
     }  # fmt: skip
-    give(document, target, lambda: Answer(f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"))
+    what = f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"
+    give(document, target, lambda: Answer("; ".join(filter(None, [what, currents(levels)]))))
     return 0
 
 

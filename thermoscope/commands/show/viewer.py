@@ -10,9 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from geom.disk_cache import atomic_write, recalled
+from geom.disk_cache import atomic_write
 from geom.errors import InputError
-from thermoscope.caches import cache_folder
+from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
@@ -32,7 +32,6 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
-from thermoscope.files import write_whole
 from validation.case import Test
 from validation.parameters.unknowns import working
 from validation.threads import side_by_side
@@ -84,7 +83,8 @@ def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]
     yield (first := next(making))
     yield (every := next(making))
     rest = list(making)
-    write_whole(_file(folder), json.dumps([first, every, *rest]))  # before the last part: who has it may end this
+    whole = json.dumps([first, every, *rest])
+    store_result(_file(folder), whole, "viewer")  # before the last part: who has it may end this
     yield from rest
 
 
@@ -92,7 +92,7 @@ def stored_documents(folder: Folder) -> list[dict[str, Any]] | None:
     """What the page draws, from the cache; None where this very model was not drawn before."""
     if folder.built is None:
         return None
-    return recalled(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
+    return recalled_result(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
 
 
 def _file(folder: Folder) -> Path:
