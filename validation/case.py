@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.errors import InputError
 from lumped.integration.record import instants
 from lumped.integration.signals import Signals
 from lumped.model.network import Network, Parameter, Row
@@ -196,5 +197,8 @@ class Case:
         return replace(self, model=replace(self.model, network=low.network), tests=tests, low=None)
 
     def training(self) -> Case:
-        """The case without its held-out tests: all that may be fitted, chosen or accepted with."""
-        return replace(self, tests=tuple(t for t in self.tests if t.role != "hold-out"))
+        """The case without its held-out tests: all that may be fitted, chosen or accepted with. InputError if none."""
+        tests = tuple(t for t in self.tests if t.role != "hold-out")
+        if not tests:
+            raise InputError("has only held-out tests", f"case {self.name!r}", 'role = "calibrate" for at least one')
+        return replace(self, tests=tests)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from playground import Truth, network, wind
 
+from geom.errors import InputError
 from validation import diagnose
 from validation.measurement.faults import broken_channels
 
@@ -51,6 +52,13 @@ def answer(name, plan=False):
 
 
 @pytest.mark.parametrize("name", ["nothing", "nothing else"])
+def test_a_case_of_held_out_tests_alone_is_refused():
+    case = Truth(10).case()
+    held_out = replace(case, tests=tuple(replace(test, role="hold-out") for test in case.tests))
+    with pytest.raises(InputError, match="only held-out tests"):
+        diagnose(held_out)
+
+
 def test_nothing_missing_is_adequate(name):
     assert answer(name).verdict == "adequate"
 
