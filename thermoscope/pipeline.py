@@ -72,8 +72,8 @@ class Built:
 
 
 @once
-def _field_of(built: Built) -> FieldModel:
-    return field_of(built.machine, built.mesh)
+def _field_of(model: Built) -> FieldModel:
+    return field_of(model.machine, model.mesh)
 
 
 def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:

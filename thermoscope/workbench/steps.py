@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermoscope.workbench.dropped import Dropped
 
 
-NICENESS = 5  # how much a process of ours gives way to the browser, which draws what it has meanwhile
+NICENESS = 15  # a process of ours gives way to the browser, which draws what it has: a twentieth of its share
 
 
 def first_appearance(folder: Folder, tell: Progress) -> Appearance:

@@ -51,7 +51,6 @@ def answer(name, plan=False):
     return diagnose(TRUTHS[name]().case(), plan=plan)
 
 
-@pytest.mark.parametrize("name", ["nothing", "nothing else"])
 def test_a_case_of_held_out_tests_alone_is_refused():
     case = Truth(10).case()
     held_out = replace(case, tests=tuple(replace(test, role="hold-out") for test in case.tests))
@@ -59,6 +58,7 @@ def test_a_case_of_held_out_tests_alone_is_refused():
         diagnose(held_out)
 
 
+@pytest.mark.parametrize("name", ["nothing", "nothing else"])
 def test_nothing_missing_is_adequate(name):
     assert answer(name).verdict == "adequate"
 
