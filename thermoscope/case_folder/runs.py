@@ -20,7 +20,7 @@ from lumped.model.once import once
 from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.history import Revision
+from thermoscope.case_folder.history import History, Revision
 from validation.case import AddedEffect, Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
@@ -110,9 +110,11 @@ def _readings(folder: Folder, test: Test) -> dict[str, Array]:
 
 @once
 def _before_last(folder: Folder) -> Folder | None:
-    """The folder of that case."""
+    """The folder of that case, as it was: with the history that it had."""
     case = before_last(folder)
-    return None if case is None else replace(folder, case=case)
+    if case is None:
+        return None
+    return replace(folder, case=case, history=History(folder.history.revisions[:-1]))
 
 
 def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
@@ -145,13 +147,14 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     Pictures, films, recordings, viewer and workbench of a case take their colours from it, so that they compare.
     Kept by content: every one of them asks for it.
     """
-    cached = recalled_result(_range_file(folder), _range_in)
+    file = _range_file(folder)
+    cached = recalled_result(file, _range_in)
     if cached is not None:
         return cached
     runs = [(of.case, test) for of in _now_and_before(folder) for test in of.case.tests]
     every = side_by_side(lambda run: fields(*run, nodes, RANGE_FRAMES)[1], runs)
     low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
-    store_result(_range_file(folder), json.dumps([low, high]), "range")
+    store_result(file, json.dumps([low, high]), "range")
     return low, high
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import re
 import time
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -36,8 +35,8 @@ class Session:
         self.history: History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
         self.dropped: Dropped | None = None
-        self.viewer_page = self.viewer_rest = ""
-        self._rest: dict[str, Any] = {}
+        self.viewer_page = ""
+        self.viewer_rest: dict[str, Any] = {}
         self._refused: Revision | None = None
         self._closed = False
         self._job: Job | None = None
@@ -207,14 +206,13 @@ class Session:
         from viz.viewer.page import render
 
         self._on_screen = self.history
-        self.viewer_page, self._rest = render(document), {}
+        self.viewer_page, self.viewer_rest = render(document), {}
         with self.state:
             self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""
 
     def _complete(self, document: Mapping[str, Any]) -> None:
         """More of the machine that the browser draws already."""
-        self._rest = {**self._rest, **document}  # all of it, whichever part the browser asks for first
-        self.viewer_rest = json.dumps(self._rest)
+        self.viewer_rest = {**self.viewer_rest, **document}  # all of it, whichever part the browser asks for first
         with self.state:
             self.state.viewer_rest = f"viewer-rest.json?{time.time_ns()}"
 

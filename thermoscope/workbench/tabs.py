@@ -106,7 +106,7 @@ class Tabs:
                 headers={"Content-Security-Policy": viewer_policy()},
             )
         if name == "viewer-rest.json":
-            return web.Response(text=tab.session.viewer_rest, content_type="application/json")
+            return web.json_response(tab.session.viewer_rest)
         if name == "report.html":
             path: Path | None = tab.session.bench.folder.settings.out / "report.html"
         else:

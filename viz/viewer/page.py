@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -69,9 +68,13 @@ def document(
     conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
     mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None, machine: Machine | None = None,
 ) -> dict[str, Any]:  # fmt: skip
-    """All the page draws: `field_document`, and with the mesh of the tests' networks `analysis_document`."""
-    fields = field_document(title, nodes, tests, positions, conductivity, revisions, limits, machine)
-    return {**fields, **analysis_document(tests, nodes, mesh)}
+    """All the page draws: the machine, its temperatures and readings in every test, and what can follow.
+
+    machine : is drawn as it looks, too;  mesh : of the tests' networks
+    """
+    shape = machine_document(title, nodes, conductivity, None if machine is None else packed_looks(machine, nodes))
+    temperatures = temperature_document(nodes, tests, positions, conductivity, revisions, limits)
+    return {**shape, **temperatures, **analysis_document(tests, nodes, mesh)}
 
 
 def analysis_document(tests: Sequence[Recorded], nodes: SplitMesh, mesh: NamedMesh | None) -> dict[str, Any]:
@@ -79,17 +82,6 @@ def analysis_document(tests: Sequence[Recorded], nodes: SplitMesh, mesh: NamedMe
     runs = [t.network for t in tests if t.network is not None]
     network = _network(mesh, nodes, runs) if len(runs) == len(tests) else None
     return {"errors": _errors(tests, nodes), "network": network}
-
-
-def field_document(
-    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
-    conductivity: Mapping[str, tuple[float, float]] | None, revisions: Sequence[str],
-    limits: tuple[float, float] | None, machine: Machine | None, cache: Path | None = None,
-) -> dict[str, Any]:  # fmt: skip
-    """The machine, its temperatures and readings in every test: both of the following."""
-    looks = None if machine is None else packed_looks(machine, nodes, cache=cache)
-    shape = machine_document(title, nodes, conductivity, looks)
-    return {**shape, **temperature_document(nodes, tests, positions, conductivity, revisions, limits)}
 
 
 def machine_document(

@@ -293,7 +293,6 @@ class Viewer {
     const { errors, network, ...every } = rest;
     if (every.tests && !this.complete) {
       this.complete = true;
-      if (data.looks) delete every.looks;
       Object.assign(data, await opened(every));
       if (every.looks) this.dress();
       this.listed();

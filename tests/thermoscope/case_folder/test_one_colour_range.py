@@ -10,9 +10,10 @@ import viz
 from lumped.condensation.reduction import Recipe
 from thermoscope import pipeline
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import by_interest, fields, temperature_range
+from thermoscope.case_folder.history import History, Revision
+from thermoscope.case_folder.runs import by_interest, fields, stored_range, temperature_range
 from thermoscope.commands.show import pages, viewer
-from thermoscope.workbench import steps
+from thermoscope.workbench import revisions, steps
 from viz.rendering.scale import rounded
 
 pytestmark = pytest.mark.heavy
@@ -49,3 +50,14 @@ def test_one_range_for_all(folder, tmp_path, monkeypatch):
     assert np.array(given) == pytest.approx(np.array([expected] * 2))
     assert (data["marks"][0], data["marks"][-1]) == rounded(*expected)
     assert bench["marks"] == data["marks"]
+
+
+def test_a_step_of_the_model_begins_with_the_colours_of_the_model_before(folder, tmp_path, monkeypatch):
+    """Until all tests have run with it, so that its first picture compares with the last one."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
+    nodes, parameter = viz.split(folder.built.mesh), folder.case.model.network.parameters[0]
+    first, second = (Revision(n, "calibrate", values={parameter.name: n * parameter.value}) for n in (1, 2))
+    before, now = (revisions.at(folder, History(of)) for of in ((first,), (first, second)))
+    assert stored_range(now) is None
+    expected = temperature_range(before, nodes)
+    assert stored_range(now) == stored_range(before) == expected

@@ -140,11 +140,11 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     yield shape.result() | now
     tell("running every test")
     with ThreadPoolExecutor() as pool:
-        dressed = pool.submit(packed_looks, machine, nodes, cache=cache)
+        shapes = None if looks else pool.submit(packed_looks, machine, nodes, cache=cache)
         limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
         tests = side_by_side(played, order)
         now = temperature_document(nodes, tests, folder.positions, conductivity, names, limits)
-    yield {"looks": dressed.result()} | now
+    yield now | ({"looks": shapes.result()} if shapes else {})
     tell("residuals between the sensors, and heat flows")
     yield analysis_document(side_by_side(analysis, tests), nodes, folder.built.mesh)
 
