@@ -49,12 +49,12 @@ def result_key(folder: Folder, *rooms: str) -> str:
     if isinstance(shapes, Shapes):
         for part in shapes.parts.values():
             content.update(np.ascontiguousarray(part.V).tobytes())
-    content.update(_code(*ROOMS, *rooms))
+    content.update(code_digest(*ROOMS, *rooms))
     return content.hexdigest()[:20]
 
 
 @cache
-def _code(*rooms: str) -> bytes:
+def code_digest(*rooms: str) -> bytes:
     """A digest of all modules of these packages, and of those that hold what other packages add."""
     content = hashlib.sha256()
     for file in [*_modules(rooms), *_added()]:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.stored_comparison import StoredComparison
     from thermoscope.pipeline import Built
     from validation.comparison.compare import Comparison
+    from validation.yardstick.yardstick import Yardstick
 
 Progress = Callable[[str], None]
 
@@ -84,6 +85,13 @@ class Folder:
         from thermoscope.case_folder.stored_comparison import new_comparison
 
         return new_comparison(self) if self.stored is None else self.stored.comparison
+
+    @cached_property
+    def yardstick(self) -> Yardstick | None:
+        """What plain models leave on these tests; None where the tests teach nothing."""
+        from thermoscope.case_folder.stored_yardstick import stored_yardstick
+
+        return stored_yardstick(self.case)
 
     def limits(self, test: Test) -> dict[str, float]:
         """Channel -> the largest error that counts as agreement (K); of this test alone unless all are compared."""

@@ -12,6 +12,7 @@ from viz.figures import paper
 from viz.labels import end_labels
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 PALE = "#8DB9DB"
@@ -56,10 +57,15 @@ def before_after(
 
 @paper.styled
 def staircase(
-    history: Sequence[Mapping[str, Any]], *, floor_K: float | None = None, png: str | Path | None = None
+    history: Sequence[Mapping[str, Any]],
+    *,
+    floor_K: float | None = None,
+    plain_K: float | None = None,
+    png: str | Path | None = None,
 ) -> Figure:
     """Error of every test over the revisions: a step per revision, held-out tests drawn strong.
 
+    floor_K, plain_K : what the sensors' own uncertainty explains, and what the best plain model leaves
     history : [{"number", "action", "effect", "tests": [{"name", "role", "rmse_K": {"before", "after"}}]}]
     """
     if not history:
@@ -84,12 +90,19 @@ def staircase(
     ax.set_xlim(-0.1, len(history) + 0.5)
     end_labels(ax, ends, names, colours)
     if floor_K is not None:
-        ax.axhline(floor_K, color=LIGHT.ink, lw=0.9, ls=":")
-        ax.text(0, floor_K, "sensors' uncertainty", fontsize=8, va="bottom")
+        _level(ax, floor_K, "sensors' uncertainty")
+    if plain_K is not None and plain_K < ax.get_ylim()[1]:
+        _level(ax, plain_K, "best plain model")
     ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
     ax.grid(False, axis="x")
     ax.set(ylabel="rms error (K)")
     return paper.save(figure, png)
+
+
+def _level(ax: Axes, error_K: float, words: str) -> None:
+    """A dotted line at an error, with what it is."""
+    ax.axhline(error_K, color=LIGHT.ink, lw=0.9, ls=":")
+    ax.text(0, error_K, words, fontsize=8, va="bottom")
 
 
 def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], list[float]]:

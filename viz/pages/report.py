@@ -15,6 +15,7 @@ from typing import Any
 
 from geom.disk_cache import atomic_write
 from validation.comparison.uncertainty import RULE
+from validation.yardstick.yardstick import KINDS
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -86,17 +87,26 @@ def _cards(r: Report) -> str:
     if r.comparison is not None:
         items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
+        if plain := best_plain_K(r.comparison):
+            items.append((f"{plain:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
     return html.cards(items) if items else ""
+
+
+def best_plain_K(comparison: Document) -> float | None:
+    """The least error (K) that a plain model leaves; None where none could be learnt."""
+    yard = comparison.get("yardstick", {})
+    return min((yard[f"{kind}_K"] for kind in KINDS if yard.get(f"{kind}_K") is not None), default=None)
 
 
 def _error(r: Report) -> str:
     if not r.history:
         return ""
     floor = None if r.comparison is None else float(r.comparison["floor_K"])
+    plain = None if r.comparison is None else best_plain_K(r.comparison)
     last = r.history[-1]
     bars = errors.before_after(last["tests"], floor_K=floor)
     title = f"Last step ({last['action']} {last.get('effect') or ''}".strip() + "): tests in bold were never used."
-    stairs = errors.staircase(r.history, floor_K=floor)
+    stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
         "The error, step by step",
         html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),

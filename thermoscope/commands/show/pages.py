@@ -64,16 +64,18 @@ def report(case: str, out: Path | None, target: str | None) -> int:
 
 def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
+    from thermoscope.case_folder.stored_yardstick import yardstick_document
     from thermoscope.verification.error_budget import documents
     from viz.pages.report import Report, write_report
 
     tell("running the model and its error budget")
-    result, (diagnosis, earlier) = folder.compared, _diagnosis(folder)
+    compared = {**folder.compared.document(), **yardstick_document(folder.yardstick, folder.compared)}
+    diagnosis, earlier = _diagnosis(folder)
     curves = [marked(comparison_of(folder, test), diagnosis) for test in by_interest(folder)]
     tell("drawing")
     viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
-        folder.case.name, folder.settings.description, result.document(), diagnosis, steps(folder),
+        folder.case.name, folder.settings.description, compared, diagnosis, steps(folder),
         parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
         commands(folder, case), provenance(), earlier, documents(folder.budgets), viewed,
     )  # fmt: skip

@@ -35,16 +35,19 @@ def compared(
 ) -> tuple[Comparison, dict[str, Any]]:
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import of_tests, wanted
+    from thermoscope.case_folder.stored_yardstick import yardstick_document
     from thermoscope.verification.error_budget import documents
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
     tell("running the model")
     result = folder.compared
+    tell("learning plain models")
     more = {**uncertainty(result), **_discrepancies(folder, tell)} if why else {}
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     return result, {
         **result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands,
+        **yardstick_document(folder.yardstick, result),
     }  # fmt: skip
 
 
@@ -64,13 +67,14 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     why = _why(document) if "patterns" in document else []
-    parts = [*why, records_of("Over: error is measured - model", over), tests(document["tests"]),
+    plain = document.get("yardstick", {"warning": "", "sentence": ""})
+    parts = [plain["sentence"], *why, records_of("Over: error is measured - model", over), tests(document["tests"]),
              in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
     rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
               for t in document["tests"]), roles(document["roles"]),
              *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    return Answer(document["words"], parts, more, rest)
+    return Answer(f"{plain['warning']} {document['words']}".strip(), parts, more, rest)
 
 
 def tests(records: Sequence[Mapping[str, Any]]) -> Grid:

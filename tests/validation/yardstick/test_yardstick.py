@@ -1,0 +1,110 @@
+"""The plain models beside ours: what they find where the answer is known, and what may not move them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from two_bodies import bench
+
+from validation.case import Test
+from validation.yardstick.yardstick import KINDS, yardstick
+
+TRUTH = {"joint": 4.0, "film": 2.0, "heat": 80.0}  # W/K, W/K, W: as `two_bodies` declares them
+
+
+@pytest.fixture(scope="module")
+def sound():
+    """Two bodies on a bench on which nothing happens; the last test is held out."""
+    case = bench(held=())
+    return replace(case, tests=(*case.tests[:2], replace(case.tests[2], role="hold-out")))
+
+
+@pytest.fixture(scope="module")
+def measure(sound):
+    return yardstick(sound)
+
+
+def numbers(measure):
+    return {f"{name} {kind}": e for name, of in measure.tests.items() for kind, e in of.items()}
+
+
+def test_a_free_network_finds_the_links_and_losses_of_a_linear_machine(measure):
+    found = {(t.place, t.kind, t.other): t.value for t in measure.terms}
+    assert found["core", "link", "body"] == pytest.approx(TRUTH["joint"], rel=0.05)
+    assert found["body", "link", "ambient"] == pytest.approx(TRUTH["film"], rel=0.05)
+    assert sum(t.value for t in measure.terms if t.kind == "loss" and t.place == "core") == pytest.approx(80.0, rel=0.1)
+
+
+def test_no_other_link_is_needed(measure):
+    assert {(t.place, t.other) for t in measure.terms if t.kind == "link"} == {
+        ("core", "body"), ("body", "core"), ("body", "ambient"),
+    }  # fmt: skip
+
+
+def test_a_free_network_predicts_a_linear_machine_to_the_noise_of_its_sensors(measure):
+    noise = 0.05  # K, that `bench` adds; the first reading starts the run, so it counts twice
+    assert measure.hold_out["free_network"] < 2.0 * noise
+
+
+def test_persistence_is_what_the_readings_stray_from_their_first(sound, measure):
+    test = sound.tests[2]
+    y = np.column_stack([c.y for c in test.channels])
+    stays = np.sqrt(np.mean((y - y[0]) ** 2))
+    assert measure.hold_out["persistence"] <= stays * 1.5
+    assert measure.tests[test.name]["persistence"] == measure.hold_out["persistence"]
+
+
+def test_what_is_held_out_teaches_nothing(sound, measure):
+    wild = sound.tests[2]
+    wild = replace(wild, channels=tuple(replace(c, y=c.y[::-1] + 50.0) for c in wild.channels))
+    other = yardstick(replace(sound, tests=(*sound.tests[:2], wild)))
+    assert other.left_out == measure.left_out
+    assert other.terms == measure.terms
+    assert other.hold_out["free_network"] > measure.hold_out["free_network"]
+
+
+def test_the_order_of_tests_and_sensors_changes_nothing(sound, measure):
+    turned = tuple(replace(t, channels=t.channels[::-1]) for t in sound.tests[::-1])
+    assert numbers(yardstick(replace(sound, tests=turned))) == pytest.approx(numbers(measure), rel=1e-3)
+
+
+def thinned(test: Test) -> Test:
+    return replace(
+        test, time=test.time[::2], inputs={n: u[::2] for n, u in test.inputs.items()},
+        boundaries={n: u[::2] for n, u in test.boundaries.items()},
+        channels=tuple(replace(c, y=c.y[::2]) for c in test.channels),
+    )  # fmt: skip
+
+
+def test_half_the_rows_say_the_same(sound, measure):
+    half = yardstick(replace(sound, tests=tuple(thinned(t) for t in sound.tests)))
+    assert half.hold_out["persistence"] == pytest.approx(measure.hold_out["persistence"], rel=0.02)
+    assert half.hold_out["free_network"] == pytest.approx(measure.hold_out["free_network"], abs=0.1)
+
+
+def test_the_only_test_is_judged_by_its_thirds(sound):
+    alone = yardstick(replace(sound, tests=sound.tests[:1]))
+    assert set(alone.tests) == {sound.tests[0].name}
+    assert not alone.hold_out
+    assert alone.left_out["free_network"] < alone.left_out["persistence"]
+
+
+def test_gaps_in_a_sensor_are_not_errors(sound, measure):
+    test = sound.tests[2]
+    y = test.channels[0].y.copy()
+    y[40:60] = np.nan
+    gapped = replace(test, channels=(replace(test.channels[0], y=y), *test.channels[1:]))
+    other = yardstick(replace(sound, tests=(*sound.tests[:2], gapped)))
+    assert other.hold_out["free_network"] == pytest.approx(measure.hold_out["free_network"], rel=0.1)
+
+
+def test_where_nothing_may_be_fitted_there_is_no_yardstick(sound):
+    unseen = tuple(replace(t, role="hold-out") for t in sound.tests)
+    assert yardstick(replace(sound, tests=unseen)) is None
+
+
+def test_the_document_names_all_three(measure):
+    document = measure.document()
+    assert {f"{kind}_K" for kind in KINDS} <= set(document)
+    assert document["over"] == "hold-out"
+    assert {row["name"] for row in document["tests"]} == {"noon", "dawn", "dusk"}

@@ -1,0 +1,56 @@
+"""The plain models of a case, kept by the content of its tests: every comparison shows them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thermoscope.caches import cache_folder, recalled_result, store_result
+from thermoscope.case_folder.content import code_digest
+from validation.case import Case
+from validation.comparison.compare import Comparison
+from validation.yardstick.terms import Term
+from validation.yardstick.words import model_error, sentence, warning
+from validation.yardstick.yardstick import Yardstick, yardstick
+
+
+def yardstick_document(yard: Yardstick | None, comparison: Comparison) -> dict[str, Any]:
+    """What plain models leave beside a model, for a document; empty where the tests teach nothing."""
+    if yard is None:
+        return {}
+    words = {of.__name__: of(yard, comparison) for of in (sentence, warning)}
+    return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), **words}}
+
+
+def stored_yardstick(case: Case) -> Yardstick | None:
+    """From the cache, or learnt now; None where the tests teach nothing."""
+    file = cache_folder() / f"yardstick-{_key(case)}.json"
+    earlier = recalled_result(file, _read)
+    if earlier is not None:
+        return earlier
+    new = yardstick(case)
+    if new is not None:
+        store_result(file, json.dumps(asdict(new)), "yardstick")
+    return new
+
+
+def _read(file: Path) -> Yardstick:
+    document = json.loads(file.read_text(encoding="utf-8"))
+    return Yardstick(**{**document, "terms": tuple(Term(**term) for term in document["terms"])})
+
+
+def _key(case: Case) -> str:
+    """Of all that a yardstick is made from: the readings, inputs and roles of the tests, and the nodes' capacities."""
+    content = hashlib.sha256(code_digest("validation"))
+    content.update(case.model.network.C.tobytes())
+    for test in case.tests:
+        content.update(repr((test.name, test.role, [(c.name, c.place) for c in test.channels])).encode())
+        for table in ({"": test.time}, test.inputs, test.boundaries, {c.name: c.y for c in test.channels}):
+            for name, values in table.items():
+                content.update(name.encode() + np.ascontiguousarray(values, float).tobytes())
+    return content.hexdigest()[:20]

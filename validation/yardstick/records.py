@@ -1,0 +1,102 @@
+"""Tests as plain tables on one list of sensors: what a model that knows no machine can learn from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.case import Test
+
+Array = NDArray[np.float64]
+MOST_ROWS = 40_000  # of all tests together: one more halves what is learnt by little and doubles the wait
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What stands in the columns of every table.
+
+    sensors : names of the channels;  steady : (n_sensor,) those that every test reads: they may drive others
+    boundaries, inputs : names;  scale : (n_input,) largest size of each input in the tests that may be learnt from
+    """
+
+    sensors: tuple[str, ...]
+    steady: NDArray[np.bool_]
+    boundaries: tuple[str, ...]
+    inputs: tuple[str, ...]
+    scale: Array
+
+
+@dataclass(frozen=True)
+class Record:
+    """One test, or a stretch of one, as a table.
+
+    time (n,) s;  T (n, n_sensor) degC with gaps filled, and read (n, n_sensor): where something was read
+    boundary (n, n_boundary) degC;  u (n, n_input) the inputs over their scale
+    """
+
+    name: str
+    time: Array
+    T: Array
+    read: NDArray[np.bool_]
+    boundary: Array
+    u: Array
+
+    def rows(self, window: float) -> int:
+        """Rows of a window (s): at least one, and at most a third of all."""
+        step = float(np.median(np.diff(self.time)))
+        return int(np.clip(round(window / step), 1, max((len(self.time) - 1) // 3, 1)))
+
+    def stretch(self, begin: int, end: int) -> Record:
+        """The rows from begin to end as a record of their own."""
+        rows = slice(begin, end)
+        return Record(self.name, self.time[rows], self.T[rows], self.read[rows], self.boundary[rows], self.u[rows])
+
+
+def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:
+    """The columns of the tests that may be learnt from; a sensor that some test lacks drives no other."""
+    sensors = tuple(dict.fromkeys(c.name for t in fitted for c in t.channels if np.isfinite(c.y).any()))
+    present = [{c.name for c in t.channels if np.isfinite(c.y).any()} for t in every]
+    steady = np.array([all(name in names for names in present) for name in sensors], bool)
+    boundaries = _in_all([t.boundaries for t in every])
+    inputs = tuple(n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted))
+    scale = np.array([max(float(np.max(np.abs(t.inputs[n]))) for t in fitted) for n in inputs])
+    return Columns(sensors, steady, boundaries, inputs, scale)
+
+
+def _in_all(tables: Sequence[Iterable[str]]) -> tuple[str, ...]:
+    return tuple(name for name in tables[0] if all(name in table for table in tables))
+
+
+def row_step(tests: Sequence[Test]) -> int:
+    """How many rows become one, so that all tests together stay below MOST_ROWS."""
+    return -(-sum(t.time.size for t in tests) // MOST_ROWS)
+
+
+def table_record(test: Test, columns: Columns, step: int = 1) -> Record:
+    """A test as a table, every `step` rows averaged into one."""
+    n = test.time.size // step * step
+    by_name = {c.name: c.y for c in test.channels}
+    absent = np.full(test.time.size, np.nan)
+    y = np.column_stack([by_name.get(name, absent) for name in columns.sensors])
+    full = np.column_stack([_filled(test.time, column) for column in y.T])
+    boundary = [np.broadcast_to(np.asarray(test.boundaries[b], float), test.time.shape) for b in columns.boundaries]
+    inputs = [np.asarray(test.inputs[i], float) / s for i, s in zip(columns.inputs, columns.scale, strict=True)]
+
+    def mean(table: Array) -> Array:
+        return table[:n].reshape(-1, step, *table.shape[1:]).mean(axis=1)
+
+    empty = np.empty((test.time.size, 0))
+    read = np.isfinite(y)[:n].reshape(-1, step, y.shape[1]).any(axis=1)
+    return Record(
+        test.name, mean(test.time), mean(full), read,
+        mean(np.column_stack(boundary) if boundary else empty), mean(np.column_stack(inputs) if inputs else empty),
+    )  # fmt: skip
+
+
+def _filled(time: Array, y: Array) -> Array:
+    """Readings with straight lines over their gaps; all zero where there are none."""
+    read = np.isfinite(y)
+    return np.interp(time, time[read], y[read]) if read.any() else np.zeros_like(time)

@@ -1,0 +1,55 @@
+"""What the plain models say of the one at hand, in a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from validation.comparison.compare import ChannelError, Comparison, pooled
+from validation.yardstick.yardstick import Yardstick
+
+NAMES = {"persistence": "no model at all", "black_box": "a model without physics", "free_network": "a free network"}
+WORTH = 1.1  # a model this much above the best yardstick leaves something to be learnt; less is luck of the tests
+
+
+def scoped(yard: Yardstick, comparison: Comparison) -> list[ChannelError]:
+    """The errors of the model at hand that the yardstick's are to be held against: same tests, same sensors."""
+    role = [t for t in comparison.tests if (t.role == "hold-out") == bool(yard.hold_out)]
+    return [c for t in role for c in t.channels if c.channel in yard.sensors]
+
+
+def model_error(yard: Yardstick, comparison: Comparison) -> float:
+    """What the model at hand leaves there (K rms)."""
+    return pooled(scoped(yard, comparison))
+
+
+def sentence(yard: Yardstick, comparison: Comparison) -> str:
+    """Held out 2.0 K; a free network 1.3 K, and so on; and what is still to be learnt."""
+    error = model_error(yard, comparison)
+    others = {kind: K for kind, K in yard.errors.items() if np.isfinite(K)}
+    each = ", ".join(f"{NAMES[kind]} {K:.2f} K" for kind, K in others.items())
+    if not yard.hold_out:
+        return f"Fitted tests {error:.2f} K; each predicted from the others by {each}."
+    return f"Held out {error:.2f} K; {each}.{_rest(yard, comparison, error, others)}"
+
+
+def warning(yard: Yardstick, comparison: Comparison) -> str:
+    """What is to be said before all else of a model that knows less than none; "" of any other."""
+    error, none = model_error(yard, comparison), yard.errors.get("persistence", np.inf)
+    if error <= none:
+        return ""
+    return f"Worse than no model at all: {error:.2f} K, where a guess of no change leaves {none:.2f} K."
+
+
+def _rest(yard: Yardstick, comparison: Comparison, error: float, others: Mapping[str, float]) -> str:
+    """How much a better model would gain, and where."""
+    kind = min(others, key=lambda k: others[k])
+    if error <= WORTH * others[kind]:
+        return ""
+    gain = {
+        name: pooled([c for c in scoped(yard, comparison) if c.channel == name]) - of[kind]
+        for name, of in yard.sensors.items()
+    }
+    most = max(gain, key=lambda name: gain[name])
+    return f" About {error - others[kind]:.1f} K is still to be learnt, most of it at {most}."

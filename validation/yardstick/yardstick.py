@@ -1,0 +1,166 @@
+"""How good could a model be from these inputs? Three plain models that know little or no physics say so.
+
+What may be fitted teaches them; what is held out is predicted by them once and has no say. Their choices (window,
+powers, ridge) are made by leaving out each test in turn, or each third of the only one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise, product
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.case import Case
+from validation.threads import one_blas_thread
+from validation.yardstick.black_box import BlackBoxLessons
+from validation.yardstick.free_network import Form, NetworkLessons
+from validation.yardstick.persistence import usual_rise
+from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
+from validation.yardstick.terms import Term, needed_terms
+
+Array = NDArray[np.float64]
+WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
+POWERS = (0, 1, 2)  # of an input that a link follows: not at all, as films in ducts do, as the work of fans
+RIDGES = (1e-9, 1e-6, 1e-4, 1e-2)  # over the diagonal: from none to one that shrinks all but what is plain
+THIRDS = 3  # stretches of the only test: two teach, one is predicted
+FEWEST = 12  # rows of a record: with fewer not even a window of one row says anything
+KINDS = ("persistence", "black_box", "free_network")
+
+
+class Plain(Protocol):
+    """A model with no machine in it."""
+
+    def run(self, record: Record) -> Array:
+        """(n, n_sensor) degC, from the first reading of each sensor on."""
+        ...
+
+
+Fitter = Callable[[Sequence[int]], Plain]  # from the numbers of the records that teach it
+
+
+@dataclass(frozen=True)
+class Yardstick:
+    """What the plain models leave (K rms), by kind, KINDS.
+
+    left_out : over the tests a fit may use, each predicted from the others;  hold_out : over the held-out tests
+    tests : test -> kind -> K;  sensors : sensor -> kind -> K, over the tests that `errors` speaks of
+    terms : what the free network needs
+    """
+
+    left_out: Mapping[str, float]
+    hold_out: Mapping[str, float] = field(default_factory=dict)
+    tests: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    sensors: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    terms: tuple[Term, ...] = ()
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """The errors to hold a model's against: of the held-out tests where there are any."""
+        return self.hold_out or self.left_out
+
+    def document(self) -> dict:
+        """As `yardstick` in the document of a comparison."""
+        return {
+            **_errors_in(self.errors),
+            "over": "hold-out" if self.hold_out else "left out in turn",
+            "left_out": _errors_in(self.left_out),
+            "tests": [{"name": name, **_errors_in(of)} for name, of in self.tests.items()],
+            "sensors": [{"channel": name, **_errors_in(of)} for name, of in self.sensors.items()],
+            "terms": [term.document() for term in self.terms],
+        }
+
+
+def _errors_in(of: Mapping[str, float]) -> dict[str, float | None]:
+    """Errors by kind, for a document; one that ran away is None."""
+    return {f"{kind}_K": error if np.isfinite(error) else None for kind, error in of.items()}
+
+
+@one_blas_thread
+def yardstick(case: Case) -> Yardstick | None:
+    """The plain models of a case; None where nothing can be learnt: no sensor, no test to fit, or too few rows."""
+    fitted = [t for t in case.tests if t.role != "hold-out"]
+    columns = table_columns(fitted, case.tests)
+    if not columns.sensors:
+        return None
+    step = row_step(fitted)
+    records = _parted([table_record(t, columns, step) for t in fitted])
+    unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
+    if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
+        return None
+    which = {
+        "persistence": _best(_persistences(records, columns), records),
+        "black_box": _best(_black_boxes(records, columns), records),
+        "free_network": _best(_free_networks(records, columns), records),
+    }
+    every = range(len(records))
+    errors = {kind: [*left, *(_error(fit(every), r) for r in unseen)] for kind, (fit, left) in which.items()}
+
+    def pooled(rows: Sequence[int], columns: Sequence[int] | slice = slice(None)) -> dict[str, float]:
+        return {kind: _rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}
+
+    names = [r.name for r in (*records, *unseen)]
+    unseen_numbers = range(len(records), len(names))
+    scope = unseen_numbers or every
+    return Yardstick(
+        left_out=pooled(every),
+        hold_out=pooled(unseen_numbers) if unseen_numbers else {},
+        tests={name: pooled([i for i, other in enumerate(names) if other == name]) for name in dict.fromkeys(names)},
+        sensors={sensor: pooled(scope, [j]) for j, sensor in enumerate(columns.sensors)},
+        terms=needed_terms(which["free_network"][0], records, columns, case),
+    )
+
+
+def _parted(records: Sequence[Record]) -> list[Record]:
+    """Records to leave out in turn: the tests, or stretches of the only one."""
+    if len(records) != 1:
+        return list(records)
+    ends = np.linspace(0, len(records[0].time), THIRDS + 1).astype(int)
+    return [records[0].stretch(a, b) for a, b in pairwise(ends)]
+
+
+def _persistences(records: Sequence[Record], columns: Columns) -> list[Fitter]:
+    def fitter(boundary: int | None) -> Fitter:
+        return lambda which: usual_rise([records[i] for i in which], boundary)
+
+    return [fitter(b) for b in (None, *range(len(columns.boundaries)))]
+
+
+def _windows(records: Sequence[Record]) -> list[float]:
+    """Windows (s), as shares of the middle one of the records' lengths: the same whatever the sample step."""
+    length = float(np.median([r.time[-1] - r.time[0] for r in records]))
+    return [share * length for share in WINDOWS]
+
+
+def _black_boxes(records: Sequence[Record], columns: Columns) -> list[Fitter]:
+    lessons = [BlackBoxLessons.of(records, columns, h) for h in _windows(records)]
+    return [partial(a.fit, ridge=r) for a, r in product(lessons, RIDGES)]
+
+
+def _free_networks(records: Sequence[Record], columns: Columns) -> list[Fitter]:
+    powers = POWERS if columns.inputs else (0,)
+    return [NetworkLessons.of(records, columns, Form(h, p)).fit for p, h in product(powers, _windows(records))]
+
+
+def _best(fitters: Sequence[Fitter], records: Sequence[Record]) -> tuple[Fitter, list[Array]]:
+    """The one that predicts records best that were left out, with its errors there."""
+    every = range(len(records))
+
+    def left_out(fit: Fitter) -> list[Array]:
+        return [_error(fit([j for j in every if j != i]), r) for i, r in enumerate(records)]
+
+    return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: _rms(pair[1]))
+
+
+def _error(model: Plain, record: Record) -> Array:
+    """(n, n_sensor) measured - modelled (K), NaN where nothing was read."""
+    return np.where(record.read, record.T - model.run(record), np.nan)
+
+
+def _rms(errors: Sequence[Array]) -> float:
+    every = np.concatenate([e[~np.isnan(e)] for e in errors])
+    return float(np.sqrt(np.mean(every**2))) if every.size else float("nan")
