@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import Any
 
+from geom.text import visible
+
 LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
 GAP = "  "
 TITLE, LEAST = 2, 8  # lines over the rows of a table; letters that a shortened word keeps
@@ -198,4 +200,4 @@ def printed(answer: Answer) -> None:
 
     console = Console(soft_wrap=True)
     for line, style in lay_out(answer, width(), _limit.get()):
-        console.print(Text(line, style if console.is_terminal else ""), soft_wrap=True)
+        console.print(Text(visible(line), style if console.is_terminal else ""), soft_wrap=True)

@@ -12,6 +12,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+from geom.text import visible
 from thermoscope.console.answer import Answer, Grid, printed
 from thermoscope.console.progress_bar import Progress, progress
 from thermoscope.files import write_whole
@@ -32,7 +33,7 @@ __all__ = [
 
 
 def _line(message: str) -> None:
-    print(message, file=sys.stderr, flush=True)
+    print(visible(message), file=sys.stderr, flush=True)
 
 
 NOTES_SO_FAR: ContextVar[set[str] | None] = ContextVar("said", default=None)  # where each is said once

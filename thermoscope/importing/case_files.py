@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -15,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.text import visible
+from thermoscope.escapes import toml_key, toml_value
 from thermoscope.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess
 from thermoscope.recordings.data_table import csv_text
 
-BARE = re.compile(r"[A-Za-z0-9_-]+")
 TIME = "time_s"
 ROLES = ("calibrate", "validate", "hold-out")
 
@@ -52,12 +52,12 @@ def folder_whole(folder: Path) -> Iterator[Path]:
 
 def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
     """model : puts the machine or network into the folder and returns its line of case.toml."""
-    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {quoted(name)}",
+    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {toml_value(name)}",
              model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
-        lines += [f"[tests.{key(draft.name)}]", f'role = "{role}"', ""]
+        lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         write_test(folder / "tests", draft)
-    write_whole(folder / "case.toml", "\n".join(lines))
+    write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
 
 def roles(count: int) -> list[str]:
@@ -71,7 +71,7 @@ def write_test(folder: Path, draft: Draft) -> None:
     """The recordings as plain CSV, each with its own clock, and the sheet."""
     for i, record in enumerate(draft.records):
         write_whole(folder / _file(draft, i), csv_text(readings(record)))
-    write_whole(folder / f"{draft.name}.toml", "\n".join(_sheet(draft)) + "\n")
+    write_whole(folder / f"{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
 
 
 def _file(draft: Draft, i: int) -> str:
@@ -92,7 +92,7 @@ def _sheet(draft: Draft) -> Iterator[str]:
     first = draft.records[0]
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
-    yield from ("", "[test]", f'time = "{TIME}"', f"description = {quoted(f'{first.name}, {first.clock.words}')}",
+    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(f'{first.name}, {first.clock.words}')}",
                 'initial = "first-readings"')  # fmt: skip
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:
@@ -101,9 +101,9 @@ def _sheet(draft: Draft) -> Iterator[str]:
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:
         yield from ("", "[root_sum_square]")
-        yield from (f"{key(n)} = {json.dumps(list(of), ensure_ascii=False)}" for n, of in draft.squares.items())
+        yield from (f"{toml_key(n)} = {toml_value(list(of))}" for n, of in draft.squares.items())
     for i, record in enumerate(draft.records[1:], 1):
-        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {quoted(_file(draft, i))}",
+        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {toml_value(_file(draft, i))}",
                     f'time = "{TIME}"', f"shift_s = {record.shift_s:.6g}   # {record.how}")  # fmt: skip
     for guess in draft.guesses:
         yield from _column(guess)
@@ -112,25 +112,16 @@ def _sheet(draft: Draft) -> Iterator[str]:
 def _constants(table: str, values: object) -> Iterator[str]:
     if isinstance(values, dict) and values:
         yield from ("", f"[{table}]   # constant: not recorded")
-        yield from (f"{key(name)} = {value:g}" for name, value in values.items())
+        yield from (f"{toml_key(name)} = {value:g}" for name, value in values.items())
 
 
 def _column(g: Guess) -> Iterator[str]:
     """A column's table; of one that is left out a line that says why."""
     yield ""
     if not g.used:
-        yield f"# {json.dumps(g.column, ensure_ascii=False)} is left out: {g.doubt}"
+        yield f"# {toml_value(g.column)} is left out: {g.doubt}"
         return
-    yield f"[columns.{key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    yield f"[columns.{toml_key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
     yield f'quantity = "{g.quantity}"'
     yield f'unit = "{g.unit}"'
-    yield f"place = {quoted(g.place)}" if g.place else f"input = {quoted(g.feeds)}"
-
-
-def quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
-def key(name: str) -> str:
-    """A name as a TOML key."""
-    return name if BARE.fullmatch(name) else quoted(name)
+    yield f"place = {toml_value(g.place)}" if g.place else f"input = {toml_value(g.feeds)}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import at_instant, before_last, by_interest, fields, readings, temperature_range
@@ -37,7 +38,7 @@ def film(case: str, out: Path | None, target: str | None) -> int:
             raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
         require_gl()  # before anything is run
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
-        file = out or Path("out") / f"{folder.case.name}.gif"
+        file = out or Path("out") / f"{file_stem(folder.case.name)}.gif"
         runs = {} if earlier is None else {before(folder): earlier}
         tell(f"running {test.name}")
         models = runs | {now(folder): folder.case}

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from geom.description.names import file_stem
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
 from thermoscope.caches import cache_folder, recalled_result, store_result
@@ -46,7 +47,7 @@ def viewer(case: str, out: Path | None, target: str | None) -> int:
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
     with progress() as tell:
         folder = open_case(case, tell)
-        file = write_case(folder, out or Path("out") / f"{folder.case.name}-viewer.html", tell)
+        file = write_case(folder, out or Path("out") / f"{file_stem(folder.case.name)}-viewer.html", tell)
     give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,6 +22,7 @@ from thermoscope.commands.pairs import read_pairs
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.escapes import toml_value
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
 from validation.rating.envelope import DUTIES, rated, until
@@ -71,7 +71,7 @@ def case_or_machine(name: str, tell: Progress) -> Folder:
         return open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name
-        text = f"[case]\nname = {json.dumps(path.stem)}\nmachine = {json.dumps(machine)}\n"
+        text = f"[case]\nname = {toml_value(path.stem)}\nmachine = {toml_value(machine)}\n"
         Path(folder, "case.toml").write_text(text, encoding="utf-8")
         return open_case(folder, tell, untested=True)
 
