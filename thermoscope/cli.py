@@ -522,14 +522,11 @@ def main() -> None:
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
             code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
-            sys.stdout.flush()
     except typer.Abort:
         raise SystemExit(1) from None
     except Exception as fault:
         if "--debug" in sys.argv:
             raise
-        if isinstance(fault, BrokenPipeError):  # what is left to write goes nowhere, or Python's end would fail on it
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
     raise SystemExit(code if isinstance(code, int) else 0)
@@ -546,8 +543,6 @@ def _open_streams() -> None:
 
 def one_line(fault: Exception) -> str:
     """One line that says what is wrong; the help itself where nothing at all was asked for."""
-    if isinstance(fault, BrokenPipeError):
-        return "error: stdout: was closed before all was written; a reader that reads to the end, or --json FILE"
     if not isinstance(fault, ThermoscopeError | OSError | UsageError):
         return f"error: {printable(f'{type(fault).__name__}: {fault}')}; not foreseen: --debug shows where"
     if not isinstance(fault, UsageError):

@@ -8,7 +8,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-FORMULA = tuple("=+-@\t\r")  # a cell that begins so is computed when a spreadsheet opens the file
+from geom.text import visible
+
+FORMULA = tuple("=+-@")  # a cell that begins so is computed when a spreadsheet opens the file
 IN_COMMENTS = set(" .,:;()'_+-=<>%@#[]{}|&/^~°·")  # of C; no * and no ?, which could end the comment or be a trigraph
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # XML 1.0, production 2
 
@@ -21,7 +23,10 @@ def csv_lines(rows: Iterable[Sequence[Any]]) -> str:
 
 
 def _cell(value: Any) -> Any:
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) and not _is_number(value) else value
+    if not isinstance(value, str):
+        return value
+    text = visible(value)
+    return f"'{text}" if text.startswith(FORMULA) and not _is_number(text) else text
 
 
 def _is_number(text: str) -> bool:

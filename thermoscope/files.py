@@ -104,7 +104,7 @@ def checked_target(target: str | None) -> str | None:
     if not target or path.is_dir():
         raise InputError(f"{target!r} is no file to write to", "--json", right)
     if not path.parent.is_dir():
-        raise InputError("no such folder", str(path.parent), f"--json with {right}")
+        raise InputError("lies in a folder that is not there", f"--json {path}", right)
     if path.exists() and (not path.is_file() or not _is_document(path)):
         raise InputError("is there already and is no document of this tool: it stays", f"--json {path}", right)
     return target
