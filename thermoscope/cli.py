@@ -14,7 +14,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
-from thermoscope.extras import explained
+from thermoscope.extras import NEEDS, explained, required
 from thermoscope.files import checked_out, checked_target, message_of, printable
 
 app = typer.Typer(
@@ -521,6 +521,8 @@ def main() -> None:
         print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
+            if "--help" not in arguments:
+                required(package for word in arguments[:2] for package in NEEDS.get(word, ()))
             code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
     except typer.Abort:
         raise SystemExit(1) from None

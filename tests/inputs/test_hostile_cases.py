@@ -27,7 +27,8 @@ WRITES = (
     ("compare", "--json", "c.json"), ("doctor", "--json", "-"), ("simulate", "--out", "out/s"), ("effects",),
     ("export", "--as", "xlsx"), ("export", "--as", "csv", "--out", "out/t"), ("export", "--as", "c"),
     ("export", "--as", "json"), ("export", "--as", "matlab"), ("export", "--as", "observer"), ("calibrate", "--anyway"),
-    ("report", "--out", "out/r"), ("curves",), ("picture", "curves"), ("plan",), ("rate", "--limit", "{hot}=155"), ("undo",),
+    ("report", "--out", "out/r"), ("curves",), ("picture", "curves"), ("plan",),
+    ("rate", "--limit", "{hot}=155"), ("undo",),
 )  # fmt: skip
 
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import signal
+import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -15,6 +18,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from geom.text import visible
+from thermoscope.caches import cache_folder
 from thermoscope.escapes import toml_key, toml_value
 from thermoscope.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
@@ -28,9 +32,10 @@ ROLES = ("calibrate", "validate", "hold-out")
 
 @contextmanager
 def folder_whole(folder: Path) -> Iterator[Path]:
-    """A folder to fill that takes its place only when it is complete; gone if anything fails.
+    """A folder to fill that takes its place only when it is complete; gone if anything fails, or the process is told
+    to end. Until then it is in the cache, where that is on the same disk, else hidden beside its place.
 
-    What a killed process left of it is hidden, counts for nothing, and goes with the next one of that name.
+    What a killed process left of it counts for nothing, and goes with the next one.
     """
     if within_inputs(folder):
         raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
@@ -38,16 +43,41 @@ def folder_whole(folder: Path) -> Iterator[Path]:
         raise InputError("is there already", str(folder), "--out with the name of a new folder")
     if not folder.parent.is_dir():
         raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
-    for left in abandoned(folder.parent, re.compile(rf"\.{re.escape(folder.name)}\.[0-9a-f]{{32}}")):
+    begun = _begun(folder)
+    for left in abandoned(begun.parent, re.compile(rf"{re.escape(begun.name)}\.[0-9a-f]{{32}}")):
         shutil.rmtree(left, ignore_errors=True)
-    partial = folder.with_name(f".{folder.name}.{uuid4().hex}")
+    partial = begun.with_name(f"{begun.name}.{uuid4().hex}")
+    with _told_to_end():
+        try:
+            partial.mkdir()
+            with locked(partial):
+                yield partial
+                os.rename(partial, folder)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+
+def _begun(folder: Path) -> Path:
+    """Where a folder is begun: from there it can be renamed to its place."""
+    cache = cache_folder()
+    with suppress(OSError):
+        cache.mkdir(parents=True, exist_ok=True)
+        if os.access(cache, os.W_OK) and cache.stat().st_dev == folder.absolute().parent.stat().st_dev:
+            return cache / "new"
+    return folder.with_name(f".{folder.name}")
+
+
+@contextmanager
+def _told_to_end() -> Iterator[None]:
+    """A process that is told to end (SIGTERM) unwinds in here, as one that is interrupted does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
-        partial.mkdir()
-        with locked(partial):
-            yield partial
-            os.rename(partial, folder)
+        yield
     finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        signal.signal(signal.SIGTERM, before)
 
 
 def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:

@@ -16,7 +16,7 @@ from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
-from thermoscope.design.design_problem import DesignRequest, design_problem
+from thermoscope.design.design_problem import DesignRequest, checked_request, design_problem
 from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
 from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
@@ -40,7 +40,7 @@ def optimise(
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as messages, _executor(cluster) as executor:
-        folder = case_or_machine(name, tell)
+        folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
