@@ -35,9 +35,9 @@ def most_letters(*keys: str) -> int:
 
 
 def plain_header(text: str) -> str:
-    """A recorder's name for a column as a plain name: in one line, without what a name may not have."""
+    """A recorder's name for a column as a plain name, with room for a number behind it; "" where nothing is left."""
     words = "".join(c if c.isprintable() else " " for c in text).split()
-    return " ".join(words).lstrip(LEADING + " ")[:LETTERS].rstrip()
+    return " ".join(words).lstrip(LEADING + " ")[: LETTERS - 5].rstrip()
 
 
 def checked_document(node: Any, file: str, way: tuple[str, ...] = ()) -> None:

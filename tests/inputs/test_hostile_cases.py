@@ -185,3 +185,27 @@ def test_a_file_name_that_is_no_text(tmp_path):
     assert r"\udcff\udcfe" in done.errors[0]
     (tmp_path / f"{name}.csv").write_text("t,T\n0,1\n")
     assert answered("new", tmp_path / f"{name}.csv", "--yes", cwd=tmp_path).code == 2
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("i", range(15))
+def test_a_recording_with_hostile_headers_becomes_a_case(tmp_path, i):
+    """Twenty names a file, 300 in all: what `new` writes is read again, and names nothing that a file may not."""
+    work = tmp_path / "work"
+    work.mkdir()
+    names = [name.replace("\0", "\1") for name in hostile_names()[20 * i : 20 * i + 20]]  # zero bytes are no text
+    with (work / f"{names[3].replace('/', '_')[:60]}.csv").open("w", newline="") as out:
+        rows = [[f"{20 + k + 3 * j + 0.5 * (j % 2)}" for k in range(len(names))] for j in range(40)]
+        heads = ["time_s", "T winding [degC]", "power [W]", *(f"{name} [degC]" for name in names)]
+        csv.writer(out).writerows([heads, *([60 * j, 20 + j, 100, *row] for j, row in enumerate(rows))])
+    done = answered("new", next(work.iterdir()), "--yes", "--out", "made", cwd=work)
+    assert done.code in (0, 2)
+    assert "not foreseen" not in done.err
+    assert (done.out + done.err).replace("\n", "").isprintable()
+    if done.code == 0:
+        assert answered("compare", work / "made", "--json", "-").code in (0, 1)
+        assert answered("export", work / "made", "--as", "c").code == 0
+    assert [p for p in tmp_path.rglob("*") if p.name == CANARY] == []
+    assert {p.relative_to(tmp_path).parts[0] for p in tmp_path.rglob("*")} == {"work"}
+    for file in (work / "made").rglob("*.*"):
+        checked(file)

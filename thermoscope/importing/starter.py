@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from thermoscope.escapes import toml_key, toml_value
@@ -114,7 +115,8 @@ def _toml(
         lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
     inside = [(a, b, 5 * G) for a, b in itertools.pairwise(nodes)]
     outside = [(n, b, G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
-    for a, b, size in (*inside, *outside):
-        lines += [f"[links.{toml_key(f'{a}-{b}')}]", f"between = {toml_value([a, b])}", f"G_W_K = {size:.3g}",
+    for i, (a, b, size) in enumerate((*inside, *outside), 1):
+        link = f"{a}-{b}" if is_plain(f"{a}-{b}") else f"link-{i}"
+        lines += [f"[links.{toml_key(link)}]", f"between = {toml_value([a, b])}", f"G_W_K = {size:.3g}",
                   f"prior_sd = {SPREAD}", ""]  # fmt: skip
     return "\n".join([*lines, heat])
