@@ -13,12 +13,12 @@ LONGEST = 100  # bytes of a file's name; file systems stop at 255, and names get
 DEVICES = {"CON", "PRN", "AUX", "NUL", *(f"{port}{i}" for port in ("COM", "LPT") for i in range(1, 10))}  # of Windows
 FORBIDDEN = set('/\\:*?"<>|')
 # Keys of names that are put together from others, KIND@PLACE:PARAMETER.
-JOINED = {"acts_on", "effect", "effects", "free", "frees", "values", "intervals", "answers", "evidence"}
+COMPOUND = {"acts_on", "effect", "effects", "free", "frees", "values", "intervals", "answers", "evidence"}
 
 
 def is_plain(name: str, letters: int = LETTERS) -> bool:
     """Can it be a name: printed, in one line, short, and no spreadsheet's formula?"""
-    return name.isprintable() and len(name) <= letters and not name.startswith(tuple(LEADING))
+    return name.isprintable() and len(name) <= letters and name[:1] not in (*LEADING,)
 
 
 def plain_name(name: str, where: str, letters: int = LETTERS) -> str:
@@ -31,7 +31,7 @@ def plain_name(name: str, where: str, letters: int = LETTERS) -> str:
 
 def most_letters(*keys: str) -> int:
     """Of a name that stands under these keys."""
-    return 3 * LETTERS if JOINED & set(keys) else LETTERS
+    return 3 * LETTERS if COMPOUND & set(keys) else LETTERS
 
 
 def plain_header(text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -94,17 +94,17 @@ def checked_request(settings: Settings, request: DesignRequest) -> None:
     if file is None or settings.model_file.exists():  # what its effects add is not known without the network
         return
     sheets = [load_sheet(entry.sheet) for entry in settings.tests]
-    inputs = {*rated_inputs(file.machine), *(name for sheet in sheets for name in _given_by(sheet))}
-    _known(request.at or {}, {*inputs, *boundaries(file.machine)}, "--at", "is no input or boundary of the model")
-    _known(request.limits, temperatures_of(file.machine, sheets), "--limit", "is no temperature of the machine")
+    inputs = {*rated_inputs(file.machine), *(name for sheet in sheets for name in _inputs_of(sheet))}
+    _check_names(request.at or {}, {*inputs, *boundaries(file.machine)}, "--at", "is no input or boundary of the model")
+    _check_names(request.limits, temperatures_of(file.machine, sheets), "--limit", "is no temperature of the machine")
     vary = request.vary or {}
     for name in filter(file.knows, vary):
         file.variable(name, vary[name])
-    known = {*inputs, *(GAINS if request.cycle else ()), *filter(file.knows, vary), *(v.name for v in file.usual())}
-    _known(vary, known, "--vary", "is nothing that a design could change")
+    variables = {*inputs, *(GAINS if request.cycle else ()), *filter(file.knows, vary), *(v.name for v in file.usual())}
+    _check_names(vary, variables, "--vary", "is nothing that a design could change")
 
 
-def _given_by(sheet: Sheet) -> set[str]:
+def _inputs_of(sheet: Sheet) -> set[str]:
     """Inputs and boundaries that a test has."""
     columns = {name for c in sheet.columns for name in (c.feeds, c.place)}
     return {*columns, *sheet.inputs, *sheet.boundaries, *sheet.squares, *sheet.events}
@@ -115,15 +115,16 @@ def temperatures_of(machine: Machine, sheets: Sequence[Sheet]) -> set[str]:
     parts = (*machine.parts, *machine.fluids)
     roles = {role.value for role in Role}
     jackets = {f"{part.name}.outlet" for part in machine.fluids}
-    sensors = {f"sensor {channel.name}" for sheet in sheets for channel in (*sheet.columns, *sheet.means)}
+    sensors = {f"sensor {c.name}" for sheet in sheets for c in sheet.columns}
+    sensors |= {f"sensor {mean.name}" for sheet in sheets for mean in sheet.means}
     cells = {*fluids(machine), *boundaries(machine), *machine.sections.get("sensors", {})}
     return {part.name for part in parts} | roles | jackets | sensors | cells
 
 
-def _known(names: Iterable[str], known: Iterable[str], option: str, what: str) -> None:
+def _check_names(names: Iterable[str], choices: Collection[str], option: str, what: str) -> None:
     for name in names:
-        if name not in known:
-            raise InputError(f"'{name}' {what}", option, suggestion(name, known))
+        if name not in choices:
+            raise InputError(f"'{name}' {what}", option, suggestion(name, choices))
 
 
 def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -> tuple[Network, AtRest | None]:

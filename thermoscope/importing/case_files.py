@@ -43,11 +43,11 @@ def folder_whole(folder: Path) -> Iterator[Path]:
         raise InputError("is there already", str(folder), "--out with the name of a new folder")
     if not folder.parent.is_dir():
         raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
-    begun = _begun(folder)
-    for left in abandoned(begun.parent, re.compile(rf"{re.escape(begun.name)}\.[0-9a-f]{{32}}")):
+    start = _start_of(folder)
+    for left in abandoned(start.parent, re.compile(rf"{re.escape(start.name)}\.[0-9a-f]{{32}}")):
         shutil.rmtree(left, ignore_errors=True)
-    partial = begun.with_name(f"{begun.name}.{uuid4().hex}")
-    with _told_to_end():
+    partial = start.with_name(f"{start.name}.{uuid4().hex}")
+    with _unwound_by_termination():
         try:
             partial.mkdir()
             with locked(partial):
@@ -57,7 +57,7 @@ def folder_whole(folder: Path) -> Iterator[Path]:
             shutil.rmtree(partial, ignore_errors=True)
 
 
-def _begun(folder: Path) -> Path:
+def _start_of(folder: Path) -> Path:
     """Where a folder is begun: from there it can be renamed to its place."""
     cache = cache_folder()
     with suppress(OSError):
@@ -68,7 +68,7 @@ def _begun(folder: Path) -> Path:
 
 
 @contextmanager
-def _told_to_end() -> Iterator[None]:
+def _unwound_by_termination() -> Iterator[None]:
     """A process that is told to end (SIGTERM) unwinds in here, as one that is interrupted does."""
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -139,8 +139,8 @@ async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Pat
     async for part in parts:
         if not isinstance(part, BodyPartReader) or not part.filename:
             continue
-        given = Path(file_stem(Path(part.filename).name))
-        name = cut_short(given.stem.lstrip(".")) + cut_short(given.suffix)
+        plain = Path(file_stem(Path(part.filename).name))
+        name = cut_short(plain.stem.lstrip(".")) + cut_short(plain.suffix)
         inside = folder / uuid4().hex  # two files of one name
         inside.mkdir()
         files.append(inside / name)
