@@ -75,6 +75,7 @@ def test_every_name_of_a_network_passes_the_one_rule(tmp_path, place):
 
 def test_a_header_of_a_recorder_becomes_a_plain_name():
     assert plain_header("=T wickl\n[degC] ") == "T wickl [degC]"
+    assert plain_header("\x1b[31mT winding") == "[31mT winding"
     assert all(is_plain(plain_header(name)) for name in NAMES)
 
 
