@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import sys
 from functools import cache
-from importlib.metadata import entry_points
+from importlib.metadata import distributions
+from pathlib import Path
 from typing import Any
 
 
 def plugins(group: str) -> dict[str, Any]:
     """Name -> object.  group : effects, families, formats, quantities, still_air, moving_air or pictures
 
-    Every installed package is read for it (tens of milliseconds), so once for each search path.
+    Every installed package is read for it (tens of milliseconds), so once for each search path. The folder in which
+    a command runs is left out of the search: cases lie there, and a case is data.
     """
-    return dict(_plugins(group, tuple(sys.path)))
+    here = Path.cwd()
+    return dict(_plugins(group, tuple(place for place in sys.path if Path(place).resolve() != here)))
 
 
 @cache
 def _plugins(group: str, path: tuple[str, ...]) -> dict[str, Any]:
-    return {entry.name: entry.load() for entry in entry_points(group=f"thermoscope.{group}")}
+    entries = [entry for one in distributions(path=list(path)) for entry in one.entry_points]
+    return {entry.name: entry.load() for entry in reversed(entries) if entry.group == f"thermoscope.{group}"}

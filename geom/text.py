@@ -25,6 +25,11 @@ def counted(n: int, what: str) -> str:
     return f"{n} {what}" if n == 1 else f"{n} {what}s"
 
 
+def visible(line: str) -> str:
+    """A line with its control characters as escapes: it moves no cursor, and begins no other line."""
+    return line if line.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+
+
 def _column(cells: list[Any]) -> list[str]:
     """Numbers with the same decimals, whole ones with none."""
     numbers = [abs(x) for x in cells if not isinstance(x, str)]

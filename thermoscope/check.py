@@ -86,7 +86,7 @@ def _rerun() -> bool:
 
 def _vulkan() -> bool:
     """A loader and at least one driver; asked in a process of its own, since drivers may crash."""
-    process = subprocess.run([sys.executable, "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
+    process = subprocess.run([sys.executable, "-P", "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
     return process.returncode == 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
-from thermoscope.extras import explained
+from thermoscope.extras import NEEDS, explained, required
 from thermoscope.files import checked_out, checked_target, message_of, printable
 
 app = typer.Typer(
@@ -514,24 +515,38 @@ def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
+    _open_streams()
     arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
+            if "--help" not in arguments:
+                required(package for word in arguments[:2] for package in NEEDS.get(word, ()))
             code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
-    except (ThermoscopeError, OSError, UsageError) as fault:
+    except typer.Abort:
+        raise SystemExit(1) from None
+    except Exception as fault:
         if "--debug" in sys.argv:
             raise
         print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
-    except typer.Abort:
-        raise SystemExit(1) from None
     raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def _open_streams() -> None:
+    """Both are there, and take any name that a disk has: what no UTF-8 can say is written as its escape."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
+        if isinstance(stream := getattr(sys, name), io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def one_line(fault: Exception) -> str:
     """One line that says what is wrong; the help itself where nothing at all was asked for."""
+    if not isinstance(fault, ThermoscopeError | OSError | UsageError):
+        return f"error: {printable(f'{type(fault).__name__}: {fault}')}; not foreseen: --debug shows where"
     if not isinstance(fault, UsageError):
         return f"error: {printable(message_of(fault))}"
     message, command = fault.format_message().rstrip("."), fault.ctx.command_path if fault.ctx else "thermoscope"

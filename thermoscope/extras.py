@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -32,7 +32,16 @@ EXTRAS = {
         Extra("bench", ("asammdf", "nptdms", "pyarrow", "SALib"),
               "recordings in TDMS, MF4 and Parquet; sensitivities of a screening"),
         Extra("oil", ("CoolProp",), "properties of oil"),
+        Extra("optimise", ("pymoo",), "designs that trade one aim for another"),
+        Extra("video", ("imageio_ffmpeg",), "films as .mp4"),
+        Extra("cluster", ("distributed",), "runs on a Dask cluster"),
     )
+}  # fmt: skip
+# Command -> packages without which it does nothing, whatever its case.
+NEEDS = {
+    "build": ("cadquery", "skfem"), "crosscheck": ("skfem",), "report": ("matplotlib",), "render": ("matplotlib",),
+    "picture": ("matplotlib",), "plan": ("matplotlib",), "serve": ("aiohttp", "trame", "plotly"),
+    "optimise": ("pymoo", "plotly"),
 }  # fmt: skip
 
 
@@ -46,6 +55,13 @@ def message(fault: ModuleNotFoundError) -> str:
     package = (fault.name or "").partition(".")[0]
     extra = next((e for e in EXTRAS.values() if package in e.packages), None)
     return "" if extra is None else f"'{package}' is not installed: {extra.install} ({extra.needed_for})"
+
+
+def required(packages: Iterable[str]) -> None:
+    """Raises MissingDependency for the first package that is not installed: to be asked before any work."""
+    for package in packages:
+        if find_spec(package) is None:
+            raise MissingDependency(message(ModuleNotFoundError(name=package)))
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from geom.errors import InputError
+from geom.text import visible
 
 CASE = "case.toml"
 INPUTS = ("tests", "cycles")  # folders of a case
@@ -25,7 +26,7 @@ def write_whole(path: Path, text: str | bytes) -> Path:
 
     try:
         with atomic_write(path) as partial:
-            partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
+            partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "backslashreplace"))
     except OSError as fault:
         right = "a folder you may write to, with room in it"
         raise InputError(
@@ -92,8 +93,7 @@ def message_of(fault: Exception) -> str:
 
 def printable(message: str) -> str:
     """In one line, control characters as their escapes, no word longer than LONGEST_WORD."""
-    safe = "".join(c if c.isprintable() or c.isspace() else repr(c)[1:-1] for c in message)
-    return " ".join(w if len(w) <= LONGEST_WORD else f"{w[:LONGEST_WORD]}..." for w in safe.split())
+    return " ".join(w if len(w) <= LONGEST_WORD else f"{w[:LONGEST_WORD]}..." for w in map(visible, message.split()))
 
 
 def checked_target(target: str | None) -> str | None:
@@ -103,6 +103,8 @@ def checked_target(target: str | None) -> str | None:
     path, right = Path(str(target)), "a new file NAME.json, or - for stdout"
     if not target or path.is_dir():
         raise InputError(f"{target!r} is no file to write to", "--json", right)
+    if not path.parent.is_dir():
+        raise InputError("lies in a folder that is not there", f"--json {path}", right)
     if path.exists() and (not path.is_file() or not _is_document(path)):
         raise InputError("is there already and is no document of this tool: it stays", f"--json {path}", right)
     return target

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from geom.description.names import checked_document
 from geom.errors import InputError
 
 LARGEST = 16 * 2**20  # bytes; a file of this kind is written by hand, or by us, and is far smaller
@@ -20,6 +21,8 @@ def read_toml(path: Path, right: str) -> dict[str, Any]:
     if path.stat().st_size > LARGEST:
         raise InputError(f"has {path.stat().st_size} bytes, too many for TOML", str(path), right)
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, RecursionError) as fault:
         raise InputError(f"not readable as TOML: {fault or type(fault).__name__}", str(path), right) from None
+    checked_document(document, str(path))
+    return document

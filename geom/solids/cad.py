@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,6 +12,7 @@ import numpy as np
 
 from geom.description.identity import Identity
 from geom.description.machine import Machine
+from geom.description.names import file_stem
 from geom.description.palette import colour
 from geom.description.part import Part, Prism
 from geom.disk_cache import atomic_write, cache_file, recalled
@@ -106,7 +106,7 @@ def export_cad(
         write_glb(whole, paths["glb"])
     if "stl" in formats:
         for child in whole.children:
-            path = paths[f"stl:{child.name}"] = folder / f"{child.name}.stl"
+            path = paths[f"stl:{child.name}"] = folder / f"{file_stem(child.name)}.stl"
             shape: Any = child.obj
             shape.exportStl(str(path), tolerance=0.05, angularTolerance=0.1)
     return paths
@@ -126,12 +126,15 @@ def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str
 
 def _materials(machine: Machine) -> str:
     """What a STEP file cannot say, as TOML."""
-    lines = [f"{json.dumps(part.name)} = {json.dumps(part.material)}" for part in machine.parts]
-    head = ["[machine]", f"name = {json.dumps(machine.name)}", f"description = {json.dumps(machine.description)}"]
-    entries = [f"{json.dumps(part.name)} = {_role(i)}" for part in machine.parts if (i := part.identity) is not None]
-    return "\n".join([*head, "", "[materials]", *lines, "", *(["[roles]", *entries, ""] if entries else [])])
+    import tomlkit
+
+    roles = {part.name: _role(part.identity) for part in machine.parts if part.identity is not None}
+    document = {
+        "machine": {"name": machine.name, "description": machine.description},
+        "materials": {part.name: part.material for part in machine.parts},
+    }
+    return tomlkit.dumps(document | ({"roles": roles} if roles else {}))
 
 
-def _role(identity: Identity) -> str:
-    words = [f"role = {json.dumps(identity.role)}"] if identity.role is not None else []
-    return f"{{ {', '.join([*words, f'turns = {json.dumps(bool(identity.turns))}'])} }}"
+def _role(identity: Identity) -> dict[str, str | bool]:
+    return ({} if identity.role is None else {"role": str(identity.role)}) | {"turns": bool(identity.turns)}

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any
 from geom.description.identity import Identity
 from geom.description.machine import SECTIONS, Machine
 from geom.description.materials import material
-from geom.description.names import checked_name
+from geom.description.names import checked_name, plain_name
 from geom.description.part import Part, Prism
 from geom.description.reading import read_geometry
 from geom.description.roles import Role
@@ -69,7 +69,7 @@ def import_step(path: str | Path) -> Machine:
     }
     header = sidecar.get("machine", {})
     return Machine(
-        name=checked_name(header["name"], f"{beside} [machine] name") if "name" in header else path.stem,
+        name=checked_name(header.get("name", path.stem), f"{beside} [machine] name"),
         family="step",
         description=header.get("description", f"imported from {path.name}"),
         parts=tuple(
@@ -189,7 +189,9 @@ def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, t
     prisms, faults = {}, []
     for name, pieces in solids.items():
         try:
-            prisms[name] = tuple(prism for solid in pieces for prism in sliced(solid, name))
+            prisms[plain_name(name, f"{path} solid")] = tuple(
+                prism for solid in pieces for prism in sliced(solid, name)
+            )
         except InputError as fault:
             faults.append(fault)
     if faults:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from lumped.model.network import Link, Network, Parameter, Source
+from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
 
 MAPPINGS = {
@@ -102,8 +103,8 @@ def _parameter(name: str, table: Table) -> Parameter:
 
 def _checked(p: Parameter, table: Table) -> Parameter:
     """low < high, both positive for a factor, with the declared and the neutral value between them."""
-    if p.mapping == "log" and p.low <= 0.0:
-        raise table.error(f"low = {p.low:g} of a factor is not possible", "a number above 0")
+    if p.mapping == "log" and p.low < TINY:
+        raise table.error(f"low = {p.low:g} of a factor is not possible", f"a number from {TINY:g}")
     if not p.low < p.high:
         raise table.error(f"low = {p.low:g} and high = {p.high:g} leave nothing between them", "low below high")
     for key, value in (("value", p.value), ("the neutral value", p.neutral)):

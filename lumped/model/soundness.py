@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from geom.description.names import plain_name
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import excerpt
@@ -28,7 +29,7 @@ def checked_network(network: Network, where: str) -> Network:
 def checked_names(names: Iterable[str], where: str) -> None:
     """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
     for name in names:
-        if not name.strip() or not name.isprintable() or name.strip() != name or set(name) & RESERVED:
+        if not name.strip() or plain_name(name, where).strip() != name or set(name) & RESERVED:
             raise InputError(f"{excerpt(name)} cannot be a name", where, "letters that can be printed, none of "
                              f"{' '.join(sorted(RESERVED))}, no space at either end")  # fmt: skip
 

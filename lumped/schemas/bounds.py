@@ -12,6 +12,7 @@ from typing import Any
 
 COLDEST, HOTTEST = -100.0, 3000.0  # degC: no test bench is colder; copper, steel and insulation are gone before
 TINY = 1e-12  # stands for "above zero" where a number divides
+LEAST_J_K = 1e-6  # a thousandth of a thermocouple's bead; a node that stores nothing has no capacity at all
 
 
 @dataclass(frozen=True)
@@ -37,13 +38,13 @@ class Bounds:
 # Longest first where one ends like another: W_m2K before K.
 UNITS = {
     "W_m2K": Bounds(0.0, 1e7), "W_K": Bounds(0.0, 1e7), "K_W": Bounds(TINY, 1e9), "J_kgK": Bounds(1.0, 1e5),
-    "J_K": Bounds(0.0, 1e10), "kg_m3": Bounds(1e-3, 3e4), "kg_m2": Bounds(0.0, 1e6), "Nms": Bounds(0.0, 1e6),
+    "J_K": Bounds(LEAST_J_K, 1e10), "kg_m3": Bounds(1e-3, 3e4), "kg_m2": Bounds(0.0, 1e6), "Nms": Bounds(0.0, 1e6),
     "percent_K": Bounds(-10.0, 10.0), "per_K": Bounds(-1.0, 1.0), "1_K": Bounds(-1.0, 1.0),
     "degC": Bounds(COLDEST, HOTTEST), "C": Bounds(COLDEST, HOTTEST), "K": Bounds(0.0, 1e4),
     "ohm": Bounds(0.0, 1e9), "mOhm": Bounds(0.0, 1e12), "W": Bounds(0.0, 1e9), "kW": Bounds(1e-3, 1e6),
     "V": Bounds(0.0, 1e7), "A": Bounds(0.0, 1e7), "H": Bounds(TINY, 1e3), "Hz": Bounds(1e-9, 1e9),
     "Vs": Bounds(TINY, 1e4), "rpm": Bounds(0.0, 1e6), "m2": Bounds(0.0, 1e6), "m": Bounds(1e-4, 1e5),
-    "mm": Bounds(1e-3, 1e6), "l": Bounds(1e-6, 1e6), "kg": Bounds(0.0, 1e7), "bar": Bounds(0.0, 1e3),
+    "mm": Bounds(1e-3, 1e6), "l": Bounds(1e-6, 1e6), "kg": Bounds(1e-9, 1e7), "bar": Bounds(0.0, 1e3),
     "l_min": Bounds(1e-9, 1e8), "L_per_min": Bounds(1e-6, 1e8), "m3_h": Bounds(0.0, 1e8), "m_s": Bounds(0.0, 1e3),
     "s": Bounds(0.0, 1e9), "percent": Bounds(0.0, 100.0),
     "share": Bounds(0.0, 1.0), "efficiency": Bounds(0.01, 1.0), "prior_sd": Bounds(1e-9, 10.0),
@@ -75,6 +76,7 @@ KEYS = {
     "property_C": COOLANT_C,
     "mass_percent": Bounds(0.0, 60.0), "cells": Bounds(1, 64, whole=True), "parallel": Bounds(1, 1e4, whole=True),
     "bends": Bounds(0, 1e4, whole=True), "cycles": Bounds(1, 1e5, whole=True), "number": Bounds(1, 1e9, whole=True),
+    "lines": Bounds(0, 1e9, whole=True),
     "starts": Bounds(1, 1000, whole=True), "seed": Bounds(0, 2**32 - 1, whole=True), "doubt": Bounds(0.0, 1e6),
     "pole_pairs": Bounds(1, 500, whole=True), "sign": Bounds(-1, 1, whole=True),
     "supply_V": Bounds(1e-9, 1e7), "wheel_radius_m": Bounds(1e-3, 100.0), "gear": Bounds(1e-3, 1e4),

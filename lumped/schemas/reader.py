@@ -6,11 +6,14 @@ import difflib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from geom.description.names import most_letters, plain_name
 from geom.errors import InputError
 from lumped.schemas.bounds import Bounds, bounds
 from lumped.schemas.schema import meaning
 
 SHORT = 60  # characters of a wrong value that a message repeats
+# Keys whose words are sentences or ways to files; all others are names.
+FREE = ("description", "source", "why", "file", "sheet", "machine", "network", "columns_of")
 
 
 def suggestion(word: str, words: Iterable[str]) -> str:
@@ -104,9 +107,7 @@ class Table:
         if not isinstance(value, str) or (choices is not None and value not in choices):
             right = "a word" if choices is None else suggestion(str(value), choices)
             raise self.error(f"{key} = {excerpt(value)} is not possible", f"{right}{meaning(key)}")
-        if not value.replace("\n", "").replace("\t", "").isprintable():
-            raise self.error(f"{key} = {excerpt(value)} is not possible", f"letters that can be printed{meaning(key)}")
-        return value
+        return value if key in FREE else plain_name(value, f"{self.where} {key}", most_letters(key))
 
     def kind(self, key: str, default: str | None, options: Iterable[str]) -> str:
         """One of our own words; capitals do not matter."""
@@ -117,9 +118,9 @@ class Table:
 
     def words(self, key: str, default: list[str] | None = None) -> tuple[str, ...]:
         value = self._needed(key, default, "[words]")
-        if not isinstance(value, list) or not all(isinstance(v, str) and v.isprintable() for v in value):
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
             raise self.error(f"{key} = {excerpt(value)} is not possible", "a list of words")
-        return tuple(value)
+        return tuple(plain_name(v, f"{self.where} {key}", most_letters(key)) for v in value)
 
     def members(self, key: str) -> tuple[str, ...]:
         """A list of words of which none is empty or comes twice, and that holds one at least."""

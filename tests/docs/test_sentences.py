@@ -6,7 +6,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("cases/*/README.md")), *sorted(ROOT.glob("docs/**/*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "SECURITY.md",
+    *sorted(ROOT.glob("cases/*/README.md")),
+    *sorted(ROOT.glob("docs/**/*.md")),
+]
 LONGEST = 22  # words, what is in brackets, in code or in a formula counted as none or one
 
 

@@ -219,7 +219,6 @@ RECORDS = {
     "a century": (record(lambda i: f"{i * 1e9},{20 + i},5"), "at most a year"),
     "only air": (record(lambda i: f"{i},{20 + i},5", "time,T ambient,I"), "no column is a temperature"),
     "a reversed clamp": (record(lambda i: f"{i},{20 + i},-5", "time,T winding,Power"), "is a clamp reversed?"),
-    "a name with an escape code": (record(lambda i: f"{i},{20 + i},5", "time,\x1b[31mT winding,I"), r"\x1b[31m"),
 }  # fmt: skip
 
 

@@ -131,3 +131,29 @@ def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, change, words):
     changed(case, "stand", lambda table: table.__setitem__("T_flange", change(table["T_flange"])))
     _, found = asked(case)
     assert [(f["test"], f["where"]) for f in found["doubts"] if words in f["what"]] == [("stand", "T_flange")]
+
+
+def hourly(table):
+    """Rows an hour apart: a winding that was on for one of them is back by the next."""
+    table["time_s"] *= 360.0
+    table["current"] = [150.0 if i % 12 == 6 else 0.0 for i in table.index]
+    for name, rise in (("T_winding", 70.0), ("T_yoke", 30.0), ("T_flange", 12.0)):
+        table[name] = 21.3 + 273.15 * (name == "T_yoke") + rise * (table["current"] > 0.0) + 0.05 * (table.index % 3)
+
+
+def findings(case):
+    return [f for f in answered("doctor", case, "--json", "-").document["doubts"] if f["test"] == "stand"]
+
+
+def test_a_room_may_stand_still(tmp_path):
+    case = case_of(tmp_path)
+    changed(case, "stand", lambda table: table.__setitem__("air", 21.5))
+    assert not [f for f in findings(case) if "frozen" in f["what"]]
+
+
+def test_heat_for_an_hour_between_hourly_rows_is_no_leap(tmp_path):
+    case = case_of(tmp_path)
+    changed(case, "stand", hourly)
+    assert not [f for f in findings(case) if "leap" in f["what"]]
+    changed(case, "stand", lambda table: table.__setitem__("T_flange", table["T_flange"] + 60.0 * (table.index == 40)))
+    assert [f["where"] for f in findings(case) if "leap" in f["what"]] == ["T_flange"]

@@ -101,15 +101,15 @@ REFUSED = {
     "a case named with an escape code": (
         swap("case.toml", 'name = "three"', 'name = "\\u001b[2J"'), ["case.toml", r"\x1b[2J", "printed"]),
     "a link to a node with an escape code": (
-        swap("network.toml", 'between = ["winding"', 'between = ["\\u001b[2J"'), ["network.toml", "a list of words"]),
+        swap("network.toml", 'between = ["winding"', 'between = ["\\u001b[2J"'), ["network.toml", "printed"]),
     "a node with a name without end": (
-        swap("network.toml", 'between = ["winding"', f'between = ["{"x" * 9999}"'), ["network.toml", "x" * 99 + "..."]),
+        swap("network.toml", 'between = ["winding"', f'between = ["{"x" * 9999}"'), ["network.toml", "80 letters"]),
     "name that leads outside": (named("/../../../ESCAPED"), ["case.toml", "ESCAPED", "characters without"]),
     "name with a backslash": (named("a\\\\b"), ["case.toml", "characters without"]),
     "name of dots": (named(".."), ["case.toml", "characters without"]),
     "empty name": (named(""), ["case.toml", "characters without"]),
-    "name with a line break": (named("a\\nb"), ["case.toml", "characters without"]),
-    "name without end": (named("x" * 200), ["case.toml", "up to 100"]),
+    "name with a line break": (named("a\\nb"), ["case.toml", "one line"]),
+    "name without end": (named("x" * 200), ["case.toml", "at most 80 letters"]),
     "two recordings of one name": (beside, ["stand.csv and stand.csv.gz", 'file = "tests/stand.csv"']),
     "one recording in two roles": (
         swap("case.toml", 'role = "hold-out"', f'role = "hold-out"\nfile = "tests/stand.csv"\nsheet = "{STAND}"'),
@@ -177,8 +177,11 @@ REFUSED = {
         lambda case: [edited(case / "network.toml", FLANGE, 'between = ["flange", "winding"]'),
                       edited(case / "network.toml", 'between = ["yoke", "ambient"]', 'between = ["yoke", "winding"]')],
         ["no heat can leave", "'winding', 'yoke', 'flange'", "ambient"]),
+    "a capacity of zero": (swap("network.toml", "C_J_K = 2000", "C_J_K = 0"), ["C_J_K = 0", "1e-06 to 1e+10"]),
+    "a capacity of next to nothing": (swap("network.toml", "C_J_K = 2000", "C_J_K = 1e-300"), ["C_J_K", "1e-06"]),
+    "a factor down to next to nothing": (parameter("low = 1e-300"), ["low = 1e-300", "1e-12"]),
     "no capacity": (
-        lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "C_J_K = 0") for C in (2000, 6000, 3000)],
+        lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "") for C in (2000, 6000, 3000)],
         ["no node has a heat capacity"]),
     "stream in a loop": (
         swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["ambient", "yoke", "flange", "yoke"]\nmcp_W_K = 5'

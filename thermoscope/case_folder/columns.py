@@ -6,13 +6,13 @@ The file follows the model: it is written anew after every step, and goes when n
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.settings import Entry
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from thermoscope.recordings.formats import stem_of
 from validation.effects import effect
@@ -35,12 +35,9 @@ def write_columns(folder: Folder, effects: Sequence[str]) -> list[Path]:
         ]
         ours(file)
         if test_conditions:
-            text = io.StringIO()
-            rows = csv.writer(text, lineterminator="\n")
-            rows.writerow([TIME, *test_conditions])
             columns = [test.time, *(holds(condition, test) for condition in test_conditions)]
-            rows.writerows([f"{x:.10g}" for x in row] for row in zip(*columns, strict=True))
-            paths.append(write_whole(file, text.getvalue()))
+            rows = ([f"{x:.10g}" for x in row] for row in zip(*columns, strict=True))
+            paths.append(write_whole(file, csv_lines([[TIME, *test_conditions], *rows])))
         elif file.exists():
             file.unlink()
     return paths

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
 from thermoscope.case_folder.recording_checks import (
+    LEAST_READINGS,
     OFFSET_K,
     RECORDING_CHECKS,
     WARM_K,
@@ -93,7 +94,25 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
                       f"of {rise:.0f} K: kW?", 'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
 
 
-INSIDE = (_power, _reversed, _declared)
+def _frozen(p: Patient, network: Network) -> Iterator[Finding]:
+    """Sensors of the machine that never move while others do; a room may stand still for hours."""
+    moves = {n: float(np.nanmax(v) - np.nanmin(v)) for n, v in p.temperatures.items() if np.isfinite(v).any()}
+    if max(moves.values(), default=0.0) > WARM_K:
+        for name in (c.name for c in _within(p, network) if moves.get(c.name) == 0.0):
+            if np.isfinite(p.temperatures[name]).sum() >= LEAST_READINGS:
+                yield p.finding(name, "never moves while others do: frozen?", "use = false, or another sensor")
+
+
+def _noted(p: Patient, network: Network) -> Iterator[Finding]:
+    """Doubts of the reader that are no gaps, nor of what stands still throughout or may stand still."""
+    still = [f.where for f in _frozen(p, network)]
+    still += [c.name for c in p.sheet.columns if c.is_temperature and c.place in network.boundaries]
+    for note in p.samples.notes:
+        if "no rows from" not in note and not any(f"column '{name}': stands at" in note for name in still):
+            yield p.finding("", note, "look at it; use = false leaves a column out")
+
+
+INSIDE = (_noted, _frozen, _power, _reversed, _declared)
 
 
 def _rates(patients: list[Patient]) -> Iterator[Finding]:

@@ -88,6 +88,10 @@ def load_history(path: Path) -> History:
         return History()
     top = Table(read_toml(path, "a model.toml written by thermoscope"), str(path))
     revisions = tuple(_revision(t) for t in top.listed("revision"))
+    lines = path.read_bytes().count(b"\n")
+    if top.number("lines", lines) != lines or not revisions:  # the first line says how many: one that is cut off has it
+        raise top.error(f"has {lines} lines, not as many as were written: it was cut off or changed by hand",
+                        "the file as thermoscope wrote it, or none: the model as declared")  # fmt: skip
     top.close()
     if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
         raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")
@@ -111,10 +115,12 @@ def save_history(path: Path, history: History, before: History) -> History:
 
 def _text(history: History) -> str:
     document, revisions = tomlkit.document(), tomlkit.aot()
+    document.add("lines", 0)
     document.add(tomlkit.comment(HEADER))
     for revision in history.revisions:
         revisions.append(tomlkit.item(revision.document()))
     document.add("revision", revisions)
+    document["lines"] = tomlkit.dumps(document).count("\n")
     return tomlkit.dumps(document)
 
 
@@ -131,8 +137,7 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
         if name not in have:
             raise InputError(f"unknown parameter '{name}'", place, suggestion(name, have))
         low, high = have[name].low, have[name].high
-        slack = ROUNDED * max(abs(low), abs(high))
-        if not low - slack <= value <= high + slack:
+        if not low - ROUNDED * abs(low) <= value <= high + ROUNDED * abs(high):
             right = f"{low:g} to {high:g}; undo the step, or calibrate again"
             raise InputError(f"values {name} = {value:g} is out of its bounds", place, right)
 
@@ -153,7 +158,7 @@ def _inner(table: Table, key: str) -> Table:
 
 
 def _evidence(table: Table) -> dict[str, float | str]:
-    return {k: table.word(k) if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
+    return {k: v if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
 
 
 def _answers(table: Table) -> dict[str, bool]:

@@ -18,6 +18,7 @@ FIRST = 5  # readings that say where a column starts
 OFF_K = 15.0  # how near a start has to be to that of the others in another unit
 OFFSET_K = 12.0  # how far it has to be as it stands
 SPIKE_K, SPIKE_TIMES = 8.0, 20.0  # a reading that leaps and comes back, in K and in usual steps of its column
+SLOW_S, MOVES = 120.0, 0.1  # between rows, in which a winding may warm and cool; share of a range that is a move
 UNEVEN = 0.5  # of a long step of a clock, between nine in ten and one in ten of all
 WARM_K = 3.0  # a test in which nothing warms by more shows nothing
 LEAST_READINGS = 3  # of a sensor in a test, as of rows
@@ -123,6 +124,8 @@ def _spikes(p: Patient) -> Iterator[Finding]:
         y = values[finite]
         leap = np.minimum(np.abs(y[1:-1] - y[:-2]), np.abs(y[1:-1] - y[2:]))
         back = np.abs(y[2:] - y[:-2]) < 0.5 * leap
+        between = 0.5 * (p.samples.time[finite[2:]] - p.samples.time[finite[:-2]])
+        back &= (between < SLOW_S) | ~_moved(p, name)[finite[1:-1]]
         out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
         if out.size:
             at = p.samples.time[finite[out[0] + 1]]
@@ -130,13 +133,14 @@ def _spikes(p: Patient) -> Iterator[Finding]:
                           f"{at:g} s", "empty those cells; look for a loose contact")  # fmt: skip
 
 
-def _frozen(p: Patient) -> Iterator[Finding]:
-    """Sensors that never move while others do; what stands still for a while is noted where the file is read."""
-    moves = {n: float(np.nanmax(v) - np.nanmin(v)) for n, v in p.temperatures.items() if np.isfinite(v).any()}
-    if max(moves.values(), default=0.0) > WARM_K:
-        for name, move in moves.items():
-            if move == 0.0 and np.isfinite(p.temperatures[name]).sum() >= LEAST_READINGS:
-                yield p.finding(name, "never moves while others do: frozen?", "use = false, or another sensor")
+def _moved(p: Patient, name: str) -> NDArray[np.bool_]:
+    """Rows (n,) at which another column of a test without inputs, or an input, leaps and comes back too."""
+    out = np.full(p.samples.time.size, not p.inputs)
+    for other, values in p.samples.values.items():
+        step = np.diff(values)
+        far = np.abs(step) > MOVES * float(np.nanmax(values) - np.nanmin(values))
+        out[1:-1] |= (other != name) & far[:-1] & far[1:] & (step[:-1] * step[1:] < 0.0)
+    return out
 
 
 def _twins(p: Patient) -> Iterator[Finding]:
@@ -148,12 +152,4 @@ def _twins(p: Patient) -> Iterator[Finding]:
             yield p.finding(f"{a}, {b}", "are the same readings throughout", "one of them; check the logger's channels")
 
 
-def _noted(p: Patient) -> Iterator[Finding]:
-    """Doubts of the reader that are no gaps, nor of what stands still throughout."""
-    still = [f"column '{f.where}': stands at" for f in _frozen(p)]
-    for note in p.samples.notes:
-        if "no rows from" not in note and not any(words in note for words in still):
-            yield p.finding("", note, "look at it; use = false leaves a column out")
-
-
-RECORDING_CHECKS = (_noted, _units, _scale, _sparse, _clock, _spikes, _frozen, _twins)
+RECORDING_CHECKS = (_units, _scale, _sparse, _clock, _spikes, _twins)

@@ -10,15 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import file_stem
+from geom.text import visible
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
-from thermoscope.recordings.data_table import csv_text, rows_of
+from thermoscope.recordings.data_table import rows_of
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
     from validation.case import Test
 
 Worksheet = Mapping[str, Sequence[Any] | NDArray[Any]]  # column -> its cells
-UNREADABLE = str.maketrans("[]:*?/\\", "_______")  # what Excel forbids in the name of a worksheet
+UNREADABLE = str.maketrans("[]:*?/\\'", "________")  # what Excel forbids in the name of a worksheet, or at its ends
 
 
 def tables(folder: Folder) -> dict[str, Worksheet]:
@@ -66,14 +69,30 @@ def write_xlsx(path: Path, content: Mapping[str, Worksheet]) -> Path:
 
     book, memory = Workbook(write_only=True), io.BytesIO()
     for name, table in content.items():
-        sheet = book.create_sheet(name.translate(UNREADABLE)[:31])
+        sheet = book.create_sheet(visible(name).translate(UNREADABLE)[:31])
         sheet.freeze_panes = "A2"
         for row in rows_of(table):
-            sheet.append([str(cell) if isinstance(cell, float) and np.isinf(cell) else cell for cell in row])
+            sheet.append([_typed(sheet, value) for value in row])
     book.save(memory)
     return write_whole(path, memory.getvalue())
 
 
+def _typed(sheet: Any, value: Any) -> Any:
+    """What a cell of a worksheet holds: of a text always the text, also of one that looks like a formula."""
+    from openpyxl.cell import WriteOnlyCell
+
+    if isinstance(value, float) and np.isinf(value):
+        return str(value)
+    if not isinstance(value, str):
+        return value
+    cell = WriteOnlyCell(sheet, visible(value))
+    cell.data_type = "s"
+    return cell
+
+
 def write_csvs(folder: Path, content: Mapping[str, Worksheet]) -> list[Path]:
     """One file per table, named after it."""
-    return [write_whole(folder / f"{name.replace(' ', '-')}.csv", csv_text(table)) for name, table in content.items()]
+    return [
+        write_whole(folder / f"{file_stem(name.replace(' ', '-'))}.csv", csv_lines(rows_of(table)))
+        for name, table in content.items()
+    ]

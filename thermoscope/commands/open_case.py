@@ -7,6 +7,7 @@ from pathlib import Path
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder, find_case, load_case
+from thermoscope.case_folder.settings import read_settings
 from thermoscope.console.terminal import Progress, notes
 
 LOUD = 3  # findings that are said in full; doctor says all
@@ -18,6 +19,14 @@ def open_case(name: str, progress: Progress, untested: bool = False) -> Folder:
     folder = load_case(find_case(name), progress, untested=untested)
     notes([*folder.notes, *in_short(folder, name)])
     return folder
+
+
+def needs_geometry(name: str) -> None:
+    """Raises InputError, before anything is read or meshed, where a case has no machine to look at."""
+    settings = read_settings(find_case(name))
+    if settings.network is not None:
+        right = f"a case with a machine; or: thermoscope show picture {settings.path} curves"
+        raise InputError("has a network declared by hand, and so no geometry", settings.name, right)
 
 
 def in_short(folder: Folder, name: str) -> list[str]:

@@ -9,12 +9,15 @@ import math
 import os
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import Any
+
+from geom.errors import InputError
+from geom.text import visible
 
 LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
 GAP = "  "
@@ -140,7 +143,7 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
         return GAP.join(_padded(cells[j], widths[j], right[j]) for j in columns).rstrip()
 
     styles = ["bold" if any(c in table.marked for c in row) else "" for row in body]
-    head = [*([(folded(table.title, width)[0], "bold")] if table.title else []), (line(list(table.headers)), "dim")]
+    head = [*((title, "bold") for title in folded(table.title, width)[:1]), (line(list(table.headers)), "dim")]
     return [*head, *((line(row), style) for row, style in zip(body, styles, strict=True))]
 
 
@@ -196,6 +199,23 @@ def printed(answer: Answer) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    console = Console(soft_wrap=True)
-    for line, style in lay_out(answer, width(), _limit.get()):
-        console.print(Text(line, style if console.is_terminal else ""), soft_wrap=True)
+    class Terminal(Console):
+        def on_broken_pipe(self) -> None:
+            raise  # by default the program ends here, without a word
+
+    console = Terminal(soft_wrap=True)
+    with to_stdout():
+        for line, style in lay_out(answer, width(), _limit.get()):
+            console.print(Text(visible(line), style if console.is_terminal else ""), soft_wrap=True)
+
+
+@contextmanager
+def to_stdout() -> Iterator[None]:
+    """What is written in here has arrived. Raises InputError where nobody reads any more; the rest goes nowhere."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise InputError("was closed before all was written", "stdout",
+                         "a program that reads to the end, or --json FILE") from None  # fmt: skip

@@ -16,6 +16,8 @@ from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 
+from geom.text import visible
+
 Progress = Callable[[str], None]
 FILE = "stages.json"
 MOST = 200  # pieces of work that are remembered
@@ -145,6 +147,7 @@ def _display(stages: ProgressBar) -> Iterator[Progress]:
     if not console.is_terminal:
         yield lambda message: _line(stages.words(message)) if stages.enter(message) else None
         return
+    from rich.markup import escape
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
@@ -158,7 +161,7 @@ def _display(stages: ProgressBar) -> Iterator[Progress]:
             remaining = stages.left()
             bar.update(
                 task,
-                description=stages.words(message),
+                description=escape(visible(stages.words(message))),
                 total=remaining and 1.0,
                 completed=remaining[0] if remaining else 0.0,
             )
@@ -167,7 +170,7 @@ def _display(stages: ProgressBar) -> Iterator[Progress]:
 
 
 def _line(message: str) -> None:
-    print(message, file=sys.stderr, flush=True)
+    print(visible(message), file=sys.stderr, flush=True)
 
 
 def _file() -> Path:

@@ -12,7 +12,8 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from thermoscope.console.answer import Answer, Grid, printed
+from geom.text import visible
+from thermoscope.console.answer import Answer, Grid, printed, to_stdout
 from thermoscope.console.progress_bar import Progress, progress
 from thermoscope.files import write_whole
 
@@ -32,7 +33,7 @@ __all__ = [
 
 
 def _line(message: str) -> None:
-    print(message, file=sys.stderr, flush=True)
+    print(visible(message), file=sys.stderr, flush=True)
 
 
 NOTES_SO_FAR: ContextVar[set[str] | None] = ContextVar("said", default=None)  # where each is said once
@@ -95,7 +96,8 @@ def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Ans
     """The document to a file or to stdout, and the answer, except when stdout belongs to the document."""
     text = json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n"
     if target == STDOUT:
-        sys.stdout.write(text)
+        with to_stdout():
+            sys.stdout.write(text)
         return
     if target is not None:
         write_whole(Path(target), text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -10,15 +10,20 @@ from typing import Any
 import numpy as np
 
 from geom.description.machine import Machine
+from geom.description.roles import Role
 from geom.errors import InputError
+from lumped.machine.motor import boundaries, fluids, rated_inputs
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
 from thermoscope.bands import posterior_of
+from thermoscope.case_folder.cycle import find_cycle
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
+from thermoscope.case_folder.settings import Settings
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.machine_keys import FLOWS, MachineFile
 from thermoscope.rating import places, rated_point
+from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.verification.error_budget import model_of
 from validation.bands.at_rest import AtRest
 from validation.comparison.predict import thermal
@@ -81,6 +86,47 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     return problem, file
 
 
+def checked_request(settings: Settings, request: DesignRequest) -> None:
+    """Raises InputError for a name in a request that a machine file cannot mean, before its mesh is made."""
+    if request.cycle is not None:
+        find_cycle(settings.path, request.cycle)
+    file = None if settings.machine is None else MachineFile.read(settings.machine)
+    if file is None or settings.model_file.exists():  # what its effects add is not known without the network
+        return
+    sheets = [load_sheet(entry.sheet) for entry in settings.tests]
+    inputs = {*rated_inputs(file.machine), *(name for sheet in sheets for name in _inputs_of(sheet))}
+    _check_names(request.at or {}, {*inputs, *boundaries(file.machine)}, "--at", "is no input or boundary of the model")
+    _check_names(request.limits, temperatures_of(file.machine, sheets), "--limit", "is no temperature of the machine")
+    vary = request.vary or {}
+    for name in filter(file.knows, vary):
+        file.variable(name, vary[name])
+    variables = {*inputs, *(GAINS if request.cycle else ()), *filter(file.knows, vary), *(v.name for v in file.usual())}
+    _check_names(vary, variables, "--vary", "is nothing that a design could change")
+
+
+def _inputs_of(sheet: Sheet) -> set[str]:
+    """Inputs and boundaries that a test has."""
+    columns = {name for c in sheet.columns for name in (c.feeds, c.place)}
+    return {*columns, *sheet.inputs, *sheet.boundaries, *sheet.squares, *sheet.events}
+
+
+def temperatures_of(machine: Machine, sheets: Sequence[Sheet]) -> set[str]:
+    """Names, and roles, of all that a limit may be for."""
+    parts = (*machine.parts, *machine.fluids)
+    roles = {role.value for role in Role}
+    jackets = {f"{part.name}.outlet" for part in machine.fluids}
+    sensors = {f"sensor {c.name}" for sheet in sheets for c in sheet.columns}
+    sensors |= {f"sensor {mean.name}" for sheet in sheets for mean in sheet.means}
+    cells = {*fluids(machine), *boundaries(machine), *machine.sections.get("sensors", {})}
+    return {part.name for part in parts} | roles | jackets | sensors | cells
+
+
+def _check_names(names: Iterable[str], choices: Collection[str], option: str, what: str) -> None:
+    for name in names:
+        if name not in choices:
+            raise InputError(f"'{name}' {what}", option, suggestion(name, choices))
+
+
 def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -> tuple[Network, AtRest | None]:
     """The network with the parameters of a design; for a robust one with those of the table of doubt too."""
     if not robust:
@@ -131,7 +177,7 @@ def _gain(key: str, drive: Driven, bounds: tuple[float, float] | None) -> Variab
 
 def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
     """The vehicle of a cycle, its windings at the first limit."""
-    from thermoscope.case_folder.cycle import find_cycle, load_cycle
+    from thermoscope.case_folder.cycle import load_cycle
 
     cycle = load_cycle(find_cycle(folder.settings.path, str(request.cycle)), network, ratings)
     s = cycle.series

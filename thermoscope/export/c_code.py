@@ -12,6 +12,7 @@ from lumped.numerics import stages
 from lumped.numerics.steady_start import CONVERGED_K
 from lumped.numerics.terms import COLD, END, HOT, POINT, ROW
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
+from thermoscope.escapes import c_comment
 from thermoscope.export.flat import Flat, flat
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model
@@ -44,11 +45,7 @@ def sizes(model: Model) -> str:
     lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
     lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
     macro = "THERMAL_NETWORK_SIZES_H"
-    return "\n".join([_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
-
-
-def _comment(lines: Sequence[str]) -> str:
-    return "/* " + "\n   ".join(line.replace("*/", "* /") for line in lines) + " */"
+    return "\n".join([c_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def data(model: Model) -> str:

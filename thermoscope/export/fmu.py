@@ -14,6 +14,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 
 from geom.errors import MissingDependency
+from geom.text import visible
+from thermoscope.escapes import xml_text
 from thermoscope.export.c_code import RUNTIME, c_files
 from thermoscope.export.compilers import PLATFORMS, Platform, here, library
 from thermoscope.export.heading import heading
@@ -112,7 +114,7 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
             _put(archive, f"sources/{file}", text)
         if version == 3:
             _put(archive, "sources/buildDescription.xml", _build(name, files))
-        _put(archive, "documentation/README.txt", "\n".join([*heading(model), ""]))
+        _put(archive, "documentation/README.txt", "\n".join([*map(visible, heading(model)), ""]))
     return out.getvalue(), folders
 
 
@@ -124,6 +126,8 @@ def _put(archive: zipfile.ZipFile, name: str, content: str | bytes) -> None:
 
 def _text(root: Element) -> bytes:
     indent(root)
+    for element in root.iter():
+        element.attrib = {key: xml_text(value) for key, value in element.attrib.items()}
     return bytes(tostring(root, "UTF-8", xml_declaration=True))
 
 

@@ -12,6 +12,7 @@ from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.sources.loss_measured import MeasuredLoss
+from thermoscope.escapes import c_comment
 from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
 from thermoscope.export.model import Model, Output, packed
 from validation.case import Channel, Test
@@ -102,8 +103,7 @@ def _sizes(of: ObserverModel) -> str:
     ]
     lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
     macro = "THERMAL_OBSERVER_SIZES_H"
-    about = "\n   ".join(comments).replace("*/", "* /")
-    return "\n".join([f"/* {about} */", f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
+    return "\n".join([c_comment(comments), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def _data(of: ObserverModel) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
+import signal
+import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -15,22 +17,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.text import visible
+from thermoscope.caches import cache_folder
+from thermoscope.escapes import toml_key, toml_value
 from thermoscope.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of
 from thermoscope.importing.guess import Guess
 from thermoscope.recordings.data_table import csv_text
 
-BARE = re.compile(r"[A-Za-z0-9_-]+")
 TIME = "time_s"
 ROLES = ("calibrate", "validate", "hold-out")
 
 
 @contextmanager
 def folder_whole(folder: Path) -> Iterator[Path]:
-    """A folder to fill that takes its place only when it is complete; gone if anything fails.
+    """A folder to fill that takes its place only when it is complete; gone if anything fails, or the process is told
+    to end. Until then it is in the cache, where that is on the same disk, else hidden beside its place.
 
-    What a killed process left of it is hidden, counts for nothing, and goes with the next one of that name.
+    What a killed process left of it counts for nothing, and goes with the next one.
     """
     if within_inputs(folder):
         raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
@@ -38,26 +43,51 @@ def folder_whole(folder: Path) -> Iterator[Path]:
         raise InputError("is there already", str(folder), "--out with the name of a new folder")
     if not folder.parent.is_dir():
         raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
-    for left in abandoned(folder.parent, re.compile(rf"\.{re.escape(folder.name)}\.[0-9a-f]{{32}}")):
+    start = _start_of(folder)
+    for left in abandoned(start.parent, re.compile(rf"{re.escape(start.name)}\.[0-9a-f]{{32}}")):
         shutil.rmtree(left, ignore_errors=True)
-    partial = folder.with_name(f".{folder.name}.{uuid4().hex}")
+    partial = start.with_name(f"{start.name}.{uuid4().hex}")
+    with _unwound_by_termination():
+        try:
+            partial.mkdir()
+            with locked(partial):
+                yield partial
+                os.rename(partial, folder)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+
+def _start_of(folder: Path) -> Path:
+    """Where a folder is begun: from there it can be renamed to its place."""
+    cache = cache_folder()
+    with suppress(OSError):
+        cache.mkdir(parents=True, exist_ok=True)
+        if os.access(cache, os.W_OK) and cache.stat().st_dev == folder.absolute().parent.stat().st_dev:
+            return cache / "new"
+    return folder.with_name(f".{folder.name}")
+
+
+@contextmanager
+def _unwound_by_termination() -> Iterator[None]:
+    """A process that is told to end (SIGTERM) unwinds in here, as one that is interrupted does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
-        partial.mkdir()
-        with locked(partial):
-            yield partial
-            os.rename(partial, folder)
+        yield
     finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        signal.signal(signal.SIGTERM, before)
 
 
 def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
     """model : puts the machine or network into the folder and returns its line of case.toml."""
-    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {quoted(name)}",
+    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {toml_value(name)}",
              model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
-        lines += [f"[tests.{key(draft.name)}]", f'role = "{role}"', ""]
+        lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         write_test(folder / "tests", draft)
-    write_whole(folder / "case.toml", "\n".join(lines))
+    write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
 
 def roles(count: int) -> list[str]:
@@ -71,7 +101,7 @@ def write_test(folder: Path, draft: Draft) -> None:
     """The recordings as plain CSV, each with its own clock, and the sheet."""
     for i, record in enumerate(draft.records):
         write_whole(folder / _file(draft, i), csv_text(readings(record)))
-    write_whole(folder / f"{draft.name}.toml", "\n".join(_sheet(draft)) + "\n")
+    write_whole(folder / f"{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
 
 
 def _file(draft: Draft, i: int) -> str:
@@ -92,7 +122,7 @@ def _sheet(draft: Draft) -> Iterator[str]:
     first = draft.records[0]
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
-    yield from ("", "[test]", f'time = "{TIME}"', f"description = {quoted(f'{first.name}, {first.clock.words}')}",
+    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(f'{first.name}, {first.clock.words}')}",
                 'initial = "first-readings"')  # fmt: skip
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:
@@ -101,9 +131,9 @@ def _sheet(draft: Draft) -> Iterator[str]:
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:
         yield from ("", "[root_sum_square]")
-        yield from (f"{key(n)} = {json.dumps(list(of), ensure_ascii=False)}" for n, of in draft.squares.items())
+        yield from (f"{toml_key(n)} = {toml_value(list(of))}" for n, of in draft.squares.items())
     for i, record in enumerate(draft.records[1:], 1):
-        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {quoted(_file(draft, i))}",
+        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {toml_value(_file(draft, i))}",
                     f'time = "{TIME}"', f"shift_s = {record.shift_s:.6g}   # {record.how}")  # fmt: skip
     for guess in draft.guesses:
         yield from _column(guess)
@@ -112,25 +142,16 @@ def _sheet(draft: Draft) -> Iterator[str]:
 def _constants(table: str, values: object) -> Iterator[str]:
     if isinstance(values, dict) and values:
         yield from ("", f"[{table}]   # constant: not recorded")
-        yield from (f"{key(name)} = {value:g}" for name, value in values.items())
+        yield from (f"{toml_key(name)} = {value:g}" for name, value in values.items())
 
 
 def _column(g: Guess) -> Iterator[str]:
     """A column's table; of one that is left out a line that says why."""
     yield ""
     if not g.used:
-        yield f"# {json.dumps(g.column, ensure_ascii=False)} is left out: {g.doubt}"
+        yield f"# {toml_value(g.column)} is left out: {g.doubt}"
         return
-    yield f"[columns.{key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    yield f"[columns.{toml_key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
     yield f'quantity = "{g.quantity}"'
     yield f'unit = "{g.unit}"'
-    yield f"place = {quoted(g.place)}" if g.place else f"input = {quoted(g.feeds)}"
-
-
-def quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
-def key(name: str) -> str:
-    """A name as a TOML key."""
-    return name if BARE.fullmatch(name) else quoted(name)
+    yield f"place = {toml_value(g.place)}" if g.place else f"input = {toml_value(g.feeds)}"

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from geom.errors import InputError
+from geom.text import visible
 from lumped.schemas.reader import suggestion
 from thermoscope.importing.cells import number, unit_of
 from thermoscope.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
@@ -116,7 +117,7 @@ class Dialogue:
 
 def _answer(question: str, default: str) -> str:
     """A line from the terminal, without one an error."""
-    print(f"{question}{f' [{default}]' if default else ''} ", end="", file=sys.stderr, flush=True)
+    print(visible(f"{question}{f' [{default}]' if default else ''} "), end="", file=sys.stderr, flush=True)
     line = sys.stdin.readline()
     if not line:
         raise InputError(f"nobody answers: {question}", "thermoscope test new", "--yes takes the guesses")

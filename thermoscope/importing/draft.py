@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geom.description.names import cut_short
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.guess import Guess, in_memory
 from thermoscope.importing.target import Target
@@ -95,7 +96,8 @@ def sample_of(drafts: Sequence[Draft]) -> float:
 def test_name(file: Path, names: Sequence[str]) -> str:
     """The file's name without endings and odd characters, numbered where it is taken."""
     stem = file.name.partition(".")[0] or "test"
-    name = "".join(c if c.isalnum() or c in "-_" else "-" for c in stem).strip("-") or "test"
+    name = "".join(c if c.isalnum() or c in "-_" else "-" for c in stem).strip("-")
+    name = cut_short(name) or "test"
     return name if name not in names else next(f"{name}-{i}" for i in range(2, 10**6) if f"{name}-{i}" not in names)
 
 

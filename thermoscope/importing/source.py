@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import plain_header
 from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
 from thermoscope.importing.rows import layout
@@ -116,7 +117,7 @@ def _of_rows(file: Path, rows: list[Any]) -> Source:
     columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
     whole = in_thousands(columns)
     columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
-    names = plan.names if all(plan.names) else tuple(name or f"column {j + 1}" for j, name in enumerate(plan.names))
+    names = _plain(plan.names)
     unnamed = not any(plan.names)
     notes = [f"{file.name}: no header; columns are called after their number"] if unnamed else []
     if plan.preamble:
@@ -129,7 +130,14 @@ def _of_rows(file: Path, rows: list[Any]) -> Source:
 def _of_frame(file: Path) -> Source:
     table = read_recording(file)
     units, start = _described(file)
-    return _source(file, table.columns, list(table.cells.values()), units, [], start)
+    names = _once(_plain(table.columns))
+    units = {name: units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
+    return _source(file, names, list(table.cells.values()), units, [], start)
+
+
+def _plain(names: Sequence[str]) -> list[str]:
+    """Names of columns as a sheet may have them."""
+    return [plain_header(name) or f"column {j + 1}" for j, name in enumerate(names)]
 
 
 def _source(

@@ -6,14 +6,15 @@ It lets a comparison run on the first day. Its numbers are orders of magnitude w
 from __future__ import annotations
 
 import itertools
-import json
 import re
 from collections.abc import Sequence
 
 import numpy as np
 
+from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
+from thermoscope.escapes import toml_key, toml_value
 from thermoscope.importing.guess import Guess, in_memory
 from thermoscope.importing.source import Source
 from thermoscope.importing.words import QUANTITY, SETPOINT, roles_of, tokens
@@ -81,7 +82,7 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
     for i, (feeds, (source, g)) in enumerate(selection, 1):
         mean = float(np.sqrt(np.nanmean(np.square(in_memory(source, g))))) or 1.0
         watts = mean if kind == "power" else ASSUMED_W
-        of = f"of = {{ input = {json.dumps(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
+        of = f"of = {{ input = {toml_value(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
         lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, of))
         total += watts
     return "\n".join(lines), total
@@ -96,7 +97,7 @@ def _heats(source: Source, g: Guess) -> bool:
 
 
 def _loss(name: str, at: str, watts: float, of: str) -> str:
-    lines = [f"[losses.{name}]", 'kind = "constant"', f"at = {json.dumps(at)}", f"P_W = {watts:.4g}", of]
+    lines = [f"[losses.{name}]", 'kind = "constant"', f"at = {toml_value(at)}", f"P_W = {watts:.4g}", of]
     return "\n".join([*(line for line in lines if line), f"prior_sd = {SPREAD}", ""])
 
 
@@ -107,14 +108,15 @@ def _toml(
     lines = [
         "# A first network made from the columns alone: every number is an order of magnitude. Put in what you know:",
         "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope model calibrate.", "",
-        "[network]", f"name = {json.dumps(name)}", f"boundaries = {json.dumps(list(boundaries))}", "",
+        "[network]", f"name = {toml_value(name)}", f"boundaries = {toml_value(list(boundaries))}", "",
     ]  # fmt: skip
     for node in nodes:
         role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
-        lines += [f"[nodes.{json.dumps(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
+        lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
     inside = [(a, b, 5 * G) for a, b in itertools.pairwise(nodes)]
     outside = [(n, b, G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
-    for a, b, size in (*inside, *outside):
-        lines += [f"[links.{json.dumps(f'{a}-{b}')}]", f"between = {json.dumps([a, b])}", f"G_W_K = {size:.3g}",
+    for i, (a, b, size) in enumerate((*inside, *outside), 1):
+        link = f"{a}-{b}" if is_plain(f"{a}-{b}") else f"link-{i}"
+        lines += [f"[links.{toml_key(link)}]", f"between = {toml_value([a, b])}", f"G_W_K = {size:.3g}",
                   f"prior_sd = {SPREAD}", ""]  # fmt: skip
     return "\n".join([*lines, heat])

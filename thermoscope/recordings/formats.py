@@ -121,9 +121,10 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
 
 def _xlsx(file: Path, worksheet: str) -> Columns:
     with workbook(file) as book:
-        if worksheet and worksheet not in book.sheetnames:
-            raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, book.sheetnames))
-        header, *rows = worksheet_rows(book[worksheet or book.sheetnames[0]]) or [[]]
+        sheets = {sheet.title: sheet for sheet in book.worksheets}  # without those that are charts
+        if not sheets or (worksheet and worksheet not in sheets):
+            raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
+        header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))]) or [[]]
     names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
     return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)
 

@@ -10,6 +10,7 @@ from uuid import uuid4
 
 from aiohttp import BodyPartReader, MultipartReader, web
 
+from geom.description.names import cut_short, file_stem
 from geom.errors import InputError
 from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, save_case
 from thermoscope.console.terminal import Progress
@@ -138,7 +139,8 @@ async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Pat
     async for part in parts:
         if not isinstance(part, BodyPartReader) or not part.filename:
             continue
-        name = "".join(c for c in Path(part.filename).name if c.isprintable()).lstrip(".") or "recording"
+        plain = Path(file_stem(Path(part.filename).name))
+        name = cut_short(plain.stem.lstrip(".")) + cut_short(plain.suffix)
         inside = folder / uuid4().hex  # two files of one name
         inside.mkdir()
         files.append(inside / name)

@@ -23,7 +23,7 @@ _STYLE: dict[Any, Any] = {
     "axes.titlecolor": LIGHT.ink, "text.color": LIGHT.ink, "xtick.color": LIGHT.ink, "ytick.color": LIGHT.ink,
     "axes.grid": True, "grid.color": LIGHT.faint, "grid.alpha": 0.25, "grid.linewidth": 0.6, "xtick.major.size": 0,
     "ytick.major.size": 0, "lines.linewidth": 1.6, "svg.fonttype": "none", "svg.hashsalt": "thermoscope",
-    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.use": True, "text.parse_math": False,
 }  # fmt: skip
 _CSS = {LIGHT.ink: "ink", LIGHT.faint: "faint", LIGHT.paper: "paper", BLUE: "blue", VERMILION: "red"}
 

@@ -10,7 +10,7 @@ from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, ORANGE, Theme
 from viz.data import Comparison, short
 from viz.figures.curves import wrongness
-from viz.live.style import faded, figure, plain
+from viz.live.style import as_text, faded, figure, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -33,7 +33,9 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
     (t, unit), thin = comparison.clock, comparison.thin
     x, y, band = plain(t[thin]), np.asarray(c.y, float)[thin], comparison.limit_K(c)
     out = figure(
-        theme, (0.66, 0.34), title={"text": f"{short(c.name)} ({c.place})", "x": 0.02, "y": 0.98, "font": {"size": 14}}
+        theme,
+        (0.66, 0.34),
+        title={"text": as_text(f"{short(c.name)} ({c.place})"), "x": 0.02, "y": 0.98, "font": {"size": 14}},
     )
     shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
     for values, style in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
@@ -56,7 +58,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     """Measured - modelled of every sensor over time (K); those that are over are coloured."""
     (t, unit), thin = comparison.clock, comparison.thin
-    out = figure(theme, title={"text": f"{comparison.test.name}: what the model misses", "x": 0.02})
+    out = figure(theme, title={"text": f"{as_text(comparison.test.name)}: what the model misses", "x": 0.02})
     for c in comparison.channels:
         r = comparison.residual(c)
         colour = wrongness(r, comparison.limit_K(c))
@@ -73,23 +75,28 @@ def against_input(comparison: Comparison, channel: str, name: str, *, theme: The
         raise InputError(f"no input '{name}'", f"test '{comparison.test.name}'", f"known: {', '.join(inputs)}")
     (t, unit), thin = comparison.clock, comparison.thin
     x = np.broadcast_to(np.asarray(inputs[name], float), t.shape)[thin]
-    out = figure(theme, title={"text": f"{short(c.name)}: residual against {name}", "x": 0.02})
+    out = figure(theme, title={"text": as_text(f"{short(c.name)}: residual against {name}"), "x": 0.02})
     dots = {"color": plain(t[thin]), "colorscale": "Viridis", "size": 5, "colorbar": {"title": f"time ({unit})"}}
     out.add_scatter(x=plain(x), y=plain(comparison.residual(c)[thin]), mode="markers", marker=dots, showlegend=False)
-    out.update_xaxes(title=name)
+    out.update_xaxes(title=as_text(name))
     out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)
     return out
 
 
 def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     """Modelled against measured (degC), a colour per sensor; a right model lies on the line."""
-    out, thin = figure(theme, title={"text": f"{comparison.test.name}: modelled against measured", "x": 0.02}), 4
+    out, thin = (
+        figure(theme, title={"text": f"{as_text(comparison.test.name)}: modelled against measured", "x": 0.02}),
+        4,
+    )
     low, high = np.inf, -np.inf
     for c in comparison.channels:
         y, model = np.asarray(c.y, float), np.asarray(comparison.model[c.name], float)
         pair = np.concatenate([y[np.isfinite(y)], model])
         low, high = min(low, float(pair.min())), max(high, float(pair.max()))
-        out.add_scatter(x=plain(y[::thin]), y=plain(model[::thin]), mode="markers", name=short(c.name), marker_size=4)
+        out.add_scatter(
+            x=plain(y[::thin]), y=plain(model[::thin]), mode="markers", name=as_text(short(c.name)), marker_size=4
+        )
     out.add_scatter(x=[low, high], y=[low, high], mode="lines", showlegend=False, line={"color": theme.ink, "width": 1})
     out.update_xaxes(title="measured (°C)")
     out.update_yaxes(title="modelled (°C)", scaleanchor="x")
@@ -99,6 +106,6 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
 def _line(out: go.Figure, x: list, y: np.ndarray, name: str, colour: str, row: int, dash: str = "solid") -> None:
     style = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": dash}
     out.add_scatter(
-        x=x, y=plain(y), mode="lines", name=name, line=style, showlegend=row == 1, row=row, col=1,
+        x=x, y=plain(y), mode="lines", name=as_text(name), line=style, showlegend=row == 1, row=row, col=1,
         hovertemplate="%{y:.2f}",
     )  # fmt: skip

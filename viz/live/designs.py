@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from viz.colours import LIGHT, Theme
-from viz.live.style import figure
+from viz.live.style import as_text, figure
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -33,7 +33,7 @@ def parallel_coordinates(
 
     out = figure(theme, title={"text": "Every design, objectives first", "x": 0.02})
     words = {**{o: WORDS.get(o, o) for o in objectives}, **variables}
-    axes = [{"label": word, "values": column(rows, n)} for n, word in words.items()]
+    axes = [{"label": as_text(word), "values": column(rows, n)} for n, word in words.items()]
     line = {"color": [float(r[objectives[0]]) for r in rows], "colorscale": SCALE, "showscale": False}
     out = go.Figure(go.Parcoords(dimensions=axes, line=line, labelangle=-20, labelside="top"), layout=out.layout)
     out.update_layout(margin={"l": 70, "r": 70, "t": 150, "b": 40}, height=480)
@@ -73,5 +73,5 @@ def page(rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str,
     """Both figures as one HTML page that needs no network.  variables : column of the rows -> its label"""
     first = parallel_coordinates(rows, objectives, variables).to_html(full_html=False, include_plotlyjs=True)
     second = objective_space(rows, objectives).to_html(full_html=False, include_plotlyjs=False)
-    head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title></head>'
+    head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{as_text(title)}</title></head>'
     return f"{head}<body>{first}{second}</body></html>\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,11 @@ def figure(theme: Theme = LIGHT, rows: Sequence[float] = (1.0,), **layout: Any) 
     out.update_xaxes(**grid)
     out.update_yaxes(**grid)
     return out
+
+
+def as_text(name: str) -> str:
+    """A name as a label that Plotly, which takes some tags, shows as it is."""
+    return escape(name, quote=False)
 
 
 def faded(colour: str, opacity: float) -> str:

@@ -21,12 +21,15 @@ DISTANCE = 1.1  # of the machine's diagonal: fills the view at rerun's own angle
 
 def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], with_history: bool) -> rrb.Blueprint:
     """The views; the curves of channel `first` lie on top, the time axis spans the test, the camera sees `points`."""
+    import rerun as rr
     import rerun.blueprint as rrb
 
     end = float(comparison.test.time[-1])
     names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
     low = rrb.Corner2D.RightBottom  # free where a machine warms up
-    warming = (_over_time(f"curves/{name}", f"{short(name)} (°C)", end, low) for name in names)
+    warming = (
+        _over_time(f"curves/{rr.escape_entity_path_part(name)}", f"{short(name)} (°C)", end, low) for name in names
+    )
     curves = rrb.Tabs(*warming, active_tab=0)
     shares = "inputs, shares of the largest"
     below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []

@@ -6,6 +6,7 @@ nothing listens on the network. Open it with `rerun FILE.rrd`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from validation.case import Channel
 
 Array = NDArray[np.float64]
+MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
 TIME, REVISION = "test_time", "revision"
 
 
@@ -170,14 +172,17 @@ def _markers(
 
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
+    import rerun as rr
+
     for channel in c.channels:
-        _series(stream, f"curves/{channel.name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
-        _series(stream, f"curves/{channel.name}/model", c.test.time, c.model[channel.name], BLUE, "model")
+        name = rr.escape_entity_path_part(channel.name)
+        _series(stream, f"curves/{name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
+        _series(stream, f"curves/{name}/model", c.test.time, c.model[channel.name], BLUE, "model")
         if c.before is not None:
             earlier = c.before[channel.name]
-            _series(stream, f"curves/{channel.name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
+            _series(stream, f"curves/{name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
         colour = wrongness(c.residual(channel), c.limit_K(channel))
-        _series(stream, f"residual/{channel.name}", c.test.time, c.residual(channel), colour, short(channel.name))
+        _series(stream, f"residual/{name}", c.test.time, c.residual(channel), colour, short(channel.name))
 
 
 def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
@@ -193,7 +198,8 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
     import rerun as rr
 
     for (name, role), errors in error_paths(history).items():
-        path, (colour, width) = f"error/{name}", (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
+        path = f"error/{rr.escape_entity_path_part(name)}"
+        colour, width = (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
         name = f"{name} ({role})"
         style = rr.SeriesLines(colors=_rgba(colour), widths=width, names=name, interpolation_mode="StepAfter")
         stream.log(path, style, static=True)
@@ -202,7 +208,9 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
     for i, text in enumerate(["as built", *(f"{r['action']} {r.get('effect') or ''}" for r in history)]):
         if history:
             stream.set_time(REVISION, sequence=i)
-            stream.log("step", rr.TextDocument(f"# Revision {i}\n\n{text}", media_type="text/markdown"))
+            stream.log(
+                "step", rr.TextDocument(f"# Revision {i}\n\n{MARKED.sub(MARK, text)}", media_type="text/markdown")
+            )
 
 
 def _rgba(colour: str) -> int:

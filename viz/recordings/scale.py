@@ -44,9 +44,10 @@ def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) ->
         value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
         largest = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
         style = rr.SeriesLines(colors=int(colour[1:] + "ff", 16), names=f"{name} / {largest:.4g}")
-        stream.log(f"inputs/{name}", style, static=True)
+        path = f"inputs/{rr.escape_entity_path_part(name)}"
+        stream.log(path, style, static=True)
         index = rr.TimeColumn(timeline, duration=np.asarray(test.time, float))
-        stream.send_columns(f"inputs/{name}", indexes=[index], columns=rr.Scalars.columns(scalars=value / largest))
+        stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=value / largest))
 
 
 def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:

@@ -37,7 +37,12 @@ def _draws(window: str) -> bool:
     environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window}
     try:
         process = subprocess.run(
-            [sys.executable, "-c", _DRAW], env=environment, capture_output=True, text=True, timeout=60, check=False
+            [sys.executable, "-P", "-c", _DRAW],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
         )
     except (OSError, subprocess.TimeoutExpired):
         return False

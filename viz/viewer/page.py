@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -131,9 +132,8 @@ def render(content: Mapping[str, Any]) -> str:
     """The page as text. The data stand in a block that no browser runs."""
     page, css = (files("viz.viewer").joinpath(f"viewer.{end}").read_text(encoding="utf-8") for end in ("html", "css"))
     data = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    for key, text in (("TITLE", escape(content["title"])), ("CSS", css), ("DATA", data), ("SCRIPT", script())):
-        page = page.replace(f"@{key}@", text, 1)
-    return page
+    pieces = {"@TITLE@": escape(content["title"]), "@CSS@": css, "@DATA@": data, "@SCRIPT@": script()}
+    return re.sub("|".join(pieces), lambda mark: pieces[mark[0]], page)  # once: a piece may hold a mark
 
 
 def script() -> str:

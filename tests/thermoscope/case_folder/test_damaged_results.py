@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 import sys
 import time
 
@@ -167,15 +168,45 @@ def test_what_cannot_be_read_is_as_if_it_were_not_there(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks on folders")
-def test_what_a_killed_new_left_goes_with_the_next(tmp_path):
-    left, other = tmp_path / f".made.{'a' * 32}", tmp_path / ".made.notes"
+@pytest.mark.parametrize("cache", ["cache", "file"])
+def test_what_a_killed_new_left_goes_with_the_next(tmp_path, monkeypatch, cache):
+    """Begun in the cache, or hidden beside its place where there can be no cache."""
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / cache))
+    begun = tmp_path / "cache" / "new" if cache == "cache" else tmp_path / "work" / ".made"
+    left, other = begun.with_name(f"{begun.name}.{'a' * 32}"), begun.with_name(f"{begun.name}.notes")
+    (tmp_path / "work").mkdir()
     for path in (left, other):
-        path.mkdir()
+        path.mkdir(parents=True)
         os.utime(path, (time.time() - 60,) * 2)
-    with folder_whole(tmp_path / "made") as partial:
+    with folder_whole(tmp_path / "work" / "made") as partial:
         assert not left.exists()
+        assert partial.parent == begun.parent
         os.utime(partial, (time.time() - 60,) * 2)
-        with folder_whole(tmp_path / "made"):  # the first is still at work: it stays
+        with folder_whole(tmp_path / "work" / "made"):  # the first is still at work: it stays
             assert partial.exists()
-        shutil.rmtree(tmp_path / "made")
-    assert sorted(p.name for p in tmp_path.iterdir()) == [".made.notes", "made"]
+        shutil.rmtree(tmp_path / "work" / "made")
+    assert [p.name for p in begun.parent.iterdir() if p != begun.with_name("made")] == [other.name]
+    assert (tmp_path / "work" / "made").is_dir()
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from thermoscope.importing.case_files import folder_whole
+with folder_whole(Path("made")) as partial:
+    (partial / "case.toml").write_text("half")
+    os.kill(os.getpid(), getattr(signal, sys.argv[1]))
+"""
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("number", ["SIGTERM", "SIGKILL"])
+def test_a_killed_new_leaves_nothing(tmp_path, number):
+    work, cache = tmp_path / "work", tmp_path / "cache"
+    work.mkdir()
+    done = subprocess.run([sys.executable, "-c", KILLED, number], cwd=work, check=False,
+                          env={**os.environ, "THERMOSCOPE_CACHE": str(cache)})  # fmt: skip
+    assert done.returncode != 0
+    assert list(work.iterdir()) == []
+    assert number == "SIGKILL" or list(cache.iterdir()) == []

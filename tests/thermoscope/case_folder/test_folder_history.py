@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from geom.errors import InputError
-from thermoscope.case_folder.history import History, Revision, load_history, save_history
+from lumped.model.network import Parameter
+from thermoscope.case_folder.history import History, Revision, checked_values, load_history, save_history
 from thermoscope.files import write_whole
 
 FIRST = Revision(0, "calibrate", values={"link.a": 1.25}, intervals={"link.a": (1.0, 1.5)}, rmse_K={"t": (3.0, 2.0)})
@@ -42,9 +43,32 @@ def test_unknown_revision():
         History().and_then(FIRST).back_to(7)
 
 
+def test_a_file_cut_at_the_end_of_any_line_is_refused(tmp_path):
+    path = tmp_path / "model.toml"
+    save_history(path, History().and_then(FIRST).and_then(SECOND), History())
+    lines = path.read_text().splitlines(keepends=True)
+    for count in range(len(lines)):
+        path.write_text("".join(lines[:count]))
+        with pytest.raises(InputError):
+            load_history(path)
+    path.write_text("".join(lines))
+    assert load_history(path).last.number == 2
+    path.write_text("".join(lines[1:]).replace("\n", "\r\n"))  # of an older version, by another system
+    assert load_history(path).last.number == 2
+
+
+def test_a_value_of_nothing_is_out_of_the_bounds_of_a_factor():
+    parameter = Parameter("link.a", (("link:a", 1.0),))
+    for value in (0.0, 1e-300, 0.99 * parameter.low):
+        with pytest.raises(InputError, match="out of its bounds"):
+            checked_values(Revision(1, "calibrate", values={"link.a": value}), [parameter], "model.toml")
+    checked_values(Revision(1, "calibrate", values={"link.a": parameter.low * (1 - 1e-9)}), [parameter], "model.toml")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
+        ("", "cut off"),
         ("[[revision]]\nnumber = 2\naction = 'add'\n", "numbered"),
         ("[[revision]]\nnumber = 1\naction = 'guess'\n", "guess"),
         ("[[revision]]\nnumber = 1\naction = 'add'\nvalue = 3\n", "did you mean 'values'"),

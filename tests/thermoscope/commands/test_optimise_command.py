@@ -13,10 +13,13 @@ from geom import load_machine
 from geom.description.reading import read_geometry
 from geom.errors import InputError
 from geom.families import families
+from thermoscope.case_folder.runs import mean_rows
 from thermoscope.cli import app
 from thermoscope.commands.use.optimise import read_bounds
 from thermoscope.design.condensations import Condensations
+from thermoscope.design.design_problem import temperatures_of
 from thermoscope.design.machine_keys import MachineFile, machine_file_text
+from thermoscope.pipeline import build
 from validation.optimisation.space import Space
 
 EFFORT = ("--population", "12", "--generations", "4")
@@ -147,3 +150,25 @@ def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
     rise = found[""]["peak_degC"] - 20.0
     assert 0.1 < (found["--robust"]["peak_degC"] - found[""]["peak_degC"]) / rise < 1.0
     assert found["--robust"]["copper_W"] == pytest.approx(found[""]["copper_W"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--limit", "windng=155"), "'windng' is no temperature of the machine"),
+        (("--limit", "winding=155", "--at", "speed=1"), "'speed' is no input or boundary"),
+        (("--limit", "winding=155", "--vary", "geometry.jacket.heigt_mm=8:20"), "is nothing that a design could"),
+        (("--limit", "winding=155", "--cycle", "none"), "no such cycle"),
+    ],
+)
+def test_options_are_checked_before_anything_is_meshed(thermoscope, tmp_path, monkeypatch, arguments, words):
+    monkeypatch.setattr("thermoscope.pipeline.build", lambda *_, **__: pytest.fail("meshed"))
+    said = thermoscope("use", "optimise", "series-dc-100kw-jacket-one", *arguments, "--out", tmp_path / "designs")
+    assert said.code == 2
+    assert words in said.err
+
+
+def test_what_a_limit_may_be_for_is_known_without_a_mesh():
+    """Of a machine whose network is made: every mean of it is known from its file."""
+    machine = load_machine("pmsm-m1")
+    assert set(mean_rows(build(machine).network)) <= temperatures_of(machine, [])

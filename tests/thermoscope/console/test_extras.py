@@ -10,7 +10,8 @@ import pytest
 
 from thermoscope.extras import EXTRAS
 
-PYPI = {"skfem": "scikit-fem", "PIL": "pillow", "rerun": "rerun-sdk", "nptdms": "npTDMS", "OCP": "cadquery",
+PYPI = {"skfem": "scikit-fem", "PIL": "pillow",
+        "imageio_ffmpeg": "imageio-ffmpeg", "rerun": "rerun-sdk", "nptdms": "npTDMS", "OCP": "cadquery",
         "vtk": "pyvista", "vtkmodules": "pyvista"}  # fmt: skip
 HEAVY = sorted({p for e in EXTRAS.values() for p in e.packages})
 RUN = f"""
@@ -75,3 +76,20 @@ def test_the_extras_are_those_of_the_project(root):
         brought = {line.split(">")[0].split("[")[0].lower() for line in declared[extra.name]}
         assert {PYPI.get(p, p).lower() for p in extra.packages} <= brought
     assert all(distribution(PYPI.get(p, p)) for p in HEAVY)
+
+
+@pytest.mark.heavy
+def test_a_missing_part_is_said_before_any_work_and_is_the_right_one(case):
+    """A declared network has no geometry, whatever is installed; an optimisation lacks its method first."""
+    asked = {
+        "show viewer CASE": "no geometry", "show film CASE": "no geometry", "show viewer road-test": "[view]",
+        "use optimise road-test --limit winding=155": "[optimise]", "show report road-test": "[view]",
+        "model build tefc-industrial": "[cad]", "use optimise CASE --help": "Usage",
+    }  # fmt: skip
+    for (words, right), (code, text) in zip(asked.items(), said(case, list(asked)), strict=True):
+        if right == "Usage":
+            assert code == 0
+            continue
+        assert code == 2, (words, text)
+        assert right in text
+        assert not [line for line in text.splitlines() if not line.startswith(("error: ", "#"))], text

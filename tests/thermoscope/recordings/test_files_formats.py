@@ -3,8 +3,10 @@
 import io
 
 import numpy as np
+import openpyxl
 import pandas as pd
 import pytest
+from openpyxl.chart import LineChart
 from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
@@ -237,3 +239,15 @@ def test_workbook_holds_input_and_results(tmp_path):
     assert np.sqrt((gap**2).mean()) == pytest.approx(rmse["road", "T_yoke"])
     written = write_csvs(tmp_path / "csv", content)
     assert pd.read_csv(written[1])["rmse_K"].to_numpy() == pytest.approx(errors["rmse_K"])
+
+
+def test_a_chart_sheet_holds_no_table(tmp_path):
+    """The first sheet that has cells is read; a chart by its name is no worksheet."""
+    book = openpyxl.Workbook()
+    for row in (["time_s", "T"], [0, 20.0], [1, 21.0], [2, 22.0]):
+        book.active.append(row)
+    book.create_chartsheet("drawn", 0).add_chart(LineChart())
+    book.save(tmp_path / "x.xlsx")
+    assert read_recording(tmp_path / "x.xlsx").columns == ["time_s", "T"]
+    with pytest.raises(InputError, match="no worksheet 'drawn'"):
+        read_recording(tmp_path / "x.xlsx", "drawn")

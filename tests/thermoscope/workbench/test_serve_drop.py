@@ -124,6 +124,20 @@ def test_files_arrive_under_their_names_and_nowhere_else(case):
     assert seen == [("a.csv", b"1"), ("b.csv", b"2"), ("a.csv", b"3")]
 
 
+def test_a_name_that_no_file_may_have_is_made_one(case):
+    """300 letters, an ending without end, dots and devices: stored all the same, under a short name."""
+    names = ["a%00b.csv", "x" * 300 + ".csv", "ä" * 300 + ".csv", "a." + "y" * 300, "..", "=1+1.csv", "a:b|c.csv"]
+    status, seen = upload(case, [(name, b"1") for name in names])
+    assert status == 204
+    assert [content for _, content in seen] == [b"1"] * len(seen)
+    assert len(seen) == len(names)
+    for name, _ in seen:
+        assert len(name.encode()) <= 200
+        assert name.isprintable()
+        assert not set(name) & set('/\\:*?"<>|')
+    assert [name[-4:] for name, _ in seen[:3]] == [".csv"] * 3
+
+
 def test_strangers_cannot_drop(case):
     status, seen = upload(case, [("a.csv", b"1")], token="")
     assert status == 401

@@ -13,6 +13,7 @@ from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
+from thermoscope.extras import required
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -25,6 +26,7 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
     """Which of table I's factors move magnets, winding, end winding and laminations; `out`: folder for plots."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
+    required(("SALib",) if design in ("morris", "sobol") else ())
     design_machine = load_machine_file(Path(machine))
     roles = {part.role for part in design_machine.parts}
     if Role.MAGNET not in roles or Role.HOUSING in roles:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
+from geom.text import visible
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
@@ -59,9 +60,9 @@ class Ledger:
 def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
-    print(f"{diagnosis.words}\n" + "\n".join(lines), file=sys.stderr)
+    print("\n".join(map(visible, [diagnosis.words, *lines])), file=sys.stderr)
     for further in deciding(diagnosis.document())[:3]:
-        print(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)", file=sys.stderr)
+        print(visible(f"  would decide: {further.kind} {further.what} ({further.hours:.3g} h)"), file=sys.stderr)
     print("add which? (number, or Enter to stop) ", end="", file=sys.stderr, flush=True)
     word = sys.stdin.readline().strip()
     return choice[int(word) - 1].effect if word.isdecimal() and 1 <= int(word) <= len(choice) else None

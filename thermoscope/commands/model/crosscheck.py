@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -14,6 +12,7 @@ from geom.errors import ThermoscopeError
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, plain, progress
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
@@ -104,12 +103,7 @@ def save(document: Mapping[str, Any], folder: Path) -> None:
 
 
 def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
-    text = io.StringIO()
-    if rows:
-        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(plain(row) for row in rows)
-    return text.getvalue()
+    return csv_lines([list(rows[0]), *(list(plain(row).values()) for row in rows)] if rows else [])
 
 
 def answer(document: Mapping[str, Any], folder: Path) -> Answer:

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import at_instant, before_last, by_interest, fields, readings, temperature_range
-from thermoscope.commands.open_case import open_case
+from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
+from thermoscope.extras import required
 
 if TYPE_CHECKING:
     from validation.case import Case, Test
@@ -28,16 +30,16 @@ def film(case: str, out: Path | None, target: str | None) -> int:
     """The most telling test on the machine; with the model before its last step first, if there is one."""
     if out is not None and (out.suffix not in SUFFIXES or out.is_dir()):
         raise InputError("is no name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
+    needs_geometry(case)
+    required(("pyvista", "PIL", *(("imageio_ffmpeg",) if out is not None and out.suffix == ".mp4" else ())))
     with progress() as tell:
         from viz import animate, require_gl, split
 
-        folder = open_case(case, tell)
-        if folder.built is None:
-            right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
-            raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
         require_gl()  # before anything is run
+        folder = open_case(case, tell)
+        assert folder.built is not None
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
-        file = out or Path("out") / f"{folder.case.name}.gif"
+        file = out or Path("out") / f"{file_stem(folder.case.name)}.gif"
         runs = {} if earlier is None else {before(folder): earlier}
         tell(f"running {test.name}")
         models = runs | {now(folder): folder.case}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.names import file_stem
 from geom.errors import MissingDependency
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
@@ -131,7 +132,7 @@ def _plots(folder: Folder, into: Path) -> list[Path]:
     for test in by_interest(folder):
         comparison = marked(comparison_of(folder, test), current_diagnosis(folder))
         for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
-            paths.append(into / f"{name}-{test.name}.png")
+            paths.append(into / f"{name}-{file_stem(test.name)}.png")
             draw(comparison, png=paths[-1])
     if folder.history.revisions:
         paths.append(into / "error.png")
@@ -191,7 +192,7 @@ def _recording(folder: Folder, into: Path) -> Path:
     assert folder.built is not None
     nodes, test = split(folder.built.mesh), by_interest(folder)[0]
     frames = fields(folder.case, test, nodes, FRAMES)
-    path = into / f"{test.name}.rrd"
+    path = into / f"{file_stem(test.name)}.rrd"
     ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
     return write_recording(
         path, nodes, comparison_of(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import file_stem
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.integration.balance import balance
@@ -54,7 +55,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
         subject = Subject(open_case(case, tell), tell)
         if what in PICTURES and what not in FLAT:
             subject.require_drawing()
-        file = out or Path("out") / f"{subject.folder.case.name}-{what}.png"
+        file = out or Path("out") / f"{file_stem(subject.folder.case.name)}-{what}.png"
         tell(f"drawing {file}")
         pictures[what](subject, file)
     give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import open_case
@@ -31,7 +32,7 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         models = hypotheses(folder.case, effects or suspected(folder), tell)
         tell("predicting tests")
         curves = predicted_curves(folder.case, models, test)
-        file = out or Path("out") / f"{folder.case.name}-plan.html"
+        file = out or Path("out") / f"{file_stem(folder.case.name)}-plan.html"
         last = folder.case.tests[-1]
         write_bench_page(
             BenchPage(

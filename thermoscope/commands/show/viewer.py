@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from geom.description.names import file_stem
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
 from thermoscope.caches import cache_folder, recalled_result, store_result
@@ -29,9 +30,10 @@ from thermoscope.case_folder.runs import (
     stored_range,
     temperature_range,
 )
-from thermoscope.commands.open_case import open_case
+from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.extras import required
 from validation.case import Test
 from validation.parameters.unknowns import working
 from validation.threads import side_by_side
@@ -44,9 +46,11 @@ def viewer(case: str, out: Path | None, target: str | None) -> int:
     """One page that plays every test on the machine, in the browser's own GL."""
     if out is not None and (out.suffix != ".html" or out.is_dir()):
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
+    needs_geometry(case)
+    required(("pyvista",))
     with progress() as tell:
         folder = open_case(case, tell)
-        file = write_case(folder, out or Path("out") / f"{folder.case.name}-viewer.html", tell)
+        file = write_case(folder, out or Path("out") / f"{file_stem(folder.case.name)}-viewer.html", tell)
     give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 
@@ -107,9 +111,7 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz.viewer.looks import cached_looks, packed_looks
     from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
 
-    if folder.built is None:
-        right = f"a case with a machine; or: thermoscope show picture {folder.settings.path} curves"
-        raise InputError("has a network declared by hand, and so no geometry", folder.case.name, right)
+    assert folder.built is not None
     machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), before_last(folder)
     others = [at_revision(folder, r) for r in revisions(folder)[2:]]
     conductivity = {part.name: machine.conductivity(part.name) for part in machine.parts}

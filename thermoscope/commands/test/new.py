@@ -15,10 +15,11 @@ from geom.errors import InputError
 from lumped.machine.losses import ASSUMED
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.escapes import toml_value
 from thermoscope.extras import message as missing_extra
 from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, common, grouped, shift
-from thermoscope.importing.case_files import folder_whole, quoted, write_case
+from thermoscope.importing.case_files import folder_whole, write_case
 from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
 from thermoscope.importing.dialogue import Dialogue
@@ -116,7 +117,7 @@ def model_of_case(settings: Settings, network: Network) -> Model:
     if settings.machine.suffix == ".toml" and settings.machine.exists():
         return Model(network, target_of(network), _copied("machine", settings.machine, "machine.toml"))
     name = settings.machine.name.removesuffix(".toml")
-    return Model(network, target_of(network), lambda folder: f"machine = {quoted(name)}")
+    return Model(network, target_of(network), lambda folder: f"machine = {toml_value(name)}")
 
 
 def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress) -> Model:
@@ -142,16 +143,16 @@ def _machine(machine: str, tell: Progress) -> Model:
     if not path.exists():
         name = path.name.removesuffix(".toml")
         assert name in library(), "load_machine_file has found it"
-        return Model(network, target_of(network), lambda folder: f"machine = {quoted(name)}")
+        return Model(network, target_of(network), lambda folder: f"machine = {toml_value(name)}")
     if path.suffix == ".toml":
         return Model(network, target_of(network), _copied("machine", path, "machine.toml"))
-    return Model(network, target_of(network), lambda folder: f"machine = {quoted(str(path.resolve()))}")
+    return Model(network, target_of(network), lambda folder: f"machine = {toml_value(str(path.resolve()))}")
 
 
 def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:
     def put(folder: Path) -> str:
         write_whole(folder / name, path.read_bytes())
-        return f"{kind} = {quoted(name)}"
+        return f"{kind} = {toml_value(name)}"
 
     return put
 

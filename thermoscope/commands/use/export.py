@@ -15,6 +15,7 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, plain, progress
+from thermoscope.export.compilers import compiler, here
 from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ def export(
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
     if sensors and form != "observer":
         raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
+    if form == "fmu":
+        compiler(here())
     if form == "observer":
         return _observer(case, out, read_limits(limits), sensors, target)
     if form in MODELS:

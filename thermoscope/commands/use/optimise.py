@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.commands.use.export import read_limits
 from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
-from thermoscope.design.design_problem import DesignRequest, design_problem
+from thermoscope.design.design_problem import DesignRequest, checked_request, design_problem
 from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.search import METHODS, Design, Effort, pareto_set
@@ -40,14 +40,14 @@ def optimise(
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as messages, _executor(cluster) as executor:
-        folder = case_or_machine(name, tell)
+        folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
             samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
             document["interpolation_error"] = Condensations(problem, tell).verified(samples)
-        where = out or Path("out") / f"{folder.case.name}-designs"
+        where = out or Path("out") / f"{file_stem(folder.case.name)}-designs"
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
     notes(messages)
@@ -118,11 +118,8 @@ def _write(
     from viz.live.designs import page
 
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
-    text = io.StringIO()
-    table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    table.writeheader()
-    table.writerows({n: f"{v:.6g}" if isinstance(v, float) else v for n, v in row.items()} for row in rows)
-    out = [write_whole(folder / "pareto.csv", text.getvalue())]
+    lines = ([f"{v:.6g}" if isinstance(v, float) else v for v in row.values()] for row in rows)
+    out = [write_whole(folder / "pareto.csv", csv_lines([list(rows[0]), *lines]))]
     html = page(rows, problem.aimed, {v.name: short_key(v.name) for v in problem.space.variables}, folder.name)
     out.append(write_whole(folder / "pareto.html", html))
     for row, design in zip(rows, designs, strict=True) if file is not None else ():

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -16,13 +15,15 @@ import numpy as np
 from geom.errors import InputError
 from lumped.correlations import RangeWarning
 from thermoscope.bands import posterior_of, wanted
-from thermoscope.case_folder.folder import Folder
+from thermoscope.case_folder.folder import Folder, find_case
 from thermoscope.case_folder.runs import before_last
+from thermoscope.case_folder.settings import Settings, read_settings
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.commands.use.export import read_limits
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.escapes import toml_value
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
 from validation.rating.envelope import DUTIES, rated, until
@@ -62,17 +63,19 @@ def read_at(words: Sequence[str]) -> dict[str, float]:
     return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
 
 
-def case_or_machine(name: str, tell: Progress) -> Folder:
-    """A case, or a machine on its own as a case without tests."""
+def case_or_machine(name: str, tell: Progress, check: Callable[[Settings], None] = lambda settings: None) -> Folder:
+    """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
     from geom import library
 
     path = Path(name)
     if not (path.is_file() or (not path.exists() and name in library())):
+        check(read_settings(find_case(name), untested=True))
         return open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name
-        text = f"[case]\nname = {json.dumps(path.stem)}\nmachine = {json.dumps(machine)}\n"
+        text = f"[case]\nname = {toml_value(path.stem)}\nmachine = {toml_value(machine)}\n"
         Path(folder, "case.toml").write_text(text, encoding="utf-8")
+        check(read_settings(Path(folder), untested=True))
         return open_case(folder, tell, untested=True)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.names import file_stem
 from geom.errors import InputError, ThermoscopeError
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
@@ -26,6 +27,7 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from validation.bands import Bands, ParameterPosterior
 
@@ -104,7 +106,7 @@ def _ran(
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
     band = None if posterior is None else along(posterior, cycle.name, record, rows)
-    file = write_whole(into / f"simulate-{cycle.name}.csv", _csv(record, rows, y, band))
+    file = write_whole(into / f"simulate-{file_stem(cycle.name)}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)
     if band is not None:
@@ -120,7 +122,7 @@ def _csv(record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) 
     if band is not None:
         head += [f"95 % T {name} (+- K)" for name in rows]
         body = np.column_stack([body, band.half95])
-    return "\n".join([",".join(head), *(",".join(f"{x:.7g}" for x in line) for line in body)]) + "\n"
+    return csv_lines([head]) + "\n".join(",".join(f"{x:.7g}" for x in line) for line in body) + "\n"
 
 
 def _document(

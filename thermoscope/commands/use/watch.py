@@ -20,6 +20,7 @@ from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
+from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
@@ -156,7 +157,7 @@ class Session:
     def csv(self) -> str:
         head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]
         head += [x for n in self.design.process.bodies for x in (f"missing heat {n} (W)", f"sd heat {n} (W)")]
-        return "\n".join([",".join(head), *self.lines, ""])
+        return csv_lines([head]) + "\n".join([*self.lines, ""])
 
     def document(self) -> dict[str, Any]:
         assert self.one is not None
