@@ -147,8 +147,9 @@ def _widths(test: Test, stretches: Iterator[Bands]) -> list[dict[str, Any]]:
         half95 = part.half95
         total, widest = total + half95.sum(axis=0), np.maximum(widest, half95.max(axis=0))
         for k, c in ((k, sensors[name]) for k, name in enumerate(part.names) if name in sensors):
-            close = np.abs(c.y[done : done + len(half95)] - part.y[:, k]) <= np.hypot(half95[:, k], NORMAL_95 * c.sigma_K)
-            inside[part.names[k]] += int(close.sum())  # a reading that is missing is not close
+            off = np.abs(c.y[done : done + len(half95)] - part.y[:, k])
+            close = off <= np.hypot(half95[:, k], NORMAL_95 * c.sigma_K)  # no reading that is missing
+            inside[part.names[k]] += int(close.sum())
         done += len(half95)
     rows = zip(part.names, (2.0 * total / done).tolist(), (2.0 * widest).tolist(), strict=True)
     out: list[dict[str, Any]] = [

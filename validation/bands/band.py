@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,8 +66,8 @@ class Deviations:
         test = self.watch.test
         length = stretch(len(test.channels), self.size.size + len(self.beside), NUMBERS)
         for stop in range(length, test.time.size + length, length):
-            each = side_by_side(lambda watch: watch.until(min(stop, test.time.size)), (self.watch, *self.beside))
-            plain, moved = each[0], each[1:]
+            look = partial(Watch.until, stop=min(stop, test.time.size))
+            plain, *moved = side_by_side(look, (self.watch, *self.beside))
             yield plain.y, np.concatenate([plain.J * self.size, *((m.y - plain.y)[:, :, None] for m in moved)], axis=2)
 
 
