@@ -24,6 +24,7 @@ from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
+from validation.counting import counted
 
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
@@ -133,15 +134,15 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
     of, places = posterior_of(folder, progress), _places(named_rows(model_of(folder)[0], folder))
     out = []
-    for test in folder.case.tests:
-        progress(f"bands of {test.name}")
+    for test in counted("bands around the model", folder.case.tests):
         out += _widths(test, band_stretches(of, _test_of(test.name, record(test, {})), places))
     return out
 
 
 def _widths(test: Test, stretches: Iterator[Bands]) -> list[dict[str, Any]]:
     """Place by place, looking at every stretch once."""
-    sensors, done, total, widest = {f"sensor {c.name}": c for c in test.channels}, 0, 0.0, 0.0
+    sensors, done = {f"sensor {c.name}": c for c in test.channels}, 0
+    total, widest = np.zeros(1), np.zeros(1)
     inside = dict.fromkeys(sensors, 0)
     for part in stretches:
         half95 = part.half95
