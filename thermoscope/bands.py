@@ -141,18 +141,18 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
 def _widths(test: Test, stretches: Iterator[Bands]) -> list[dict[str, Any]]:
     """Place by place, looking at every stretch once."""
-    sensors, done = {f"sensor {c.name}": c for c in test.channels}, 0
+    sensors, start = {f"sensor {c.name}": c for c in test.channels}, 0
     total, widest = np.zeros(1), np.zeros(1)
     inside = dict.fromkeys(sensors, 0)
     for part in stretches:
         half95 = part.half95
         total, widest = total + half95.sum(axis=0), np.maximum(widest, half95.max(axis=0))
         for k, c in ((k, sensors[name]) for k, name in enumerate(part.names) if name in sensors):
-            off = np.abs(c.y[done : done + len(half95)] - part.y[:, k])
+            off = np.abs(c.y[start : start + len(half95)] - part.y[:, k])
             close = off <= np.hypot(half95[:, k], NORMAL_95 * c.sigma_K)  # no reading that is missing
             inside[part.names[k]] += int(close.sum())
-        done += len(half95)
-    rows = zip(part.names, (2.0 * total / done).tolist(), (2.0 * widest).tolist(), strict=True)
+        start += len(half95)
+    rows = zip(part.names, (2.0 * total / start).tolist(), (2.0 * widest).tolist(), strict=True)
     out: list[dict[str, Any]] = [
         {"test": test.name, "place": name, "mean_ci95_K": mean, "widest_ci95_K": most} for name, mean, most in rows
     ]

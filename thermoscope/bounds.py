@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import gzip
 import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import IO, Any
 
 from geom.limits import BYTES, CELLS, COLUMNS, ROWS, ReadingTime
 
@@ -14,23 +13,17 @@ CHUNK = 2**24  # bytes
 DELIMITERS = (b",", b";", b"\t", b"|")
 
 
-def opened(file: Path) -> IO[bytes]:
-    """A text file to read, packed or not."""
-    return cast("IO[bytes]", gzip.open(file)) if file.name.lower().endswith(".gz") else file.open("rb")
-
-
-def check_text(file: Path) -> None:
-    """InputError where a text file, unpacked, has more bytes, lines or cells than a recording may have."""
+def check_text(source: IO[bytes], file: Path) -> None:
+    """InputError where a text file, as it is unpacked, has more bytes, lines or cells than a recording may have."""
     size, lines, delimiters, clock = 0, [0, 0], [0] * len(DELIMITERS), ReadingTime(file)
-    with opened(file) as source:
-        while part := source.read(CHUNK):
-            size += len(part)
-            lines = [n + part.count(end) for n, end in zip(lines, (b"\n", b"\r"), strict=True)]
-            delimiters = [n + part.count(sign) for n, sign in zip(delimiters, DELIMITERS, strict=True)]
-            BYTES.check(size, file, "holds at least")
-            ROWS.check(max(lines), file, "holds at least")
-            CELLS.check(max(delimiters), file, "holds at least")
-            clock.check()
+    while part := source.read(CHUNK):
+        size += len(part)
+        lines = [n + part.count(end) for n, end in zip(lines, (b"\n", b"\r"), strict=True)]
+        delimiters = [n + part.count(sign) for n, sign in zip(delimiters, DELIMITERS, strict=True)]
+        BYTES.check(size, file, "holds at least")
+        ROWS.check(max(lines), file, "holds at least")
+        CELLS.check(max(delimiters), file, "holds at least")
+        clock.check()
 
 
 def check_size(file: Path) -> None:

@@ -83,17 +83,17 @@ class ProgressBar:
         """
         here = self.clock() - self.since if self.now else 0.0
         before, order = self.took.get(self.now, 0.0), list(self.last)
-        known = [s for s in self.took if s in self.last and s != self.now]
-        usual = sum(self.last[s] for s in known)
-        pace = sum(self.took[s] for s in known) / usual if usual > PACED_S else 1.0
+        earlier = [s for s in self.took if s in self.last and s != self.now]
+        usual = sum(self.last[s] for s in earlier)
+        pace = sum(self.took[s] for s in earlier) / usual if usual > PACED_S else 1.0
         whole = max(pace * self.last.get(self.now, 0.0) - before, here)
         if self.part * here > 0.0:
             whole = here / self.part
             if self.now in self.last:
                 usual += self.last[self.now]
-                pace = (sum(self.took[s] for s in known) + before + whole) / max(usual, 1e-9)
-        begun = order.index(self.now) + 1 if self.now in self.last else 0
-        later = sum(self.last[s] for s in order[begun:] if s not in self.took and s != self.now)
+                pace = (sum(self.took[s] for s in earlier) + before + whole) / max(usual, 1e-9)
+        after = order.index(self.now) + 1 if self.now in self.last else 0
+        later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
         spent, rest = here + sum(self.took.values()), whole - here + pace * later
         if max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) < self.shortest_s:
             return None
@@ -145,10 +145,10 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 
 @contextmanager
 def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
-    """Stages that know how long they took the last time, for this very case where they can; the next time knows these."""
+    """Stages that know how long they took the last time, of this very case where they can."""
     durations, keys = _remembered(), [f"{key}{_case()}", key]
-    known = next((durations[k] for k in keys if durations.get(k)), None)
-    stages = ProgressBar(known or _usual().get(key, {}), shortest_s=shortest_s)
+    memory = next((durations[k] for k in keys if durations.get(k)), None)
+    stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()

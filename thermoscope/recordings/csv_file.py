@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import io
 import re
 import zlib
@@ -10,14 +11,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
 from geom.limits import COLUMNS, ReadingTime
-from thermoscope.bounds import CHUNK, check_text, opened
+from thermoscope.bounds import CHUNK, check_text
 from thermoscope.recordings.data_table import Column, DataTable, as_number, is_missing
 
 COMMA, QUOTE, LF, CR = b',"\n\r'
@@ -189,13 +190,18 @@ def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
 def chunks(file: Path) -> Iterator[bytes]:
     """All of a file, unpacked, piece by piece; InputError where it is not whole, or too large to be a test."""
     try:
-        check_text(file)
-        with opened(file) as source:
+        with _opened(file) as source:
+            check_text(source, file)
+        with _opened(file) as source:
             while part := source.read(CHUNK):
                 yield part
     except (OSError, EOFError, zlib.error) as fault:
         kind = "gzip" if file.name.lower().endswith(".gz") else "text"
         raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
+
+
+def _opened(file: Path) -> IO[bytes]:
+    return cast("IO[bytes]", gzip.open(file)) if file.name.lower().endswith(".gz") else file.open("rb")
 
 
 def _content(file: Path) -> bytes:

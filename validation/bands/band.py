@@ -67,8 +67,11 @@ class Deviations:
         length = stretch(len(test.channels), self.size.size + len(self.beside), NUMBERS)
         for stop in range(length, test.time.size + length, length):
             look = partial(Watch.until, stop=min(stop, test.time.size))
-            plain, *moved = side_by_side(look, (self.watch, *self.beside))
-            yield plain.y, np.concatenate([plain.J * self.size, *((m.y - plain.y)[:, :, None] for m in moved)], axis=2)
+            plain, *variants = side_by_side(look, (self.watch, *self.beside))
+            yield (
+                plain.y,
+                np.concatenate([plain.J * self.size, *((m.y - plain.y)[:, :, None] for m in variants)], axis=2),
+            )
 
 
 def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
@@ -77,12 +80,12 @@ def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> D
     network, free, size = acting(of, virtual)
     now = {**values_of(network, None), **of.values}
     boundary_names = {p.targets[0][0] for p in free if head(p) == "boundary"}
-    moved = dict(moved_inputs(network, virtual, of.doubt))
-    moved |= {name: other for name, other in moved_boundaries(virtual, of.doubt) if name not in boundary_names}
+    variants = dict(moved_inputs(network, virtual, of.doubt))
+    variants |= {name: other for name, other in moved_boundaries(virtual, of.doubt) if name not in boundary_names}
     sd = np.array([p.prior_sd for p in free]) / size
-    names = [*(p.name for p in free), *moved]
-    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(moved))])), of.offsets(names)
-    beside = tuple(Watch(network, other, now) for other in moved.values())
+    names = [*(p.name for p in free), *variants]
+    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(variants))])), of.offsets(names)
+    beside = tuple(Watch(network, other, now) for other in variants.values())
     return Deviations(Watch(network, virtual, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
 
 
@@ -95,13 +98,13 @@ def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
 
 def band_stretches(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Iterator[Bands]:
     """The same stretch by stretch: what a long test needs of memory does not grow with it."""
-    by, names, done, first = deviations(of, test, places), tuple(p.name for p in places), 0, NONE
+    by, names, start, first = deviations(of, test, places), tuple(p.name for p in places), 0, NONE
     share = np.array([of.slow(p.row) for p in places])
     for y, columns in by.stretches():
-        first = first if done else y[0].copy()
+        first = first if start else y[0].copy()
         sd = np.sqrt(_variance(columns, by.root) + (share * np.abs(y - first)) ** 2)
-        yield Bands(test.time[done : done + len(y)], names, y, sd)
-        done += len(y)
+        yield Bands(test.time[start : start + len(y)], names, y, sd)
+        start += len(y)
 
 
 def at_end(of: ParameterPosterior, test: Test) -> tuple[Array, Array, Array]:

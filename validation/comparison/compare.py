@@ -185,16 +185,16 @@ def _of_every_test(
 ) -> Comparison:
     network, _ = working(case)
     now = physical(case, values)
-    effects, done = tuple(e.name for e in case.model.effects), list[TestError]()
+    effects, rows = tuple(e.name for e in case.model.effects), list[TestError]()
 
     def comparison() -> Comparison:
-        return Comparison(case.name, case.model.revision, effects, tuple(done), case.model.network.identities)
+        return Comparison(case.name, case.model.revision, effects, tuple(rows), case.model.network.identities)
 
     try:
         for test in tests:
-            done.append(error_of(network, test, now))
+            rows.append(error_of(network, test, now))
     except KeyboardInterrupt:
-        if done:
+        if rows:
             raise StoppedComparisonError(comparison()) from None
         raise
     return comparison()

@@ -100,7 +100,7 @@ def test_the_first_run_of_long_commands_knows_a_share(tmp_path, monkeypatch):
 
 
 def test_a_stage_that_counts_says_how_long_it_takes():
-    """The last time it took 2 s, with fewer tests: by its own count it takes 100 s, and what follows fifty times 3 s."""
+    """The last time it took 2 s; by its own count it takes 100 s, and what follows fifty times 3 s."""
     clock = Clock()
     stages, seen = ProgressBar({"mesh": 50.0, "reading": 2.0, "fitting": 3.0}, clock), []
     for number in range(1, 101):

@@ -1,6 +1,6 @@
 """How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
 
-    python benchmarks/progress.py [--only CASE ...] [--json FILE]
+    python benchmarks/console/progress.py [--only CASE ...] [--json FILE]
 
 After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
 which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
@@ -23,7 +23,7 @@ from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 CASES = ("tclab", "hust-ipmsm", "pmsm-bases", "road-test")
 COLUMNS, SHORT_S, FIFTH = 80, 10.0, 0.2
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
