@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,9 +21,10 @@ from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
-from validation.bands import Bands, ParameterPosterior, Place, at_end, bands, parameter_posterior
+from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.posterior import rows_read
 from validation.case import RUNNING, Recorded, Test
+from validation.counting import counted
 
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
@@ -73,6 +74,15 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
 
 def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
     """Temperatures along a record and how sure they are."""
+    return bands(of, _test_of(name, record), _places(rows))
+
+
+def _places(rows: Mapping[str, Row]) -> list[Place]:
+    return [Place(name, row) for name, row in rows.items()]
+
+
+def _test_of(name: str, record: Record) -> Test:
+    """A test without sensors, of a record."""
     nt = record.time.shape
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
@@ -82,8 +92,7 @@ def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, 
         record.inputs.source if isinstance(record.inputs, Signals) else None,
     )
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
-    test = Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
-    return bands(of, test, [Place(n, row) for n, row in rows.items()])
+    return Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
 
 
 def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Progress) -> Array:
@@ -123,18 +132,33 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     from thermoscope.verification.error_budget import model_of
     from validation.comparison.predict import record
 
-    of, rows = posterior_of(folder, progress), named_rows(model_of(folder)[0], folder)
+    of, places = posterior_of(folder, progress), _places(named_rows(model_of(folder)[0], folder))
     out = []
-    for test in folder.case.tests:
-        bands = along(of, test.name, record(test, {}), rows)
-        read = {f"sensor {c.name}": c for c in test.channels}
-        for k, name in enumerate(bands.names):
-            row = {"test": test.name, "place": name, "mean_ci95_K": float(2.0 * bands.half95[:, k].mean())}
-            row["widest_ci95_K"] = float(2.0 * bands.half95[:, k].max())
-            if c := read.get(name):
-                close = np.abs(c.y - bands.y[:, k]) <= np.hypot(bands.half95[:, k], NORMAL_95 * c.sigma_K)
-                row["inside"] = float(np.mean(close[np.isfinite(c.y)]))
-            out.append(row)
+    for test in counted("bands around the model", folder.case.tests):
+        out += _widths(test, band_stretches(of, _test_of(test.name, record(test, {})), places))
+    return out
+
+
+def _widths(test: Test, stretches: Iterator[Bands]) -> list[dict[str, Any]]:
+    """Place by place, looking at every stretch once."""
+    sensors, start = {f"sensor {c.name}": c for c in test.channels}, 0
+    total, widest = np.zeros(1), np.zeros(1)
+    inside = dict.fromkeys(sensors, 0)
+    for part in stretches:
+        half95 = part.half95
+        total, widest = total + half95.sum(axis=0), np.maximum(widest, half95.max(axis=0))
+        for k, c in ((k, sensors[name]) for k, name in enumerate(part.names) if name in sensors):
+            off = np.abs(c.y[start : start + len(half95)] - part.y[:, k])
+            close = off <= np.hypot(half95[:, k], NORMAL_95 * c.sigma_K)  # no reading that is missing
+            inside[part.names[k]] += int(close.sum())
+        start += len(half95)
+    rows = zip(part.names, (2.0 * total / start).tolist(), (2.0 * widest).tolist(), strict=True)
+    out: list[dict[str, Any]] = [
+        {"test": test.name, "place": name, "mean_ci95_K": mean, "widest_ci95_K": most} for name, mean, most in rows
+    ]
+    for row in (row for row in out if row["place"] in sensors):
+        read = int(np.isfinite(sensors[row["place"]].y).sum())
+        row["inside"] = inside[row["place"]] / read if read else float("nan")
     return out
 
 

@@ -11,11 +11,12 @@ from typing import Annotated, Any
 import typer
 
 from geom.errors import ThermoscopeError
+from thermoscope.caches import cache_folder
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.extras import NEEDS, explained, required
-from thermoscope.files import checked_out, checked_target, message_of, printable
+from thermoscope.files import STOPPED, checked_out, checked_target, message_of, printable
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
@@ -531,6 +532,9 @@ def main() -> None:
             raise
         print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
+    if code == STOPPED:
+        print(f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",
+              file=sys.stderr)  # fmt: skip
     raise SystemExit(code if isinstance(code, int) else 0)
 
 

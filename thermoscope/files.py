@@ -14,6 +14,7 @@ from geom.errors import InputError
 from geom.text import visible
 
 CASE = "case.toml"
+STOPPED = 130  # exit code of what the user stopped, as shells have it
 INPUTS = ("tests", "cycles")  # folders of a case
 LONGEST_WORD = 300  # characters of a word in a message: longer than most paths
 CURES = {errno.ENAMETOOLONG: "a shorter name", errno.ELOOP: "a file, not a link to itself"}

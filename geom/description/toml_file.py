@@ -8,8 +8,7 @@ from typing import Any
 
 from geom.description.names import checked_document
 from geom.errors import InputError
-
-LARGEST = 16 * 2**20  # bytes; a file of this kind is written by hand, or by us, and is far smaller
+from geom.limits import TOML_BYTES
 
 
 def read_toml(path: Path, right: str) -> dict[str, Any]:
@@ -18,8 +17,7 @@ def read_toml(path: Path, right: str) -> dict[str, Any]:
         raise InputError("no such file", str(path), right)
     if not path.is_file():
         raise InputError("is no file", str(path), right)
-    if path.stat().st_size > LARGEST:
-        raise InputError(f"has {path.stat().st_size} bytes, too many for TOML", str(path), right)
+    TOML_BYTES.check(path.stat().st_size, path, "holds")
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, RecursionError) as fault:

@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geom.description.part import Part
+from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Block, Column
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 from geom.meshing.partition import AMBIENT, Partition
@@ -34,6 +35,8 @@ def extrude(
     z = np.unique(np.concatenate(heights))
     ranks = [np.searchsorted(z, height) * len(flat.points) for height in heights]
     bases = [_base(index, columns, flat) for index in range(len(blocks))]
+    points = sum(len(np.unique(base)) * len(rank) for (base, _), rank in zip(bases, ranks))
+    MESH_POINTS.check(points, "mesh", "would have")
     tets = np.concatenate([_tets(base, rank) for (base, _), rank in zip(bases, ranks)])
     label = np.concatenate([np.tile(labels, 3 * (len(rank) - 1)) for (_, labels), rank in zip(bases, ranks)])
     walls = [wall for column, base in zip(columns, flat.triangles) for wall in _floors(column, base, ranks)]

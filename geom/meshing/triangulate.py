@@ -13,6 +13,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Column
 from geom.meshing.delaunay import interior_points, nudged, triangulate_face
 from geom.meshing.noding import GRID
@@ -41,6 +42,8 @@ def triangulate(columns: Sequence[Column], size: float, across: float = 2) -> Tr
     """
     faces = np.array([column.face for column in columns], dtype=object)
     sizes = _sizes(faces, size, across)
+    least = np.sum(shapely.area(faces) / sizes**2 + 0.5 * shapely.length(faces) / sizes)  # points of its triangles
+    MESH_POINTS.check(least, "mesh", "would have at least")
     corners, (start, end, owner) = half_edges(faces)
     edges, which = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     limit = np.full(len(edges), np.inf)

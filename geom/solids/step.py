@@ -37,6 +37,7 @@ from geom.description.reading import read_geometry
 from geom.description.roles import Role
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from geom.limits import STEP_BYTES
 from geom.solids.slicing import sliced
 
 if TYPE_CHECKING:
@@ -165,6 +166,7 @@ def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, lis
 def _assembly(path: Path) -> Any:
     import cadquery as cq
 
+    STEP_BYTES.check(path.stat().st_size, path, "holds")
     with path.open("rb") as file:
         if b"ISO-10303-21" not in file.read(200):  # OpenCASCADE would say so on stdout
             raise InputError("not a STEP file", str(path), "a STEP assembly of named solids")

@@ -16,7 +16,7 @@ from lumped.integration.projection import crowded, projected
 from lumped.transfer.laws import Fixed, Law
 
 Array = NDArray[np.float64]
-LONG = 200_000  # samples: factors of longer records are not kept, whose runs take far longer than their factors
+LONG = 200_000  # samples: of longer records only the factors are kept of which every stretch asks for the whole
 
 
 class Source(NamedTuple):
@@ -47,7 +47,7 @@ class Reading(NamedTuple):
 
 
 class Signals(dict[str, Array]):
-    """Input -> finite array (nt,); a factor of a record that is not LONG stays known as long as its law.
+    """Input -> finite array (nt,); a factor that is not of a LONG record stays known as long as its law.
 
     Laws and signals never change, so the runs of a fit, which differ in multipliers alone, share them. On instants
     wider apart than the samples were recorded, factors are still made of these and keep their integrals.
@@ -112,7 +112,7 @@ class Signals(dict[str, Array]):
         if curve is not None and curve[0]() is law:
             return curve[1]
         new = self._curve_of(name, law)
-        if self.nt <= LONG:
+        if self.nt <= LONG or law.looks_at_all:
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
         return new
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from geom.limits import INSTANTS
 from lumped.drives.coupled import Drive, pm_drive, series_drive
 from lumped.drives.drive import Controller, SeriesMachine, Vehicle
 from lumped.drives.duty import s1, s2, s3, s6
@@ -22,7 +23,7 @@ from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.schemas.reader import Table, suggestion
 from thermoscope.recordings.consistency import is_amount
-from thermoscope.recordings.grid import LEAST, MOST, bridged
+from thermoscope.recordings.grid import LEAST, bridged
 from thermoscope.recordings.sheet import read_sheet
 from thermoscope.recordings.tables import load_table
 
@@ -163,9 +164,9 @@ def _columns(path: Path, top: Table, head: Table) -> Columns:
 
 def _counted(instants: float, where: str) -> None:
     """A cycle has so many instants that a run of it makes sense and fits into memory."""
-    if not LEAST <= instants <= MOST:
+    if not LEAST <= instants <= INSTANTS.most:
         raise InputError(f"the cycle has {instants:.3g} instants", where,
-                         f"{LEAST} to {MOST:.0g}: check step_s, durations and time_unit")  # fmt: skip
+                         f"{LEAST} to {INSTANTS.most:,} ({INSTANTS.variable}): check step_s and time_unit")  # fmt: skip
 
 
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:

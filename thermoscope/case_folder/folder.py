@@ -23,6 +23,7 @@ from thermoscope.recordings.readings import read_test, rows_of
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
 from validation.case import AddedEffect, Case, LowFidelity, Model, Test
+from validation.counting import counted
 from validation.measurement.sampling import SampleStep
 from validation.parameters.unknowns import matching, working
 
@@ -126,13 +127,14 @@ def load_case(
     settings = read_settings(Path(path), untested)
     history = History() if bare else load_history(settings.model_file)
     patients: dict[str, Patient] = {}
-    for entry in settings.tests:
-        patients[entry.name] = patient_of(entry, progress)
+    for number, entry in enumerate(settings.tests, 1):
+        count = f" ({number} of {len(settings.tests)})"
+        patients[entry.name] = patient_of(entry, lambda message, count=count: progress(message + count))  # type: ignore[misc]
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     network, built = network_of(settings, progress)
     read = [
         read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
-        for e in settings.tests
+        for e in counted("preparing the tests", settings.tests)
     ]
     findings = examined(list(patients.values()), network)
     notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))

@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from geom.limits import BYTES
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
 from thermoscope.files import checked_result, write_whole
-from thermoscope.recordings.csv_file import LARGEST
 
 NAME = "diagnosis.json"
 SEAL = "sha256"
@@ -23,7 +23,7 @@ def fingerprint(case: Path, but: str = "") -> str:
     """Of everything a result depends on: all files of the case outside out/, but one."""
     digest = hashlib.sha256()
     for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
-        if path.name == but or path.name.startswith(".") or path.stat().st_size > LARGEST:
+        if path.name == but or path.name.startswith(".") or path.stat().st_size > BYTES.most:
             continue  # a hidden file is what a killed process left; what is larger is no input
         with path.open("rb") as file:
             content = hashlib.file_digest(file, "sha256").digest()

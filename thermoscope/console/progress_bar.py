@@ -7,6 +7,7 @@ How long the stages took the last time is kept in the user's cache; the first ti
 from __future__ import annotations
 
 import json
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -15,12 +16,21 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Task
 
 from geom.text import visible
 
 Progress = Callable[[str], None]
 FILE = "stages.json"
 MOST = 200  # pieces of work that are remembered
+COUNT = re.compile(r"\((\d+) of (\d+)\)$")  # at the end of a message
+QUIET_S = 15.0  # a pipe that says nothing for longer looks as if it hung
+PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -34,7 +44,7 @@ class ProgressBar:
     last : stage -> s of the last time, in their order;  clock : s, rising
     shortest_s : work that took less the last time has no share and no time left (s)
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
-    stages
+    stages;  part : of the stage that runs, where its messages count "(3 of 200)"
     """
 
     last: dict[str, float]
@@ -44,15 +54,19 @@ class ProgressBar:
     since: float = 0.0
     block: int = 0
     shortest_s: float = WORTH_S
+    part: float = 0.0
+    share: float = 0.0
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage."""
         word = message.split()[0].rstrip(":,") if message.split() else ""
-        stage = f"{self.block} {word}" if self.block and word else word
+        stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
+        part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
         if stage == self.now:
+            self.part = max(part, self.part)
             return False
         self.leave()
-        self.now = stage
+        self.now, self.part = stage, part
         return True
 
     def leave(self) -> None:
@@ -60,32 +74,43 @@ class ProgressBar:
         instant = self.clock()
         if self.now:
             self.took[self.now] = self.took.get(self.now, 0.0) + instant - self.since
-        self.since, self.now = instant, ""
+        self.since, self.now, self.part = instant, "", 0.0
 
     def left(self) -> tuple[float, float] | None:
-        """Share done, and seconds left at the pace so far, as the last time tells; None where there was none worth it.
+        """Share done, and seconds left; None where no stage is known that is worth it. The share never falls.
 
-        A stage that takes longer than the last time counts as done when it ends, so the share never falls.
+        A stage that counts says by itself how long it takes. Others take as long as the last time, at the pace of
+        this run: what its stages took, and will take, over what they took the last time. What comes before the stage
+        that runs does not come any more.
         """
-        total = sum(self.last.values())
-        if total < self.shortest_s:
-            return None
         here = self.clock() - self.since if self.now else 0.0
-        running = min(here, self.last.get(self.now, 0.0))
-        elapsed = running + sum(min(self.took.get(s, 0.0), t) if s == self.now else t
-                             for s, t in self.last.items() if s in self.took)  # fmt: skip
-        spent = here + sum(self.took.values())
-        pace = spent / elapsed if elapsed > self.shortest_s else 1.0
-        return min(elapsed / total, 0.99), max(total - elapsed, 0.0) * pace
+        before, order = self.took.get(self.now, 0.0), list(self.last)
+        earlier = [s for s in self.took if s in self.last and s != self.now]
+        usual = sum(self.last[s] for s in earlier)
+        pace = sum(self.took[s] for s in earlier) / usual if usual > PACED_S else 1.0
+        whole = max(pace * self.last.get(self.now, 0.0) - before, here)
+        if self.part * here > 0.0:
+            whole = here / self.part
+            if self.now in self.last:
+                usual += self.last[self.now]
+                pace = (sum(self.took[s] for s in earlier) + before + whole) / max(usual, 1e-9)
+        after = order.index(self.now) + 1 if self.now in self.last else 0
+        later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
+        spent, rest = here + sum(self.took.values()), whole - here + pace * later
+        if max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) < self.shortest_s:
+            return None
+        self.share = max(self.share, min(spent / max(spent + rest, 1e-9), 0.99))
+        return self.share, rest
 
     def words(self, message: str) -> str:
         """The message with share and time left."""
         remaining = self.left()
-        return (
-            message
-            if remaining is None
-            else f"{message} ({100 * remaining[0]:.0f} %, about {_span(remaining[1])} left)"
-        )
+        return f"{message} ({_remaining(remaining)})" if remaining else message
+
+
+def _remaining(remaining: tuple[float, float]) -> str:
+    """Share done and time left."""
+    return f"{100 * remaining[0]:.0f} %, about {_span(remaining[1])} left"
 
 
 def _span(seconds: float) -> str:
@@ -122,14 +147,15 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 
 @contextmanager
 def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
-    """Stages that know how long they took the last time; what they take now is kept for the next."""
-    durations = _remembered()
-    stages = ProgressBar(durations.get(key) or _usual().get(key, {}), shortest_s=shortest_s)
+    """Stages that know how long they took the last time, of this very case where they can."""
+    durations, keys = _remembered(), [f"{key}{_case()}", key]
+    memory = next((durations[k] for k in keys if durations.get(k)), None)
+    stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s)
     try:
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            _remember({**{k: v for k, v in durations.items() if k != key}, key: stages.took})
+            _remember({**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)})
     finally:
         stages.leave()
 
@@ -139,32 +165,79 @@ def _command() -> str:
     return " ".join(word for word in sys.argv[1:3] if not word.startswith("-"))
 
 
+def _case() -> str:
+    """What the command is about, where it stands behind its words: " /home/me/motor"."""
+    words = sys.argv[1:4]
+    return "" if len(words) < 3 or any(word.startswith("-") for word in words) else f" {Path(words[2]).absolute()}"
+
+
 @contextmanager
 def _display(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda message: _line(stages.words(message)) if stages.enter(message) else None
-        return
-    from rich.markup import escape
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bar
+    from validation.counting import listening
 
+    console = Console(stderr=True)
+    with _bar(stages, console) if console.is_terminal else _lines(stages) as tell, listening(tell):
+        yield tell
+
+
+@contextmanager
+def _lines(stages: ProgressBar) -> Iterator[Progress]:
+    """One line a stage, and one whenever there was none for a while."""
+    now, stop, spoken = [""], Event(), [stages.clock()]
+
+    def say() -> None:
+        spoken[0] = stages.clock()
+        _line(stages.words(now[0]))
+
+    def tell(message: str) -> None:
+        now[0] = message
+        if stages.enter(message):
+            say()
+
+    def remind() -> None:
+        while not stop.wait(max(QUIET_S - (stages.clock() - spoken[0]), 0.1)):
+            if now[0] and stages.clock() - spoken[0] >= QUIET_S:
+                say()
+
+    reminder = Thread(target=remind, daemon=True)
+    reminder.start()
+    try:
+        yield tell
+    finally:
+        stop.set()
+        reminder.join()
+
+
+@contextmanager
+def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
+    """A bar that moves with the clock; a message that is too long for the line is cut, its times never."""
+    from rich.progress import BarColumn, ProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+    from rich.table import Column
+    from rich.text import Text
+
+    class Left(ProgressColumn):
+        """Share done and time left, now."""
+
+        def render(self, task: Task) -> Text:
+            remaining = stages.left()
+            if remaining:
+                bar.update(task.id, total=1.0, completed=remaining[0])
+            return Text(_remaining(remaining) if remaining else "", no_wrap=True)
+
+    message_column = Column(ratio=1, no_wrap=True, overflow="ellipsis")
+    times = Column(no_wrap=True, min_width=len(_remaining((0.99, 3600.0))))
     with Bar(
-        TextColumn("{task.description}"), BarColumn(20), TimeElapsedColumn(), console=console, transient=True
-    ) as bar:
+        TextColumn("{task.description}", table_column=message_column, markup=False), BarColumn(10), Left(times),
+        TimeElapsedColumn(Column(no_wrap=True, min_width=7)), console=console, transient=True, expand=True,
+    ) as bar:  # fmt: skip
         task = bar.add_task("", total=None)
 
         def tell(message: str) -> None:
             stages.enter(message)
-            remaining = stages.left()
-            bar.update(
-                task,
-                description=escape(visible(stages.words(message))),
-                total=remaining and 1.0,
-                completed=remaining[0] if remaining else 0.0,
-            )
+            bar.update(task, description=visible(message))
 
         yield tell
 

@@ -11,16 +11,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.limits import COLUMNS, ReadingTime
+from thermoscope.bounds import CHUNK, check_text
 from thermoscope.recordings.data_table import Column, DataTable, as_number, is_missing
 
-CHUNK, LARGEST = 2**24, 2**30  # bytes; a day of 100 channels at 1 Hz is a tenth of that
-MOST_COLUMNS, MOST_LINES = 10_000, 50_000_000  # what so many bytes of readings cannot exceed
 COMMA, QUOTE, LF, CR = b',"\n\r'
 NAN = np.frombuffer(b"nan", np.uint8)
 BLOCK = 2**20  # bytes that are read at once; csv takes ten times as long for one as NumPy
@@ -55,7 +55,9 @@ class _Body:
     def columns(self, content: bytes, start: int) -> list[Any]:
         """The cells from a byte on, column by column: numbers, or all cells of a column that has a word in it."""
         parts: list[Sequence[Any]] = []
+        clock = ReadingTime(self.file)
         for at, block in _blocks(content, start):
+            clock.check()
             if (part := self._quick(block)) is None and (part := self._slow(block, content, at)) is None:
                 return _parsed(content[start:], len(self.header))
             parts.append(part)
@@ -149,7 +151,7 @@ def _joined(parts: Sequence[Any]) -> Any:
 def _header(file: Path, content: bytes) -> tuple[list[str], int]:
     """The names of the columns and the byte after them.
 
-    InputError where the first row has more values than there are names, or the file more lines than a recording.
+    InputError where the first row has more values than there are names.
     """
     with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
         reader = csv.reader(text, skipinitialspace=True)
@@ -162,13 +164,10 @@ def _header(file: Path, content: bytes) -> tuple[list[str], int]:
     for sign, name in ((";", "';'"), ("\t", "tabs")):
         if len(header) == 1 and sign in header[0]:
             raise InputError(f"columns are separated by {name}", str(file), "commas between columns, points in numbers")
-    if len(header) > MOST_COLUMNS:
-        raise InputError(f"has {len(header)} columns", f"{file} line 1", f"at most {MOST_COLUMNS}")
+    COLUMNS.check(len(header), f"{file} line 1", "holds")
     if any(cell.strip() for cell in first[len(header) :]):
         raise InputError(f"{len(first)} values under {len(header)} names", f"{file} line 2",
                          "as many as names: decimal commas become points, the header is line 1")  # fmt: skip
-    if content.count(b"\n") > MOST_LINES:
-        raise InputError(f"has more than {MOST_LINES} lines", str(file), "a shorter recording")
     return header, start
 
 
@@ -190,17 +189,19 @@ def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
 
 def chunks(file: Path) -> Iterator[bytes]:
     """All of a file, unpacked, piece by piece; InputError where it is not whole, or too large to be a test."""
-    packed, size = file.name.lower().endswith(".gz"), 0
     try:
-        with gzip.open(file) if packed else file.open("rb") as source:
+        with _opened(file) as source:
+            check_text(source, file)
+        with _opened(file) as source:
             while part := source.read(CHUNK):
-                size += len(part)
-                if size > LARGEST:
-                    raise InputError(f"holds more than {LARGEST / 2**20:.0f} MB", str(file), "a shorter recording")
                 yield part
     except (OSError, EOFError, zlib.error) as fault:
-        kind = "gzip" if packed else "text"
+        kind = "gzip" if file.name.lower().endswith(".gz") else "text"
         raise InputError(f"not readable as {kind}: {fault}", str(file), "a whole file of that kind") from None
+
+
+def _opened(file: Path) -> IO[bytes]:
+    return cast("IO[bytes]", gzip.open(file)) if file.name.lower().endswith(".gz") else file.open("rb")
 
 
 def _content(file: Path) -> bytes:

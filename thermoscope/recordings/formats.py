@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, MissingDependency
+from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
 from lumped.schemas.reader import suggestion
+from thermoscope.bounds import check_archive, check_shape, check_size, counted_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import DataTable
 
@@ -96,6 +98,7 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
 
 
 def _table(file: Path, kind: str, package: str, read: Callable[[], Columns]) -> DataTable:
+    check_size(file)
     table: DataTable = guarded(file, kind, package, lambda: DataTable.of(read(), file))
     return table
 
@@ -124,7 +127,7 @@ def _xlsx(file: Path, worksheet: str) -> Columns:
         sheets = {sheet.title: sheet for sheet in book.worksheets}  # without those that are charts
         if not sheets or (worksheet and worksheet not in sheets):
             raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
-        header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))]) or [[]]
+        header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))], file) or [[]]
     names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
     return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)
 
@@ -134,6 +137,7 @@ def workbook(file: Path) -> Iterator[Any]:
     """A workbook's values, not its formulas."""
     from openpyxl import load_workbook
 
+    check_archive(file)
     book = load_workbook(file, read_only=True, data_only=True, keep_links=False)
     try:
         yield book
@@ -141,21 +145,29 @@ def workbook(file: Path) -> Iterator[Any]:
         book.close()
 
 
-def worksheet_rows(sheet: Any) -> list[list[Any]]:
+def worksheet_rows(sheet: Any, file: Path) -> list[list[Any]]:
     """Cells row by row, as wide as the widest row; None for empty cells and for errors such as #DIV/0!."""
     from openpyxl.cell.cell import ERROR_CODES
 
-    rows = [[None if c in ERROR_CODES or c == "" else c for c in row] for row in sheet.iter_rows(values_only=True)]
+    sheet.reset_dimensions()  # as the file claims them, rows and columns without a cell would be filled up
+    where = f"{file} worksheet '{sheet.title}'"
+    every = counted_rows(sheet.iter_rows(values_only=True), where)
+    rows = [[None if c in ERROR_CODES or c == "" else c for c in row] for row in every]
     width = max((j + 1 for row in rows for j, c in enumerate(row) if c is not None), default=0)
     while rows and all(c is None for c in rows[-1]):
         rows.pop()
+    check_shape(len(rows), width, where)
     return [[*row, *[None] * width][:width] for row in rows]
 
 
 def _parquet(file: Path) -> Columns:
-    from pyarrow.parquet import read_table
+    from pyarrow.parquet import ParquetFile
 
-    table = read_table(file)
+    with ParquetFile(file) as parquet:
+        about = parquet.metadata
+        check_shape(about.num_rows, about.num_columns, file)
+        BYTES.check(sum(about.row_group(i).total_byte_size for i in range(about.num_row_groups)), file, "holds")
+        table = parquet.read()
     columns = zip(table.column_names, table.columns, strict=True)
     return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)]
 
@@ -163,6 +175,9 @@ def _parquet(file: Path) -> Columns:
 def _tdms(file: Path, group: str) -> Columns:
     from nptdms import TdmsFile
 
+    with TdmsFile.read_metadata(file) as about:
+        sizes = [len(channel) for g in about.groups() for channel in g.channels()]
+        check_shape(max(sizes, default=0), len(sizes), file)
     with TdmsFile.read(file) as tdms:
         groups = [g for g in tdms.groups() if not group or g.name == group]
         if not groups and group:
@@ -186,6 +201,8 @@ def _mf4(file: Path) -> Columns:
     from asammdf import MDF
 
     with MDF(file) as mdf:
+        for group in mdf.groups:
+            check_shape(group.channel_group.cycles_nr, len(group.channels), file)
         signals = [s for s in mdf.iter_channels(skip_master=True) if len(s.samples) and s.samples.ndim == 1]
         return joined((s.name, np.asarray(s.timestamps, float), np.asarray(s.samples)) for s in signals)
 
@@ -194,6 +211,7 @@ def joined(signals: Iterable[Signal]) -> Columns:
     """Signals (name, time, values) of any rates on all their instants, with a column `time_s`."""
     whole = list(signals)
     instants = np.unique(np.round(np.concatenate([t for _, t, _ in whole]) / GRAIN)) if whole else np.zeros(0)
+    CELLS.check(instants.size * (len(whole) + 1), "signals of several rates", "need")
     columns: dict[str, Array] = {TIME: instants * GRAIN}
     for name, time, values in whole:
         at = np.searchsorted(instants, np.round(time / GRAIN))

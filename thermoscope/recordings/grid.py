@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.limits import INSTANTS
 from thermoscope.recordings.tables import Samples
 
 Array = NDArray[np.float64]
-LEAST, MOST = 3, 2_000_000  # instants; more would not fit into memory with their tangents
+LEAST = 3  # instants
 LONGEST_S = 3.2e7  # a year
 COARSE = 10.0  # times sample_s
 ROUNDING = 1e-6  # of a time: minutes with twelve digits are off by less, and no instant at an edge may come or go
@@ -23,10 +24,10 @@ def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]
     usual, span = float(np.median(np.diff(samples.time))), float(samples.time[-1])
     interval = max(step, usual)
     count = span / interval + 1
-    if not LEAST <= count <= MOST or span > LONGEST_S:
+    if not LEAST <= count <= INSTANTS.most or span > LONGEST_S:
         raise InputError(f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of "
-                         f"{interval:.4g} s", where, f"{LEAST} to {MOST:.0g} instants and at most a year: is time_unit "
-                         "right, and sample_s of case.toml?")  # fmt: skip
+                         f"{interval:.4g} s", where, f"{LEAST} to {INSTANTS.most:,} instants ({INSTANTS.variable}) and "
+                         "at most a year: is time_unit right, and sample_s of case.toml?")  # fmt: skip
     coarse = usual > COARSE * step
     note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
     return np.arange(0.0, span + ROUNDING * interval, interval), [note] if coarse else []

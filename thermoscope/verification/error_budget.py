@@ -17,6 +17,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Array, Network, Row
 from validation.case import Channel, Test
 from validation.comparison.predict import heat_model, record
+from validation.counting import counted
 from validation.parameters.unknowns import working
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def error_budgets(folder: Folder, records: Mapping[str, Record], progress: Progr
         progress("estimating the error of mesh and condensation")
         rated = cached_errors(folder.built, looks)
         rows |= hot_rows(network, rated)
-    return {name: _of_run(network, values, run, rows, rated) for name, run in records.items()}
+    each = counted("estimating the error of the time steps", records.items())
+    return {name: _of_run(network, values, run, rows, rated) for name, run in each}
 
 
 def budgets_of(folder: Folder, tests: Sequence[Test]) -> dict[str, ErrorBudget]:

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from lumped.model.network import Network
     from thermoscope.case_folder.settings import Settings
 
-LARGEST = 2**30  # bytes of one drop: an hour at 1 kHz in text, twice over
 CHUNK = 2**20  # bytes: little memory, few system calls
 
 

@@ -12,11 +12,11 @@ from contextlib import suppress
 from aiohttp import web
 
 from geom.errors import InputError
+from geom.limits import DROP_BYTES
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.show.viewer import stored_documents
 from thermoscope.workbench.access_control import AccessControl
 from thermoscope.workbench.appearance import appearance_of
-from thermoscope.workbench.dropped import LARGEST
 from thermoscope.workbench.jobs import FailedError, StoppedError, prepare
 from thermoscope.workbench.machines import Bench, Machines
 from thermoscope.workbench.steps import comparing_job, drawing_job
@@ -33,7 +33,7 @@ def token_for(token: str | None) -> str:
     return token or secrets.token_urlsafe(24)
 
 
-def application(folder: Folder, access: AccessControl, largest_drop: int = LARGEST) -> web.Application:
+def application(folder: Folder, access: AccessControl, largest_drop: int = DROP_BYTES.most) -> web.Application:
     """The pages of a case, for those who have access; model and machine are prepared once it is served.
 
     largest_drop : of files dropped on a page (bytes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,13 @@ from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Channel, Test
 from validation.comparison.linearisation import stretch
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
-from validation.comparison.predict import Watch, predict
+from validation.comparison.predict import Watch
 from validation.measurement.operators import head
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
+NONE = np.empty(0)
+NUMBERS = 2**20  # of a stretch: 8 MB, and some copies, stay near the processor; a longer one waits for its memory
 
 
 @dataclass(frozen=True)
@@ -46,17 +50,28 @@ class Bands:
 
 @dataclass(frozen=True)
 class Deviations:
-    """What moves predicted temperatures, by one deviation each.
+    """What moves predicted temperatures, by one deviation each, looked at from the beginning on, stretch by stretch.
 
-    plain (nt, n) : as the model stands;  watch : tangents of what is uncertain, times `size`;  beside (nt, n, k) : of
-    inputs;  root : R, so that columns @ R are independent, the offset of the fit among them
+    watch : the model as it stands, with tangents of what is uncertain, times `size`;  beside : with one input moved
+    root : R, so that columns @ R are independent, the offset of the fit among them
     """
 
-    plain: Array
     watch: Watch
     size: Array
-    beside: Array
+    beside: tuple[Watch, ...]
     root: Array
+
+    def stretches(self) -> Iterator[tuple[Array, Array]]:
+        """Temperatures (m, n) and what moves them (m, n, k): never in memory as a whole, whatever the test's length."""
+        test = self.watch.test
+        length = stretch(len(test.channels), self.size.size + len(self.beside), NUMBERS)
+        for stop in range(length, test.time.size + length, length):
+            look = partial(Watch.until, stop=min(stop, test.time.size))
+            plain, *variants = side_by_side(look, (self.watch, *self.beside))
+            yield (
+                plain.y,
+                np.concatenate([plain.J * self.size, *((m.y - plain.y)[:, :, None] for m in variants)], axis=2),
+            )
 
 
 def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
@@ -64,26 +79,32 @@ def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> D
     virtual = replace(test, channels=tuple(_virtual_channel(p, test) for p in places))
     network, free, size = acting(of, virtual)
     now = {**values_of(network, None), **of.values}
-    plain = predict(network, virtual, now).y
-    responses = {
-        name: predict(network, other, now).y - plain for name, other in moved_inputs(network, virtual, of.doubt)
-    }
     boundary_names = {p.targets[0][0] for p in free if head(p) == "boundary"}
-    for name, other in moved_boundaries(virtual, of.doubt):
-        if name not in boundary_names:
-            responses[name] = predict(network, other, now).y - plain
+    variants = dict(moved_inputs(network, virtual, of.doubt))
+    variants |= {name: other for name, other in moved_boundaries(virtual, of.doubt) if name not in boundary_names}
     sd = np.array([p.prior_sd for p in free]) / size
-    names = [*(p.name for p in free), *responses]
-    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(responses))])), of.offsets(names)
-    beside = np.stack([*responses.values()], axis=2) if responses else np.zeros((*plain.shape, 0))
-    return Deviations(plain, Watch(network, virtual, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
+    names = [*(p.name for p in free), *variants]
+    Sigma, offset = of.of(names, np.concatenate([sd, np.ones(len(variants))])), of.offsets(names)
+    beside = tuple(Watch(network, other, now) for other in variants.values())
+    return Deviations(Watch(network, virtual, now, free), size, beside, np.column_stack([_root(Sigma), offset]))
 
 
 def bands(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Bands:
     """Temperatures of places along a record, and how sure they are."""
-    by = deviations(of, test, places)
-    slow = np.array([of.slow(p.row) for p in places]) * np.abs(by.plain - by.plain[0])
-    return Bands(test.time, tuple(p.name for p in places), by.plain, np.sqrt(_variance(by) + slow**2))
+    parts = list(band_stretches(of, test, places))
+    y, sd = np.concatenate([part.y for part in parts]), np.concatenate([part.sd for part in parts])
+    return Bands(test.time, parts[0].names, y, sd)
+
+
+def band_stretches(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Iterator[Bands]:
+    """The same stretch by stretch: what a long test needs of memory does not grow with it."""
+    by, names, start, first = deviations(of, test, places), tuple(p.name for p in places), 0, NONE
+    share = np.array([of.slow(p.row) for p in places])
+    for y, columns in by.stretches():
+        first = first if start else y[0].copy()
+        sd = np.sqrt(_variance(columns, by.root) + (share * np.abs(y - first)) ** 2)
+        yield Bands(test.time[start : start + len(y)], names, y, sd)
+        start += len(y)
 
 
 def at_end(of: ParameterPosterior, test: Test) -> tuple[Array, Array, Array]:
@@ -94,8 +115,8 @@ def at_end(of: ParameterPosterior, test: Test) -> tuple[Array, Array, Array]:
     """
     names = of.network.states
     by = deviations(of, test, [Place(n, Row(np.array([i]), np.ones(1))) for i, n in enumerate(names)])
-    last = [columns[-1] for columns in _columns(by)][-1]
-    return by.plain[0], by.plain[-1], last @ by.root
+    ends = [(y[0], y[-1], columns[-1]) for y, columns in by.stretches()]
+    return ends[0][0], ends[-1][1], ends[-1][2] @ by.root
 
 
 def _root(Sigma: Array) -> Array:
@@ -104,18 +125,11 @@ def _root(Sigma: Array) -> Array:
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
-def _columns(by: Deviations) -> Iterator[Array]:
-    """(nt, n, k) stretch by stretch: tangents are never in memory as a whole."""
-    nt, n, k = by.beside.shape
-    length = stretch(n, by.size.size + k)
-    for first in range(0, nt, length):
-        some = slice(first, min(first + length, nt))
-        yield np.concatenate([by.watch.until(some.stop).J * by.size, by.beside[some]], axis=2)
-
-
-def _variance(by: Deviations) -> Array:
-    """(nt, n) K2."""
-    return np.concatenate([np.sum((columns @ by.root) ** 2, axis=2) for columns in _columns(by)])
+def _variance(columns: Array, root: Array) -> Array:
+    """(m, n) K2 of columns (m, n, k)."""
+    m, n, k = columns.shape
+    independent = columns.reshape(m * n, k) @ root
+    return np.einsum("ij,ij->i", independent, independent).reshape(m, n)
 
 
 def _virtual_channel(place: Place, test: Test) -> Channel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from lumped.model.network import Network
 from validation.case import Case, Channel, Test
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
+from validation.counting import counted
 from validation.doubt import USUAL, Doubt
 from validation.parameters.unknowns import nuisances, working
 
@@ -163,20 +164,40 @@ def compare(
     def judged(network: Network, test: Test, now: Mapping[str, float]) -> TestError:
         return judged_error(network, test, now, case.doubt, None if budgets is None else budgets[test.name])
 
-    return _of_every_test(case, values, judged)
+    return _of_every_test(case, values, judged, counted("running the model", case.tests))
+
+
+class StoppedComparisonError(KeyboardInterrupt):
+    """The user stopped a comparison.  so_far : of the tests that were compared until then"""
+
+    def __init__(self, so_far: Comparison) -> None:
+        super().__init__()
+        self.so_far = so_far
 
 
 def errors(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
     """The errors alone, for searches: nothing says whether they are within the uncertainty."""
-    return _of_every_test(case, values, test_error)
+    return _of_every_test(case, values, test_error, case.tests)
 
 
-def _of_every_test(case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError]) -> Comparison:
+def _of_every_test(
+    case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError], tests: Iterable[Test]
+) -> Comparison:
     network, _ = working(case)
     now = physical(case, values)
-    tests = tuple(error_of(network, t, now) for t in case.tests)
-    effects = tuple(e.name for e in case.model.effects)
-    return Comparison(case.name, case.model.revision, effects, tests, case.model.network.identities)
+    effects, rows = tuple(e.name for e in case.model.effects), list[TestError]()
+
+    def comparison() -> Comparison:
+        return Comparison(case.name, case.model.revision, effects, tuple(rows), case.model.network.identities)
+
+    try:
+        for test in tests:
+            rows.append(error_of(network, test, now))
+    except KeyboardInterrupt:
+        if rows:
+            raise StoppedComparisonError(comparison()) from None
+        raise
+    return comparison()
 
 
 def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:

@@ -97,3 +97,59 @@ def test_the_first_run_of_long_commands_knows_a_share(tmp_path, monkeypatch):
     known = progress_bar._usual()
     assert {"demo", "explain diagnose 0", "model build 0", "model calibrate 0", "model add 0"} <= set(known)
     assert all(sum(stages.values()) > progress_bar.WORTH_S for stages in known.values())
+
+
+def test_a_stage_that_counts_says_how_long_it_takes():
+    """The last time it took 2 s; by its own count it takes 100 s, and what follows fifty times 3 s."""
+    clock = Clock()
+    stages, seen = ProgressBar({"mesh": 50.0, "reading": 2.0, "fitting": 3.0}, clock), []
+    for number in range(1, 101):
+        stages.enter(f"reading run{number} ({number} of 100)")
+        clock.now += 0.5
+        seen.append(stages.left()[0])
+        clock.now += 0.5
+        if number == 50:
+            assert stages.left()[1] == pytest.approx(51.0 + 153.0, rel=0.03)
+    assert seen == sorted(seen)
+    stages.enter("fitting")
+    assert stages.left()[1] == pytest.approx(150.0), "a mesh that was not needed is not waited for"
+
+
+def test_a_line_of_80_columns_keeps_its_times():
+    from io import StringIO
+
+    from rich.console import Console
+
+    clock, screen = Clock(), StringIO()
+    stages = ProgressBar({"running": 5400.0, "writing": 60.0}, clock)
+    console = Console(file=screen, force_terminal=True, width=80)
+    with progress_bar._bar(stages, console) as tell:
+        tell(f"running {'a test of a very long name ' * 5}(3 of 200)")
+        clock.now = 60.0
+        time.sleep(0.3)
+    lines = [line for line in re.split(r"[\r\n]", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "\r", screen.getvalue())) if line]
+    text = re.sub(r"\s+", " ", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", screen.getvalue()))
+    assert max(len(line) for line in lines) <= 80
+    assert re.search(r"\d+ %, about \d+ min left 0:00:0\d", text)
+    assert "…" in text
+
+
+def test_a_pipe_hears_of_a_long_stage(capsys, monkeypatch):
+    monkeypatch.setattr(progress_bar, "QUIET_S", 0.2)
+    with progress_bar._lines(ProgressBar({"running": 60.0})) as tell:
+        tell("running the model")
+        time.sleep(1.0)
+    assert len(capsys.readouterr().err.splitlines()) > 2
+
+
+def test_a_case_is_remembered_for_itself(tmp_path, monkeypatch):
+    """A large case says nothing of a small one that was looked at before."""
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+    for case, seconds in (("small", 3.0), ("large", 300.0)):
+        monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
+        with progress_bar._remembering("test compare") as stages:
+            stages.took["running"] = seconds
+    for case, seconds in (("small", 3.0), ("large", 300.0), ("new", 300.0)):
+        monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
+        with progress_bar._remembering("test compare") as stages:
+            assert stages.last == {"running": seconds}

@@ -10,7 +10,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
-from validation.bands import Place, at_end, bands, parameter_posterior
+from validation.bands import Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.at_rest import AtRest
 from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import thermal
@@ -48,6 +48,22 @@ def measured(seen=("shell",), seed=0, factors=(1.0, 1.0, 1.0)):
                 for i, n in enumerate(("core", "shell")) if n in seen]  # fmt: skip
     air = np.full(TIME.size, 20.0)
     return Test("stand", "calibrate", TIME, {}, {"air": air}, tuple(channels), 20.0), T
+
+
+def test_stretch_by_stretch_they_are_the_same(monkeypatch):
+    """What a long test needs of memory is that of a stretch."""
+    network, (test, _) = chain(), measured()
+    of = parameter_posterior(Case("chain", Model(network), (test,)))
+    whole, last = bands(of, test, places(network)), at_end(of, test)
+    monkeypatch.setattr("validation.bands.band.NUMBERS", 1)
+    monkeypatch.setattr("validation.comparison.linearisation.SHORTEST", 7)
+    parts = list(band_stretches(of, test, places(network)))
+    assert max(part.time.size for part in parts) == 7
+    assert_allclose(np.concatenate([part.time for part in parts]), TIME)
+    for cut, at_once in ((bands(of, test, places(network)), whole), (at_end(of, test), last)):
+        pairs = [(cut.y, at_once.y), (cut.sd, at_once.sd)] if at_once is whole else zip(cut, at_once, strict=True)
+        for a, b in pairs:
+            assert_allclose(a, b, rtol=1e-9, atol=1e-9)
 
 
 def test_before_a_calibration_the_priors_add_up():

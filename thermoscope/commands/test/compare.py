@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.files import STOPPED
 from validation.comparison.uncertainty import RULE
 
 if TYPE_CHECKING:
@@ -24,10 +25,30 @@ TURNS = {True: "yes", False: "no", None: ""}
 
 def compare(case: str, target: str | None, why: bool = False, sure: bool | None = None) -> int:
     """Exit code 1 when a sensor's error is beyond the uncertainty of reading, inputs and arithmetic."""
+    from validation.comparison.compare import StoppedComparisonError
+
     with progress() as tell:
-        result, document = compared(open_case(case, tell), tell, why, sure)
+        folder = open_case(case, tell)
+        try:
+            result, document = compared(folder, tell, why, sure)
+        except KeyboardInterrupt as stopped:
+            so_far = stopped.so_far if isinstance(stopped, StoppedComparisonError) else vars(folder).get("compared")
+            if so_far is None:
+                raise
+            return _stopped(folder, so_far, case)
     give(document, target, lambda: answer(document, case))
     return 0 if result.agrees else 1
+
+
+def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
+    """What is known of a comparison that the user stopped; no document, which others would take for the whole."""
+    from thermoscope.verification.error_budget import documents
+
+    document = {**so_far.document(), "error_budget": documents(folder.budgets), **sampling(folder)}
+    give(document, None, lambda: answer(document, called))
+    notes([f"stopped: {len(so_far.tests)} of {len(folder.case.tests)} tests were compared, and the table holds these; "
+           "nothing was written"])  # fmt: skip
+    return STOPPED
 
 
 def compared(

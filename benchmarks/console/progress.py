@@ -1,0 +1,97 @@
+"""How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
+
+    python benchmarks/console/progress.py [--only CASE ...] [--json FILE]
+
+After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
+which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import pty
+import re
+import select
+import struct
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CASES = ("tclab", "hust-ipmsm", "pmsm-bases", "road-test")
+COLUMNS, SHORT_S, FIFTH = 80, 10.0, 0.2
+CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+LINE = re.compile(r"(\d+) %, about (\d+) (s|min) left")
+
+
+@dataclass(frozen=True)
+class Row:
+    """ratio : time left as shown over as it was, after a fifth of the work;  stood_s : longest without a new share"""
+
+    case: str
+    run: str
+    took_s: float
+    ratio: float | None
+    stood_s: float | None
+    widest: int
+
+
+def shown(command: list[str], environment: dict[str, str]) -> Iterator[tuple[float, str]]:
+    """Seconds since the start, and the lines as a terminal gets them."""
+    import fcntl
+    import termios
+
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execvpe(command[0], command, environment)
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
+    begin = time.monotonic()
+    while True:
+        select.select([terminal], [], [])
+        try:
+            text = os.read(terminal, 2**16).decode(errors="replace")
+        except OSError:  # how a terminal says that nobody writes any more
+            break
+        for line in CONTROL.sub("\r", text).replace("\n", "\r").split("\r"):
+            yield time.monotonic() - begin, line
+    os.waitpid(pid, 0)
+
+
+def measured(case: str, run: str, cache: str) -> Row:
+    """One command."""
+    command = [sys.executable, "-m", "thermoscope", "test", "compare", str(ROOT / "cases" / case)]
+    lines = list(shown(command, {**os.environ, "THERMOSCOPE_CACHE": cache, "TERM": "xterm"}))
+    took, widest = lines[-1][0], max(len(line) for _, line in lines)
+    found = [(t, m) for t, line in lines if (m := LINE.search(line))]
+    later = [(t, float(m[2]) * (60.0 if m[3] == "min" else 1.0)) for t, m in found if t >= FIFTH * took]
+    if not later or took < SHORT_S:
+        return Row(case, run, took, None, None, widest)
+    changes = [t for (_, a), (t, b) in pairwise(found) if a[1] != b[1]]
+    stood = max(b - a for a, b in pairwise([found[0][0], *changes, took]))
+    return Row(case, run, took, later[0][1] / (took - later[0][0]), stood, widest)
+
+
+def main() -> None:
+    """A row per case and run."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", nargs="+", default=CASES)
+    parser.add_argument("--json", type=Path)
+    options, rows = parser.parse_args(), []
+    for case in options.only:
+        with tempfile.TemporaryDirectory() as cache:
+            rows += [measured(case, run, cache) for run in ("first", "second")]
+        for row in rows[-2:]:
+            told = "short" if row.ratio is None else f"{row.ratio:5.2f} of what was left, stood {row.stood_s:.0f} s"
+            print(f"{row.case:12s} {row.run:7s} {row.took_s:6.1f} s  {told}, {row.widest} columns", flush=True)
+    if options.json:
+        options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,46 @@
+"""A comparison that the user stops gives what is known, and says what was kept."""
+
+import pytest
+
+from tests.shared.command_line import answered
+from tests.shared.small_case import small_case
+from validation.comparison import compare as comparison
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return small_case(tmp_path_factory.mktemp("stopped"))
+
+
+def stop_in(monkeypatch, number):
+    """As Ctrl-C does, while the test of that number is compared."""
+    usual, so_far = comparison.judged_error, []
+
+    def judged(*given):
+        so_far.append(given)
+        if len(so_far) == number:
+            raise KeyboardInterrupt
+        return usual(*given)
+
+    monkeypatch.setattr(comparison, "judged_error", judged)
+
+
+def test_what_was_compared_is_shown(case, monkeypatch, tmp_path):
+    whole = answered("test", "compare", case, "--json", "-").document
+    stop_in(monkeypatch, 3)
+    done = answered("test", "compare", case, "--json", tmp_path / "a.json")
+    assert done.code == 130
+    assert "2 of 3 tests were compared" in done.err
+    assert "kept in" in done.err
+    assert f"of {sum(len(t['channels']) for t in whole['tests'][:2])} sensor records" in done.out
+    assert not (tmp_path / "a.json").exists(), "a part would be taken for the whole"
+    monkeypatch.undo()
+    assert answered("test", "compare", case, "--json", "-").document == whole
+
+
+def test_nothing_known_is_said_too(case, monkeypatch):
+    stop_in(monkeypatch, 1)
+    done = answered("test", "compare", case)
+    assert done.code == 130
+    assert "stopped: inputs are as they were" in done.err
+    assert "Traceback" not in done.err

@@ -1,0 +1,126 @@
+"""What a small file may ask of the machine: refused before it is kept, by a limit that says its name and its cure."""
+
+import gzip
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from geom import import_step, load_machine
+from geom.errors import InputError
+from geom.limits import LIMITS, PAGE, page
+from geom.meshing.mesher import COARSE, build_mesh
+from thermoscope.importing.source import read_source
+from thermoscope.recordings.formats import read_recording
+
+HEADER = "time_s,T_winding,air\n"
+ROWS = [[float(k), 20.0 + k, 20.0] for k in range(40)]
+MEMORY_MB = 400  # of a process that reads a small file: packages alone take about 200
+
+
+def text(path, rows=ROWS, end=""):
+    content = HEADER + "".join(",".join(map(str, row)) + "\n" for row in rows) + end
+    path.write_bytes(gzip.compress(content.encode()) if path.suffix == ".gz" else content.encode())
+    return path
+
+
+def book(path, **cells):
+    openpyxl = pytest.importorskip("openpyxl")
+    workbook = openpyxl.Workbook()
+    for row in [HEADER.strip().split(","), *ROWS]:
+        workbook.active.append(row)
+    for where, value in cells.items():
+        workbook.active[where] = value
+    workbook.save(path)
+    return path
+
+
+def parquet(path):
+    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    columns = dict(zip(HEADER.strip().split(","), zip(*ROWS, strict=True), strict=True))
+    pq.write_table(pa.table({name: list(values) for name, values in columns.items()}), path)
+    return path
+
+
+FILES = {"a.csv": text, "a.csv.gz": text, "a.xlsx": book, "a.parquet": parquet}
+
+
+def test_page_of_limits_is_current():
+    """After a change: python -m geom.limits"""
+    assert PAGE.read_text(encoding="utf-8") == page()
+
+
+@pytest.mark.parametrize("reader", [read_recording, read_source])
+@pytest.mark.parametrize(("limit", "low"), [("rows", 20), ("cells", 60), ("bytes", 200)])
+@pytest.mark.parametrize("name", FILES)
+def test_what_is_too_much_is_refused_by_name_and_read_with_the_limit_raised(
+    tmp_path, monkeypatch, name, limit, low, reader
+):
+    file = FILES[name](tmp_path / name)
+    monkeypatch.setenv(f"THERMOSCOPE_MOST_{limit.upper()}", str(low))
+    with pytest.raises(InputError) as refused:
+        reader(file)
+    found = re.search(rf"{re.escape(str(file))}.*the limit '{limit}', raised by (\w+)=(\d+)", str(refused.value))
+    monkeypatch.setenv(found[1], "1_000_000")
+    assert reader(file).rows == len(ROWS)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.csv.gz"])
+def test_rows_of_nothing_count(tmp_path, monkeypatch, name):
+    file = text(tmp_path / name, end=",,\n" * 1000)
+    monkeypatch.setenv("THERMOSCOPE_MOST_ROWS", "500")
+    with pytest.raises(InputError, match="limit 'rows'"):
+        read_source(file)
+
+
+def test_seconds_of_reading_are_bounded(tmp_path, monkeypatch):
+    instants = iter(range(0, 10**6, 1000))
+    monkeypatch.setattr("geom.limits.time.monotonic", lambda: next(instants))
+    with pytest.raises(InputError, match="limit 'seconds'"):
+        read_recording(text(tmp_path / "a.csv"))
+
+
+MEASURED = """
+import resource, sys
+from pathlib import Path
+from geom.errors import InputError
+from thermoscope.importing.source import read_source
+try:
+    print(read_source(Path(sys.argv[1])).rows)
+except InputError as fault:
+    print(fault)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
+@pytest.mark.parametrize(("cell", "word"), [("XFD1048576", "limit 'columns'"), ("ALL1048576", "limit 'cells'"),
+                                            ("B1048576", str(len(ROWS) + 1))])  # fmt: skip
+def test_a_cell_far_away_takes_no_memory(tmp_path, cell, word):
+    """Filled up, that would be up to 17 billion cells; a few columns wide it is one more row."""
+    file = book(tmp_path / "a.xlsx", **{cell: 1.0})
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("THERMOSCOPE_MOST")}
+    done = subprocess.run([sys.executable, "-c", MEASURED, file], capture_output=True, text=True, env=environment)
+    said, memory_MB = done.stdout.splitlines()
+    assert word in said
+    assert int(memory_MB) < MEMORY_MB
+
+
+def test_limits_of_meshes_and_step_files(tmp_path, monkeypatch):
+    monkeypatch.setenv("THERMOSCOPE_MOST_MESH_POINTS", "50")
+    with pytest.raises(InputError, match="limit 'mesh_points'"):
+        build_mesh(load_machine("tefc-industrial"), **COARSE)
+    monkeypatch.setenv("THERMOSCOPE_MOST_STEP_BYTES", "10")
+    file = tmp_path / "wire.step"
+    file.write_text("ISO-10303-21;")
+    with pytest.raises(InputError, match="limit 'step_bytes'"):
+        import_step(file)
+
+
+def test_a_limit_that_is_no_number_is_said(monkeypatch):
+    for limit in LIMITS:
+        monkeypatch.setenv(limit.variable, "many")
+        with pytest.raises(InputError, match=limit.variable):
+            limit.check(1.0, "here")

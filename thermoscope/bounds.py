@@ -1,0 +1,58 @@
+"""Recordings are counted before they are kept: bytes, rows and columns, in pieces that need no memory themselves."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import IO, Any
+
+from geom.limits import BYTES, CELLS, COLUMNS, ROWS, ReadingTime
+
+CHUNK = 2**24  # bytes
+DELIMITERS = (b",", b";", b"\t", b"|")
+
+
+def check_text(source: IO[bytes], file: Path) -> None:
+    """InputError where a text file, as it is unpacked, has more bytes, lines or cells than a recording may have."""
+    size, lines, delimiters, clock = 0, [0, 0], [0] * len(DELIMITERS), ReadingTime(file)
+    while part := source.read(CHUNK):
+        size += len(part)
+        lines = [n + part.count(end) for n, end in zip(lines, (b"\n", b"\r"), strict=True)]
+        delimiters = [n + part.count(sign) for n, sign in zip(delimiters, DELIMITERS, strict=True)]
+        BYTES.check(size, file, "holds at least")
+        ROWS.check(max(lines), file, "holds at least")
+        CELLS.check(max(delimiters), file, "holds at least")
+        clock.check()
+
+
+def check_size(file: Path) -> None:
+    """InputError where the file itself has more bytes than a recording may have."""
+    BYTES.check(file.stat().st_size, file, "holds")
+
+
+def check_archive(file: Path) -> None:
+    """InputError where a workbook, unpacked, has more bytes than a recording may have."""
+    with zipfile.ZipFile(file) as archive:
+        BYTES.check(sum(entry.file_size for entry in archive.infolist()), file, "holds")
+
+
+def check_shape(rows: int, columns: int, where: object) -> None:
+    """InputError where a table would have too many rows, columns or cells."""
+    ROWS.check(rows, where, "holds")
+    COLUMNS.check(columns, where, "holds")
+    CELLS.check(rows * columns, where, "holds")
+
+
+def counted_rows(rows: Iterable[tuple[Any, ...]], where: object) -> Iterator[tuple[Any, ...]]:
+    """Rows of a sheet as they come, empty ones at their end cut off; InputError at the first that is too much."""
+    clock, cells = ReadingTime(where), 0
+    most_rows, most_columns, most_cells = ROWS.most, COLUMNS.most, CELLS.most
+    for number, row in enumerate(rows, 1):
+        cells += len(row)
+        if number > most_rows or len(row) > most_columns or cells > most_cells:
+            check_shape(number, len(row), where)
+            CELLS.check(cells, where, "holds at least")
+        if number % 1000 == 0:
+            clock.check()
+        yield row
