@@ -26,6 +26,7 @@ def untouched(monkeypatch):
     case = SimpleNamespace(built=object(), case=SimpleNamespace(name="motor"))
     for module in (film, picture):
         monkeypatch.setattr(module, "open_case", lambda path, tell: case)
+    monkeypatch.setattr(film, "needs_geometry", lambda name: None)
 
 
 @pytest.mark.parametrize("what", SOLID)
