@@ -5,17 +5,15 @@ v_d = R i_d - w Lq i_q,  v_q = R i_q + w (Ld i_d + psi),  T = 3/2 p (psi + (Ld -
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import ALPHA_CU, RPM
+from lumped.drives.limits import bisected, highest
 
 Array = NDArray[np.float64]
-HALVINGS = 50  # a current to the last digit
-GOLDEN, SHRINKS = 0.5 * (5.0**0.5 - 1.0), 60  # steps of a golden section: the place of a maximum to half the digits
 TINY = 1e-30  # in place of 0 ohm and 0 V/A, where no voltage limits a current
 EDGE = 1e-9  # of a current or voltage limit: what counts as kept
 
@@ -169,7 +167,7 @@ class _Region:
         zero = -self.psi * self.side / slope  # where the gain is
         away = np.abs(zero) + np.sqrt(wanted / abs(slope)) + TINY
         low, high = (zero, zero + 2.0 * away) if slope > 0.0 else (zero - 2.0 * away, zero)
-        return _bisected(lambda i_d: i_d * self.gain(i_d) ** 3 - slope * (wanted**2 + TINY), low, high)
+        return bisected(lambda i_d: i_d * self.gain(i_d) ** 3 - slope * (wanted**2 + TINY), low, high)
 
 
 def _limited(region: _Region, wanted: Array) -> tuple[Array, Array]:
@@ -213,14 +211,14 @@ def _on_side(region: _Region, wanted: Array) -> tuple[Array, Array]:
         i_q, q = wanted / np.maximum(region.gain(i_d), TINY), region.bounds(i_d)
         return np.minimum(q[1] - i_q, i_q - q[0])
 
-    widest = _highest(room, low, high)
+    widest = highest(room, low, high)
     empty |= room(widest) < 0.0
-    first, last = _bisected(room, low, widest), _bisected(room, high, widest)
-    best = _highest(lambda i_d: region.gain(i_d) * region.bounds(i_d)[1], first, last)
+    first, last = bisected(room, low, widest), bisected(room, high, widest)
+    best = highest(lambda i_d: region.gain(i_d) * region.bounds(i_d)[1], first, last)
     most = region.bounds(best)[1]
-    easiest = _highest(spare, first, last)
+    easiest = highest(spare, first, last)
     within = spare(easiest) >= 0.0
-    left, right = _bisected(spare, first, easiest), _bisected(spare, last, easiest)
+    left, right = bisected(spare, first, easiest), bisected(spare, last, easiest)
     i_d = np.clip(region.least(wanted), left, right)
     # Beyond the most torque: that. Below the least, which a machine that brakes at high speed has: the least.
     over = ~within & (region.gain(best) * most < wanted)
@@ -228,30 +226,3 @@ def _on_side(region: _Region, wanted: Array) -> tuple[Array, Array]:
     i_q = np.where(within, wanted / np.maximum(region.gain(i_d), TINY),
                    np.where(over, most, region.bounds(i_d)[0]))  # fmt: skip
     return np.where(empty, np.nan, i_d), np.where(empty, np.nan, i_q)
-
-
-def _highest(f: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Where f, with one maximum between low and high, has it: golden section."""
-    a, b = low, high
-    left, right = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-    f_left, f_right = f(left), f(right)
-    for _ in range(SHRINKS):
-        rises = f_left < f_right
-        a, b = np.where(rises, left, a), np.where(rises, b, right)
-        left, right = np.where(rises, right, b - GOLDEN * (b - a)), np.where(rises, a + GOLDEN * (b - a), left)
-        kept = np.where(rises, f_right, f_left)
-        f_new = f(np.where(rises, right, left))
-        f_left, f_right = np.where(rises, kept, f_new), np.where(rises, f_new, kept)
-    middle = 0.5 * (a + b)
-    return np.asarray(np.where(f(low) > f(middle), low, np.where(f(high) > f(middle), high, middle)))
-
-
-def _bisected(f: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Where f, rising from low to high, passes 0, on the side where it is not below; an end where it does not."""
-    a, b = np.asarray(low, float), np.asarray(high, float)
-    whole = f(a) >= 0.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        below = f(middle) < 0.0
-        a, b = np.where(below, middle, a), np.where(below, b, middle)
-    return np.where(whole, low, b)
