@@ -12,7 +12,7 @@ from lumped.integration.audit import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import Law
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
@@ -26,8 +26,9 @@ def test_iron_follows_frequency_and_flux_exponents():
 
 
 def test_copper_at_speed_has_its_ac_share():
-    law = CopperLoss(0.01, ("current_A",), ac=(1.0, 0.0, 0.4), speed="speed_rpm", speed_at=2000.0)
-    assert_allclose(law.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
+    copper = CopperLoss(0.01, ("current_A",))
+    eddy = EddyLoss(copper, (1.0, 0.0, 0.4), "speed_rpm", 2000.0)
+    assert_allclose(copper.factor(AT) + eddy.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
 
 
 def test_brushes_drop_and_rub():
