@@ -21,7 +21,7 @@ class AcCopper(AddedLoss):
     kind = "copper.ac"
     title = "AC copper loss"
     sits = "a winding with copper loss"
-    at = "1000 rpm, 100 A and 20 degC"
+    at = "1000 rpm and 100 A and 20 degC"
     source = "Dowell 1966, low-frequency limit, P ~ f^2 I^2"
     isolating_test = "DC against AC at the same current"
     typical = (5.0, 300.0)
