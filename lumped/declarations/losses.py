@@ -10,6 +10,7 @@ from itertools import pairwise
 from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
@@ -107,6 +108,21 @@ def _ripple(table: Table) -> Law:
     )  # fmt: skip
 
 
+def _inverter(table: Table) -> Law:
+    return InverterLoss(
+        table.members("currents"), table.number("factor", 1.5), table.number("threshold_V"), table.number("R_on_ohm"),
+        table.number("switching_Hz"), table.number("switching_J"), table.number("reference_A"),
+        table.number("reference_V"), table.number("supply_V"), table.number("standby_W", 0.0), _temperature(table),
+    )  # fmt: skip
+
+
+def _pulses(table: Table) -> Law:
+    return PulseLoss(
+        table.word("voltage", "voltage_V"), table.number("supply_V"), table.number("L_H"),
+        table.number("switching_Hz"), table.number("R_pulse_ohm"), _temperature(table),
+    )  # fmt: skip
+
+
 def _map(table: Table) -> Law:
     speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
     watts = tuple(table.rows("P_W"))
@@ -146,7 +162,8 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
 
 
 LOSSES = {
-    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map,
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter, "pwm": _pulses,
+    "map": _map,
 }  # fmt: skip
 MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")

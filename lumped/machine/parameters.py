@@ -14,6 +14,7 @@ from lumped.sources.losses import EDDY
 LOSS_SPREAD = {
     "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
     "stray": 0.5, "switching": 0.3, "constant": 0.3, "measured": 0.1,
+    "ripple": 0.3, "map": 0.1, "inverter": 0.15, "pwm": 0.5,
 }  # fmt: skip
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
 

@@ -15,6 +15,7 @@ from lumped.declarations.separated import FilmOver, Share
 from lumped.integration.simulate import Record
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
@@ -23,11 +24,11 @@ from lumped.transfer.laws import (
     CLOCK,
     CONSTANT,
     FILMS,
+    Conductivity,
     Constant,
     FilmTable,
     Fixed,
     InputPower,
-    Conductivity,
     Linear,
     Power,
     Radiation,
@@ -76,6 +77,8 @@ LAWS = [
     EddyLoss(CopperLoss(0.02, ("current_A",)), (1.0, 0.0, 0.4), "speed_rpm", 2000.0),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
     BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
+    InverterLoss(("current_A",), 3.0, 0.1, 0.01, 8e3, 1e-6, 10.0, 600.0, 560.0, 1.0),
+    PulseLoss("voltage_V", 96.0, 1e-3, 1e4, 0.5),
     Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
     OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
     Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
@@ -159,6 +162,12 @@ LIMITS = {
         (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0),
         (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 60.0}, 0.0),
     ],
+    InverterLoss: [  # drivers alone; an ohmic switch carries a third of its time's square: 3/2 R I^2
+        (InverterLoss(("I",), 1.5, 1.0, 0.1, 8e3, 1e-3, 10.0, 600.0, 560.0, 7.0), {"I": 0.0}, 7.0),
+        (InverterLoss(("I",), 1.5, 0.0, 0.1, 8e3, 0.0, 10.0, 600.0, 560.0), {"I": -10.0}, 15.0),
+        (InverterLoss(("I",), 3.0, np.pi / 6.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0), {"I": 0.5**0.5}, 1.0),
+    ],
+    PulseLoss: [(PulseLoss("V", 48.0, 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0)],
     Rate: [(Rate(BY_FLOW), {"flow": 0.0}, 0.0), (Rate(BY_FLOW), {"flow": -3.0}, 6.0)],
     Exchanger: [  # nothing flows; endless plates bring the lesser stream all the way; small ones are UA
         (Exchanger(1.0, BY_FLOW, Flow(3.0)), {"flow": 0.0}, 0.0),
