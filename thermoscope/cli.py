@@ -49,7 +49,9 @@ Limit = Annotated[
 HotLimit = Annotated[
     list[str] | None,
     typer.Option(
-        "--limit", metavar="PLACE=DEGC", help="For example winding=155, of its hottest point, or winding.mean=145; several."
+        "--limit",
+        metavar="PLACE=DEGC",
+        help="For example winding=155, of its hottest point, or winding.mean=145; several.",
     ),
 ]
 Sure = Annotated[

@@ -19,7 +19,7 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import as_number
 from thermoscope.verification.error_budget import model_of
-from validation.optimisation.hot_spots import MEAN, hot_spots
+from validation.rating.hot_spots import MEAN, hot_spots
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
 from validation.rating.points import Model
@@ -88,7 +88,7 @@ def places(
         mine = [n for n in rows if n == of or roles.get(n) == of]
         if not mine:
             raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
-        out |= dict.fromkeys((f"{n}{name[len(of):]}" for n in mine), limits[name])
+        out |= dict.fromkeys((f"{n}{name[len(of) :]}" for n in mine), limits[name])
     return out
 
 

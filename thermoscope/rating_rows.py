@@ -18,9 +18,9 @@ from thermoscope.rating import Rated
 from validation.bands import ParameterPosterior
 from validation.bands.at_rest import AtRest
 from validation.comparison.predict import thermal
-from validation.optimisation.hot_spots import hot_spots
 from validation.rating.derating import deratings
 from validation.rating.envelope import TIMES, Rating, rated
+from validation.rating.hot_spots import hot_spots
 from validation.rating.operation import Operation
 
 STEADY_TIME_CONSTANTS = 20.0  # time constants

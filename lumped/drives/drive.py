@@ -172,22 +172,22 @@ def _march(time, profile, load, resistance, plant, control, step, out):
         span = time[t] - time[t - 1]
         count = max(1, int(np.ceil(span / step)))
         h, square, V, R = span / count, 0.0, 0.0, 0.5 * (resistance[t - 1] + resistance[t])
-        taken, heat, T = 0.0, 0.0, 0.0
+        energy, heat, T = 0.0, 0.0, 0.0
         for s in range(count):
             part = (s + 0.5) / count
             target = (profile[t - 1] + part * (profile[t] - profile[t - 1])) / wheel
             resist = load[t - 1] + part * (load[t] - load[t - 1]) + drag * (wheel * w) ** 2
             demand = Kp * (target - w) + integral
-            held = min(max(demand, -np.sqrt(grip / L_af)), i_max)
-            if demand == held:
+            command = min(max(demand, -np.sqrt(grip / L_af)), i_max)
+            if demand == command:
                 integral += Ki * (target - w) * h
-            braking = L_af * held * held if held < 0.0 else 0.0
-            i_ref = max(held, 0.0)
+            braking = L_af * command * command if command < 0.0 else 0.0
+            i_ref = max(command, 0.0)
             if braking > 0.0 and L_af * w > R:  # below, a generator would have to be fed
                 i_ref = min(np.sqrt(share * braking / L_af), i_max, v_max / (L_af * w - R))
-            if generates != (held < 0.0) and i <= 0.01 * i_max:
-                generates, i = held < 0.0, 0.0  # the field is reversed when next to no current is left
-            if generates != (held < 0.0):
+            if generates != (command < 0.0) and i <= 0.01 * i_max:
+                generates, i = command < 0.0, 0.0  # the field is reversed when next to no current is left
+            if generates != (command < 0.0):
                 i_ref = 0.0
             if generates:
                 end = i_ref + (i - i_ref) * np.exp(-h / lag)
@@ -200,12 +200,12 @@ def _march(time, profile, load, resistance, plant, control, step, out):
             T = -L_af * mean if generates else L_af * mean
             friction = max(braking + min(T, 0.0), 0.0)
             against = (resist / efficiency if resist > 0.0 else resist * efficiency) + B * w
-            if w > 0.0 or T > against or (against < 0.0 and target > 0.0):  # else it stands, on a slope by its brakes
+            if w > 0.0 or against < T or (against < 0.0 and target > 0.0):  # else it stands, on a slope by its brakes
                 w = max(w + h / J * (T - against - friction), 0.0)
             square += h * mean
-            taken += h * (R * mean + T * 0.5 * (before + w)) + 0.5 * L * (end * end - i * i)
+            energy += h * (R * mean + T * 0.5 * (before + w)) + 0.5 * L * (end * end - i * i)
             heat += h * friction * 0.5 * (before + w)
             i = max(end, 0.0)
         out[t, 0] = np.sqrt(square / span) if span > 0.0 else i
         out[t, 1], out[t, 2], out[t, 3], out[t, 4] = w, V, -L_af * i * i if generates else L_af * i * i, w * wheel
-        out[t, 5], out[t, 6] = (taken / span, heat / span) if span > 0.0 else (out[t - 1, 5], out[t - 1, 6])
+        out[t, 5], out[t, 6] = (energy / span, heat / span) if span > 0.0 else (out[t - 1, 5], out[t - 1, 6])

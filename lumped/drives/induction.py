@@ -74,7 +74,8 @@ class InductionMachine:
         return Operation(
             np.asarray(i_d), np.asarray(i_q), self.torque(i_d, i_q), np.hypot(v_d, v_q), w / (2.0 * np.pi),
             share, cage,
-            1.5 * (v_d * i_d + v_q * i_q), 1.5 * Rs * (i_d**2 + i_q**2), 1.5 * self.cage_resistance(cage_degC) * cage**2,
+            1.5 * (v_d * i_d + v_q * i_q), 1.5 * Rs * (i_d**2 + i_q**2),
+            1.5 * self.cage_resistance(cage_degC) * cage**2,
         )  # fmt: skip
 
     def currents(
@@ -89,17 +90,20 @@ class InductionMachine:
         demand, n, Tw, Tc = (
             np.asarray(x, float) for x in np.broadcast_arrays(torque, speed_rpm, winding_degC, cage_degC)
         )
-        sign, wanted = np.where(demand < 0.0, -1.0, 1.0), np.abs(demand)
+        sign, target = np.where(demand < 0.0, -1.0, 1.0), np.abs(demand)
 
         def most(ratio: Array) -> Array:
             """Largest i_d at a ratio i_q / i_d: slip does not change with it, so that voltages grow in proportion."""
             one = self.operation(np.ones_like(ratio), sign * ratio, n, Tw, Tc)
-            volts, amperes = self.voltage_limit / np.maximum(one.voltage, TINY), self.current_limit / np.hypot(1.0, ratio)
+            volts, amperes = (
+                self.voltage_limit / np.maximum(one.voltage, TINY),
+                self.current_limit / np.hypot(1.0, ratio),
+            )
             return np.minimum(np.minimum(volts, amperes), self.magnetising)
 
         low, high = np.full(demand.shape, np.log(RATIOS[0])), np.full(demand.shape, np.log(RATIOS[1]))
         pull_out = np.exp(highest(lambda x: 2.0 * np.log(np.maximum(most(np.exp(x)), TINY)) + x, low, high))
-        ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - wanted, np.zeros(demand.shape), pull_out)
+        ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - target, np.zeros(demand.shape), pull_out)
         return most(ratio), sign * ratio * most(ratio)
 
 

@@ -21,9 +21,9 @@ def highest(f: Callable[[Array], Array], low: Array, high: Array) -> Array:
         rises = f_left < f_right
         a, b = np.where(rises, left, a), np.where(rises, b, right)
         left, right = np.where(rises, right, b - GOLDEN * (b - a)), np.where(rises, a + GOLDEN * (b - a), left)
-        kept = np.where(rises, f_right, f_left)
+        value = np.where(rises, f_right, f_left)
         f_new = f(np.where(rises, right, left))
-        f_left, f_right = np.where(rises, kept, f_new), np.where(rises, f_new, kept)
+        f_left, f_right = np.where(rises, value, f_new), np.where(rises, f_new, value)
     middle = 0.5 * (a + b)
     return np.asarray(np.where(f(low) > f(middle), low, np.where(f(high) > f(middle), high, middle)))
 

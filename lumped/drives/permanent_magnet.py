@@ -87,13 +87,13 @@ class PMMachine:
         # A machine that brakes is one that drives with its resistance negative: i_q and v_d change sign together.
         brakes = demand * n < 0.0
         w, R = self.pole_pairs * np.abs(n) * RPM, np.where(brakes, -1.0, 1.0) * self.resistance(Tw)
-        wanted = np.abs(demand) / (1.5 * self.pole_pairs)
+        target = np.abs(demand) / (1.5 * self.pole_pairs)
         region = _Region(self, w, R, self.flux(Tm), 1.0)
-        i_d = region.least(wanted)
-        i_q = wanted / region.gain(i_d)
+        i_d = region.least(target)
+        i_q = target / region.gain(i_d)
         bounded = ~region.allows(i_d, i_q)
         if np.any(bounded):
-            i_d[bounded], i_q[bounded] = _limited(region.only(bounded), wanted[bounded])
+            i_d[bounded], i_q[bounded] = _limited(region.only(bounded), target[bounded])
         shape = np.broadcast_shapes(*(np.shape(x) for x in (torque, speed_rpm, winding_degC, magnet_degC)))
         return i_d.reshape(shape), (i_q * np.where(demand < 0, -1.0, 1.0)).reshape(shape)
 
@@ -156,32 +156,32 @@ class _Region:
         m, w, R = self.machine, self.w, self.R
         V = np.hypot(R * i_d - w * m.Lq * i_q, R * i_q + w * (m.Ld * i_d + self.psi))
         return np.asarray(
-            (np.hypot(i_d, i_q) <= m.current_limit * (1.0 + EDGE)) & (V <= m.voltage_limit * (1.0 + EDGE))
+            (np.hypot(i_d, i_q) <= m.current_limit * (1.0 + EDGE)) & (m.voltage_limit * (1.0 + EDGE) >= V)
         )
 
-    def least(self, wanted: Array) -> Array:
-        """i_d of the least current for a torque, without limits: where i_d^2 + (wanted / gain)^2, convex, is least."""
+    def least(self, target: Array) -> Array:
+        """i_d of the least current for a torque, without limits: where i_d^2 + (target / gain)^2, convex, is least."""
         slope = self.side * (self.machine.Ld - self.machine.Lq)
         if slope == 0.0:
-            return np.zeros_like(wanted)
+            return np.zeros_like(target)
         zero = -self.psi * self.side / slope  # where the gain is
-        away = np.abs(zero) + np.sqrt(wanted / abs(slope)) + TINY
+        away = np.abs(zero) + np.sqrt(target / abs(slope)) + TINY
         low, high = (zero, zero + 2.0 * away) if slope > 0.0 else (zero - 2.0 * away, zero)
-        return bisected(lambda i_d: i_d * self.gain(i_d) ** 3 - slope * (wanted**2 + TINY), low, high)
+        return bisected(lambda i_d: i_d * self.gain(i_d) ** 3 - slope * (target**2 + TINY), low, high)
 
 
-def _limited(region: _Region, wanted: Array) -> tuple[Array, Array]:
+def _limited(region: _Region, target: Array) -> tuple[Array, Array]:
     """(i_d, i_q) where the limits bind: of the least current for the torque, or of the most torque."""
-    i_d, i_q = _on_side(region, wanted)
+    i_d, i_q = _on_side(region, target)
     other = region.other()
     low, high = other.span()
     if np.any(low <= high):
-        far_d, far_q = _on_side(other, wanted)
+        far_d, far_q = _on_side(other, target)
         torque, far = (np.nan_to_num(r.gain(d) * q, nan=-np.inf) for r, d, q in
                        ((region, i_d, i_q), (other, far_d, far_q)))  # fmt: skip
-        reached = 1.0 - EDGE
-        more = (far > torque) & (torque < wanted * reached)
-        less = (far >= wanted * reached) & (torque >= wanted * reached) & (np.hypot(far_d, far_q) < np.hypot(i_d, i_q))
+        nearly = 1.0 - EDGE
+        more = (far > torque) & (torque < target * nearly)
+        less = (far >= target * nearly) & (torque >= target * nearly) & (np.hypot(far_d, far_q) < np.hypot(i_d, i_q))
         i_d, i_q = np.where(more | less, far_d, i_d), np.where(more | less, -far_q, i_q)
     nowhere = ~np.isfinite(i_d)
     return np.where(nowhere, _quietest(region), i_d), np.where(nowhere, 0.0, i_q)
@@ -194,7 +194,7 @@ def _quietest(region: _Region) -> Array:
     return np.clip(i_d, -m.current_limit, m.current_limit)
 
 
-def _on_side(region: _Region, wanted: Array) -> tuple[Array, Array]:
+def _on_side(region: _Region, target: Array) -> tuple[Array, Array]:
     """The same on one side; NaN where the limits allow nothing there.
 
     Limits make a convex region. Over i_d its upper edge is concave, and gain times a concave edge has one maximum.
@@ -208,7 +208,7 @@ def _on_side(region: _Region, wanted: Array) -> tuple[Array, Array]:
         return q[1] - q[0]
 
     def spare(i_d: Array) -> Array:
-        i_q, q = wanted / np.maximum(region.gain(i_d), TINY), region.bounds(i_d)
+        i_q, q = target / np.maximum(region.gain(i_d), TINY), region.bounds(i_d)
         return np.minimum(q[1] - i_q, i_q - q[0])
 
     widest = highest(room, low, high)
@@ -219,10 +219,10 @@ def _on_side(region: _Region, wanted: Array) -> tuple[Array, Array]:
     easiest = highest(spare, first, last)
     within = spare(easiest) >= 0.0
     left, right = bisected(spare, first, easiest), bisected(spare, last, easiest)
-    i_d = np.clip(region.least(wanted), left, right)
+    i_d = np.clip(region.least(target), left, right)
     # Beyond the most torque: that. Below the least, which a machine that brakes at high speed has: the least.
-    over = ~within & (region.gain(best) * most < wanted)
+    over = ~within & (region.gain(best) * most < target)
     i_d = np.where(within, i_d, np.where(over, best, easiest))
-    i_q = np.where(within, wanted / np.maximum(region.gain(i_d), TINY),
+    i_q = np.where(within, target / np.maximum(region.gain(i_d), TINY),
                    np.where(over, most, region.bounds(i_d)[0]))  # fmt: skip
     return np.where(empty, np.nan, i_d), np.where(empty, np.nan, i_q)

@@ -50,7 +50,8 @@ EXACT = [
 ]  # fmt: skip
 TABLES = [
     RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), PulseLoss("voltage_V", 600.0, 1e-3, 8e3, 0.1),
-    InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0), Rate(Flow(60.0, "flow_l_min")), COUNTER,
+    InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0),
+    Rate(Flow(60.0, "flow_l_min")), COUNTER,
     CellFilm((0.0, 4.0, 12.0), (10.0, 400.0, 900.0), Flow(60.0, "flow_l_min"), 0.01, 0.02),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),

@@ -274,9 +274,7 @@ def _torque_and_speed(m: Table, inputs: dict[str, Array]) -> tuple[Array, Array]
     return inputs.pop("torque_Nm"), inputs.pop("speed_rpm")
 
 
-def _induction(
-    top: Table, network: Network, inputs: dict[str, Array]
-) -> tuple[Drive, dict[str, str], dict[str, Law]]:
+def _induction(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str], dict[str, Law]]:
     m = top.table(INDUCTION)
     machine = InductionMachine(
         int(m.number("pole_pairs")), m.number("Rs20_ohm"), m.number("Rr20_ohm"), m.number("Ls_leakage_H"),

@@ -15,7 +15,9 @@ from lumped.machine.outer import Cowl, cowl_of
 from lumped.machine.shapes import Fins, fins_of
 from lumped.transfer.properties import air
 
-EFFICIENCY = 0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6, also on a shaft
+EFFICIENCY = (
+    0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6, also on a shaft
+)
 FAN = "fan_flow_m3h"
 
 

@@ -14,7 +14,7 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, Stand, initial_state, simulate
 from lumped.integration.steady import steady
 from lumped.model.network import Network, Row
-from validation.optimisation.hot_spots import HotSpots
+from validation.rating.hot_spots import HotSpots
 from validation.rating.operation import Operation
 
 Array = NDArray[np.float64]
@@ -27,13 +27,13 @@ RUNAWAY_C = 1e4  # what a load without rest counts as
 
 @dataclass(frozen=True)
 class Model:
-    """A network at some values of its parameters, looked at in the places that are limited: means, or hottest points."""
+    """A network at some values of its parameters, looked at in the places that are limited: mean or hottest point."""
 
     network: Network
     values: Mapping[str, float]
     rows: Sequence[Row | HotSpots]
 
-    def seen(self, z: Array) -> Array:
+    def place_temperatures(self, z: Array) -> Array:
         """(nt, n_rows) degC of the limited places.  z : (nt, n_states + n_boundaries)"""
         return np.column_stack(
             [r.along(z) if isinstance(r, HotSpots) else z[:, r.index] @ r.weights for r in self.rows]
@@ -42,12 +42,14 @@ class Model:
     def run(self, record: Record, begin: Stand) -> tuple[Array, Stand]:
         """(nt, n_rows) degC over a record, and where it ends."""
         run = simulate(self.network, record, self.values, keep_states=True, begin=begin)
-        return self.seen(np.asarray(run.z)), run.end
+        return self.place_temperatures(np.asarray(run.z)), run.end
 
     def rest(self, op: Operation, load: float, speed: float | None) -> Array:
         """(n_rows,) degC under the load for ever; RUNAWAY_C where losses grow faster than the cooling."""
         try:
-            return self.seen(steady(self.network, op.at(load, speed), op.boundaries, self.values).z[None])[0]
+            return self.place_temperatures(
+                steady(self.network, op.at(load, speed), op.boundaries, self.values).z[None]
+            )[0]
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)
 

@@ -62,7 +62,7 @@ def time_to_limit(model: Model, op: Operation, limits: Mapping[str, float], lap:
             T, end = model.run(lap.record, stand)
         except ThermoscopeError:
             return laps * span
-        over = np.flatnonzero(np.any(T >= most, axis=1))
+        over = np.flatnonzero(np.any(most <= T, axis=1))
         if over.size:
             return laps * span + _crossing(lap.record.time, T - most, int(over[0]))
         if np.abs(end.x - stand.x).max() < REPEATS_K:

@@ -88,7 +88,8 @@ LAWS = [
     Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
 ]  # fmt: skip
 TEMPERATURES = [
-    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Conductivity(0.004, 20.0), Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
+    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Conductivity(0.004, 20.0),
+    Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
     FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
 ]  # fmt: skip
 LAWS += [Fixed(0.5, temperature) for temperature in TEMPERATURES]

@@ -11,8 +11,8 @@ from lumped.declarations.network import read_network
 from lumped.integration.audit import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
-from lumped.sources.loss_map import MapLoss
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.loss_map import MapLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import Law
 

@@ -50,7 +50,7 @@ def test_limits_are_kept_everywhere_on_the_map():
 
 
 def random_machine(rng):
-    """Without saliency, with either one; psi / Ld below and above the current limit; up to eight times its base speed."""
+    """Without saliency, with either one; psi / Ld below and above the current limit; up to eight times base speed."""
     amperes, volts, pairs = 10 ** rng.uniform(0.5, 2.8), 10 ** rng.uniform(1.3, 2.8), int(rng.integers(1, 9))
     Ld = 1e-3 * volts / amperes / pairs * 10 ** rng.uniform(-0.7, 0.5)
     Lq = Ld * rng.choice([1.0, rng.uniform(1.0, 5.0), rng.uniform(0.3, 1.0)])

@@ -87,7 +87,7 @@ def test_random_machines_reach_the_torque_of_the_grid():
 
 
 def test_temperatures_feed_back_on_both_resistances():
-    """A coil and a cage that warm: the drive's own losses are what the network is given, at the temperatures at the end."""
+    """A coil and a cage that warm: the drive's own losses are what the network is given, at their temperatures."""
     time = np.linspace(0.0, 4000.0, 201)
     network = two_masses(Fixed(0.0))
     losses = [

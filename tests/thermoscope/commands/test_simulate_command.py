@@ -169,7 +169,9 @@ def test_a_cage_machine_runs_from_torque_and_speed(case, tmp_path):
     """Beside the copper that the stator's loss becomes, a cage whose loss the network names."""
     network = case / "network.toml"
     network.write_text(network.read_text() + '\n[losses.bars]\nkind = "constant"\nat = "flange"\nP_W = 1\n')
-    run = ran(case, cycle_file(case, INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "bars"')), tmp_path)["runs"][0]
+    run = ran(case, cycle_file(case, INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "bars"')), tmp_path)[
+        "runs"
+    ][0]
     assert run["loss_mismatch"] < 1e-3
     assert run["energy_balance"] < 1e-4
     assert run["coupling"]["residuals_K"][-1] < 1e-3 < run["coupling"]["residuals_K"][0]
@@ -219,7 +221,10 @@ SLIPS = {
     "no input": (DUTY.replace("current_A", "curent_A"), "input 'current_A'"),
     "duty type": (DUTY.replace("S3", "S9"), "'S9'"),
     "two drives": (PM + INDUCTION[INDUCTION.index("[induction") :], "two drives"),
-    "loss": (INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "coper"'), "no loss 'coper'.*did you mean 'copper'"),
+    "loss": (
+        INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "coper"'),
+        "no loss 'coper'.*did you mean 'copper'",
+    ),
     "flux": (INDUCTION.replace("magnetising_A = 60", "magnetising_A = 600"), "above current_limit_A = 400"),
     "regeneration": (DRIVE.replace("gear = 4.52", "gear = 4.52\nregeneration = 60"), "regeneration = 60"),
     "place": (PM.replace('magnet = "flange"', 'magnet = "flang"'), "'flang'.*did you mean 'flange'"),

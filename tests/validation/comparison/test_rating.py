@@ -15,11 +15,11 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Link, Row
 from lumped.transfer.laws import Fixed, InputPower, Linear
 from thermoscope.rating import places
-from validation.optimisation.hot_spots import hot_spots
 from validation.rating import points
 from validation.rating.derating import deratings
 from validation.rating.envelope import rated, until
 from validation.rating.holding_map import holding_times
+from validation.rating.hot_spots import hot_spots
 from validation.rating.loss_grid import loss_grid, with_losses
 from validation.rating.operation import at_altitude, density, operation
 from validation.rating.points import Duty, Model, mixed
@@ -53,7 +53,7 @@ def test_the_continuous_rating_is_the_balance():
 
 
 def test_a_limit_holds_at_the_hottest_point_and_that_of_a_mean_at_the_mean():
-    """A coil whose one shape rises by P / k, of which its third point has all: P (1 / G + 1 / k) is the limit's rise."""
+    """A coil whose one shape rises by P / k, all of it at its third point: P (1 / G + 1 / k) is the limit's rise."""
     k = 8.0
     net = replace(bare_network("coil", {"coil": C, "coil#1": 0.1 * C}, ("air",)), capacity_group=("coil", "coil"))
     shape = Link("shape", "conduction", ("coil", "coil"), np.array([1]), np.array([1]), np.ones(1), Fixed(k),

@@ -24,11 +24,11 @@ from validation.optimisation.auxiliaries import auxiliary_power, way_of
 from validation.optimisation.corrections import errors, learned
 from validation.optimisation.driven import Driven
 from validation.optimisation.electrics import electrics_of
-from validation.optimisation.hot_spots import HotSpots
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.rest import losses, rest, without_feedback
 from validation.optimisation.search import Design, Effort, nsga2, pareto_set, unsga3
 from validation.optimisation.space import Space, Variable
+from validation.rating.hot_spots import HotSpots
 
 C, G, R, ALPHA, AIR = 1000.0, 2.0, 0.01, 0.004, 20.0
 ROW = Row(np.array([0]), np.ones(1))
@@ -125,7 +125,7 @@ def test_a_fan_follows_the_cube_of_its_flow():
 
 
 def test_a_fan_on_the_shaft_works_on_the_air_between_the_fins():
-    """Pressure along one channel of the fins times the flow of all; higher fins move more air; the cube of the speed."""
+    """Pressure along one channel times the flow of all; higher fins move more air; the cube of the speed."""
     machine = load_machine("tefc-industrial")
     cowl, fins = cowl_of(machine), fins_of(machine)
     power = auxiliary_power(machine, {"speed_rpm": cowl.at_rpm}, 40.0)
@@ -134,7 +134,11 @@ def test_a_fan_on_the_shaft_works_on_the_air_between_the_fins():
     channel = replace(duct, width=fins.spacing * fins.number)
     flow = cowl.air_speed * channel.width * channel.height
     Re = cowl.air_speed * fins.hydraulic_diameter / air(40.0).nu
-    loss = friction(Re, 2.5e-6 / fins.hydraulic_diameter) * fins.length * mean_square / fins.hydraulic_diameter + 0.57 + 1.0
+    loss = (
+        friction(Re, 2.5e-6 / fins.hydraulic_diameter) * fins.length * mean_square / fins.hydraulic_diameter
+        + 0.57
+        + 1.0
+    )
     by_hand = loss * 0.5 * air(40.0).rho * cowl.air_speed**2 * flow / 0.5
     assert power == pytest.approx(by_hand, rel=1e-3)  # 0.57: a sharp entrance, Miller 1990; 1: what leaves
     half = auxiliary_power(machine, {"speed_rpm": 0.5 * cowl.at_rpm}, 40.0)

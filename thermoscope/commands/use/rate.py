@@ -152,8 +152,8 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
         model = replace(model, network=cycle.on(network))
         drive = coupled(model.network, record, cycle.drive, cycle.watched, model.values)
         record = replace(record, inputs=drive.inputs)
-        own = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
-        op = replace(op, inputs={**own, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *own))))
+        currents = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
+        op = replace(op, inputs={**currents, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *currents))))
     lap, short = Lap(record, op.loads), short_of(record)
     notes(f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
           for name, seconds in short.items())  # fmt: skip
