@@ -95,7 +95,7 @@ class PMMachine:
         if np.any(bounded):
             i_d[bounded], i_q[bounded] = _limited(region.only(bounded), target[bounded])
         shape = np.broadcast_shapes(*(np.shape(x) for x in (torque, speed_rpm, winding_degC, magnet_degC)))
-        return i_d.reshape(shape), (i_q * np.where(demand < 0, -1.0, 1.0)).reshape(shape)
+        return i_d.reshape(shape), (i_q * np.where(np.where(demand == 0.0, n, demand) < 0.0, -1.0, 1.0)).reshape(shape)
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,7 @@ def test_the_most_torque_is_that_of_a_grid_over_both_currents():
         if torque.size < 1000:
             continue  # the limits allow next to nothing: a grid says little
         assert allowed(machine, i_d, i_q, speed), machine
+        assert allowed(machine, *machine.currents(0.0, speed), speed), machine  # no torque, where only braking is
         found, compared = way * float(machine.torque(i_d, i_q)), compared + 1
         assert found >= torque.max() - 5e-3 * np.abs(torque).max(), (machine, speed, way)
     assert compared > 60
