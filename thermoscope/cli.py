@@ -48,6 +48,14 @@ Limit = Annotated[
     list[str] | None,
     typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
 ]
+HotLimit = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        metavar="PLACE=DEGC",
+        help="For example winding=155, of its hottest point, or winding.mean=145; several.",
+    ),
+]
 Sure = Annotated[
     bool | None,
     typer.Option("--bands/--no-bands", help="95 % bands of all temperatures; usual for networks of up to 40 states."),
@@ -384,7 +392,7 @@ def carry(
 @app.command()
 def rate(
     name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: Limit = None,
+    limit: HotLimit = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
     voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
@@ -406,7 +414,7 @@ def rate(
 @app.command()
 def optimise(
     name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: Limit = None,
+    limit: HotLimit = None,
     torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     vary: Annotated[

@@ -19,6 +19,7 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import as_number
 from thermoscope.verification.error_budget import model_of
+from validation.rating.hot_spots import MEAN, hot_spots
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
 from validation.rating.points import Model
@@ -68,7 +69,7 @@ def rated_model(folder: Folder, request: RatingRequest) -> Rated:
         tests = ()
     op = operation(network, tests, request.at, request.loads, usual)
     mine = {p.name for p in network.parameters}
-    model = Model(network, {k: v for k, v in values.items() if k in mine}, [rows[p] for p in limits])
+    model = Model(network, {k: v for k, v in values.items() if k in mine}, hot_spots(network, rows, limits))
     return Rated(model, op, limits)
 
 
@@ -78,14 +79,16 @@ def places(
     """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
 
     what : name -> its role. "winding" limits the ends of a winding beside the place of that name: they may be hotter.
+    A limit holds at the hottest point of a place; "NAME.mean" limits its mean.
     """
     roles = {n: i.role.value for n, i in what.items() if i.role is not None}
     out: dict[str, float] = {}
-    for name in sorted(limits, key=lambda n: n not in roles.values()):  # a place has the last word
-        mine = [n for n in rows if n == name or roles.get(n) == name]
+    for name in sorted(limits, key=lambda n: n.removesuffix(MEAN) not in roles.values()):  # a place has the last word
+        of = name if name in rows else name.removesuffix(MEAN)
+        mine = [n for n in rows if n == of or roles.get(n) == of]
         if not mine:
             raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
-        out |= dict.fromkeys(mine, limits[name])
+        out |= dict.fromkeys((f"{n}{name[len(of) :]}" for n in mine), limits[name])
     return out
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from geom.constants import NORMAL_95
-from lumped.integration.simulate import Record
+from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady
 from lumped.model.multipliers import parameter_values
 from thermoscope.bands import along
 from thermoscope.case_folder.folder import Folder
@@ -19,6 +20,7 @@ from validation.bands.at_rest import AtRest
 from validation.comparison.predict import thermal
 from validation.rating.derating import deratings
 from validation.rating.envelope import TIMES, Rating, rated
+from validation.rating.hot_spots import hot_spots
 from validation.rating.operation import Operation
 
 STEADY_TIME_CONSTANTS = 20.0  # time constants
@@ -80,18 +82,19 @@ def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior 
 
 def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
     """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
-    network = of.network
-    place_row = named_rows(network, folder)[r.at]
+    network, bare = of.network, thermal(of.network)
+    (spot,) = hot_spots(network, named_rows(network, folder), {r.at: 0.0})
+    values = parameter_values(bare, of.values)
     if r.form == "S1":
-        bare = thermal(network)
-        values = parameter_values(bare, of.values)
         at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
+        place_row = spot.hottest(steady(bare, at, op.boundaries, values).z)[1]
         return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, place_row) / r.slope
     span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
-    bands = along(of, "rating", Record(time, inputs, air, float(np.mean(list(op.boundaries.values())))),
-                  {r.at: place_row})  # fmt: skip
+    record = Record(time, inputs, air, float(np.mean(list(op.boundaries.values()))))
+    end = np.asarray(simulate(bare, record, values, keep_states=True).z)[-1]
+    bands = along(of, "rating", record, {r.at: spot.hottest(end)[1]})
     return float(bands.half95[-1, 0] / r.slope)

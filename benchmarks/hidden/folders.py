@@ -53,7 +53,8 @@ def names(effect: str, words: Mapping[str, tuple[str, ...]], network: Network) -
         else:
             out.append(f"{word}@{place}")
         if word == "copper.feedback":
-            out += [f"{word}@{s.name.split(':', 1)[-1]}" for s in network.sources if s.kind == "copper"]
+            out += [f"{word}@{s.name.split(':', 1)[-1]}" for s in network.sources
+                    if s.kind == "copper" and not s.name.endswith(":eddy")]  # fmt: skip
     return tuple(out)
 
 

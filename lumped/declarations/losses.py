@@ -10,9 +10,10 @@ from itertools import pairwise
 from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
@@ -37,16 +38,14 @@ def _copper(table: Table) -> Law:
     if len(keys) != 1:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
     reference = 20.0 if keys[0] == "R20_ohm" else table.number("reference_degC")
-    ac = table.raw("ac")
-    speed, at, coefficients = _ac(Table(ac, f"{table.where} ac")) if ac is not None else (None, 1.0, (1.0,))
     return CopperLoss(
         table.number(keys[0]), table.members("currents"), table.number("factor", 1.0),
-        _coefficient(table, reference, ALPHA_CU), reference, coefficients, speed, at,
+        _coefficient(table, reference, ALPHA_CU), reference,
     )  # fmt: skip
 
 
-def _ac(table: Table) -> tuple[str, float, tuple[float, ...]]:
-    out = table.word("input"), table.number("at", 1.0), table.numbers("coefficients")
+def _eddy(table: Table, copper: CopperLoss) -> EddyLoss:
+    out = EddyLoss(copper, table.numbers("coefficients"), table.word("input"), table.number("at", 1.0))
     table.close()
     return out
 
@@ -109,6 +108,21 @@ def _ripple(table: Table) -> Law:
     )  # fmt: skip
 
 
+def _inverter(table: Table) -> Law:
+    return InverterLoss(
+        table.members("currents"), table.number("factor", 1.5), table.number("threshold_V"), table.number("R_on_ohm"),
+        table.number("switching_Hz"), table.number("switching_J"), table.number("reference_A"),
+        table.number("reference_V"), table.number("supply_V"), table.number("standby_W", 0.0), _temperature(table),
+    )  # fmt: skip
+
+
+def _pulses(table: Table) -> Law:
+    return PulseLoss(
+        table.word("voltage", "voltage_V"), table.number("supply_V"), table.number("L_H"),
+        table.number("switching_Hz"), table.number("R_pulse_ohm"), _temperature(table),
+    )  # fmt: skip
+
+
 def _map(table: Table) -> Law:
     speed, torque = table.numbers("at_speed"), table.numbers("at_torque")
     watts = tuple(table.rows("P_W"))
@@ -148,7 +162,8 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
 
 
 LOSSES = {
-    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "map": _map,
+    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter, "pwm": _pulses,
+    "map": _map,
 }  # fmt: skip
 MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
@@ -160,7 +175,13 @@ def loss_kinds(tables: Mapping[str, Table]) -> dict[str, str]:
 
 
 def loss_laws(tables: Mapping[str, Table], quantities: Mapping[str, str] | None = None) -> dict[str, Law]:
-    """Name -> law.  quantities : input -> what it measures"""
+    """Name -> law; of copper at alternating current a second one, NAME:eddy.  quantities : input -> what it measures"""
     speeds = [name for name, quantity in {**USUAL, **(quantities or {})}.items() if quantity == "speed"]
     read: dict[str, Callable[[Table], Law]] = {**LOSSES, MEASURED: partial(_measured, speeds=speeds)}
-    return {name: read.get(kind, _terms)(tables[name]) for name, kind in loss_kinds(tables).items()}
+    out: dict[str, Law] = {}
+    for name, kind in loss_kinds(tables).items():
+        table = tables[name]
+        law = out[name] = read.get(kind, _terms)(table)
+        if isinstance(law, CopperLoss) and "ac" in table:
+            out[f"{name}{EDDY}"] = _eddy(Table(table.raw("ac"), f"{table.where} ac"), law)
+    return out

@@ -20,6 +20,7 @@ from lumped.model.build import bare_network, node_link, node_source, stream, sur
 from lumped.model.network import Link, Network, Place, Row, Source
 from lumped.model.soundness import checked_names, checked_network, checked_path
 from lumped.schemas.reader import Table, suggestion
+from lumped.sources.losses import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 
@@ -189,10 +190,11 @@ def _both_ways(network: Network, name: str, path: list[str], table: Table) -> li
 def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
     kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
-    out = {name: _source(network, name, table, laws[name]) for name, table in tables.items()}
+    out = {name: _source(network, name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()}
     differences = [
-        _difference(out[name], out[other])
+        _difference(out[name], out[part])
         for name, kind in kinds.items() if kind == "measured" for other in deducted(tables[name], kinds)
+        for part in (other, f"{other}{EDDY}") if part in out
     ]  # fmt: skip
     for table in tables.values():
         table.raw("prior_sd")

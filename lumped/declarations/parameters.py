@@ -8,6 +8,7 @@ from dataclasses import replace
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
+from lumped.sources.losses import EDDY
 
 MAPPINGS = {
     "log": (1.0, 1e-3, 1e3),
@@ -75,8 +76,9 @@ def _parameters(network: Network, top: Table) -> list[Parameter]:
 
 
 def _whole(p: Parameter, network: Network) -> Parameter:
-    """A film that is a sum of laws, "NAME" and "NAME:2" and so on, is moved as one."""
+    """A film that is a sum of laws, "NAME" and "NAME:2" and so on, is moved as one; so is copper with eddy currents."""
     more = [(x.name, w) for name, w in p.targets for x in network.links if _numbered(x.name, name)]
+    more += [(x.name, w) for name, w in p.targets for x in network.sources if x.name == f"{name}{EDDY}"]
     return replace(p, targets=(*p.targets, *(pair for pair in more if pair not in p.targets)))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geom.constants import ALPHA_CU
 from geom.errors import ThermoscopeError
 from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive_cycle
+from lumped.drives.induction import InductionMachine
 from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.compiled import READINGS
 from lumped.integration.simulate import Record, Run, initial_state, simulate
@@ -83,16 +84,36 @@ def series_drive(
     return drive
 
 
-def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array) -> Drive:
-    """Currents of a permanent-magnet machine for torque (N m) and speed; watches "winding" and "magnet"."""
+def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array, rms: bool = False) -> Drive:
+    """Currents of a permanent-magnet machine for torque (N m) and speed; watches "winding" and "magnet".
+
+    rms : give current_A as that of a phase, else as the peak sqrt(id^2 + iq^2)
+    """
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
         i_d, i_q = machine.currents(torque, speed_rpm, T["winding"], T["magnet"])
-        shaft_torque = machine.torque(i_d, i_q, T["magnet"])
-        volts = machine.voltage(i_d, i_q, speed_rpm, T["winding"], T["magnet"])
+        at = i_d, i_q, speed_rpm, T["winding"], T["magnet"]
         return {
-            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q), "torque_Nm": shaft_torque, "voltage_V": volts,
+            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q) / (np.sqrt(2.0) if rms else 1.0),
+            "torque_Nm": machine.torque(i_d, i_q, T["magnet"]), "voltage_V": machine.voltage(*at),
             "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
+            "electrical_W": machine.power(*at),
+        }  # fmt: skip
+
+    return drive
+
+
+def induction_drive(machine: InductionMachine, torque: Array, speed_rpm: Array) -> Drive:
+    """Currents (rms of a phase) of a cage machine for torque (N m) and speed; watches "winding" and "cage"."""
+
+    def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
+        currents = machine.currents(torque, speed_rpm, T["winding"], T["cage"])
+        at = machine.operation(*currents, speed_rpm, T["winding"], T["cage"])
+        return {
+            "current_A": np.hypot(at.i_d, at.i_q) / np.sqrt(2.0), "cage_current_A": at.cage / np.sqrt(2.0),
+            "slip": np.nan_to_num(at.slip), "stator_Hz": at.frequency, "torque_Nm": at.torque, "voltage_V": at.voltage,
+            "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
+            "electrical_W": at.power,
         }  # fmt: skip
 
     return drive

@@ -2,11 +2,14 @@
 
 V = (R_a + R_f) i + (L_a + L_f) di/dt + L_af w i        (1-3)
 J dw/dt = L_af i^2 - B w - T_load                        (4-6)
+
+Where it brakes electrically the field is reversed: the machine generates, V = L_af w i - R i - L di/dt, and its torque
+is -L_af i^2. Friction brakes take the rest.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +63,11 @@ class SeriesMachine:
 
 @dataclass(frozen=True)
 class Vehicle:
-    """mass (kg), wheel_radius (m), gear: motor over wheel speed, its efficiency, rolling (1), drag_area cw A (m2)."""
+    """mass (kg), wheel_radius (m), gear: motor over wheel speed, its efficiency, rolling (1), drag_area cw A (m2).
+
+    brakes : deceleration (m/s2) on the level that its friction brakes can give
+    regeneration : share (1) of the braking that the machine takes over as a generator, within its limits
+    """
 
     mass: float
     wheel_radius: float
@@ -69,13 +76,20 @@ class Vehicle:
     rolling: float = 0.01
     drag_area: float = 3.0
     air_density: float = 1.2
+    brakes: float = 3.0
+    regeneration: float = 0.0
 
     def load_torque(self, speed_mps: Array | float, slope: Array | float) -> Array | float:
-        """At the motor shaft, steady (N m); slope: rise over run."""
+        """At the motor shaft, steady (N m); slope: rise over run. Downhill the gear takes its loss off the drive."""
+        T = self.wheel_torque(speed_mps, slope)
+        return np.where(T > 0.0, T / self.efficiency, T * self.efficiency)
+
+    def wheel_torque(self, speed_mps: Array | float, slope: Array | float) -> Array:
+        """The same with a gear without loss (N m)."""
         angle = np.arctan(slope)
         weight = self.mass * GRAVITY * (np.sin(angle) + self.rolling * np.cos(angle))
         drag = 0.5 * self.air_density * self.drag_area * np.asarray(speed_mps) ** 2
-        return (weight + drag) * self.wheel_radius / self.gear / self.efficiency
+        return np.asarray((weight + drag) * self.wheel_radius / self.gear)
 
     def inertia(self) -> float:
         """Of the vehicle, seen from the motor shaft (kg m2)."""
@@ -85,6 +99,8 @@ class Vehicle:
 @dataclass(frozen=True)
 class Controller:
     """Speed loop gives the current wanted, current loop the mean PWM voltage; both are limited.
+
+    A current wanted below 0 is a braking torque, as large as that of the current.
 
     Kp (A s/rad), Ki (A/rad) of the speed loop; the current loop has the time constant `current_lag` (s).
     """
@@ -100,7 +116,8 @@ class Controller:
 class Cycle:
     """What the drive does at the record's times: mean-square current is kept, so that the heat is right.
 
-    current_A: root of the mean square since the time before; the others at the instant.
+    current_A: root of the mean square since the time before; electrical_W (negative where it comes back) and
+    brake_W (heat of the friction brakes): means since then; the others at the instant.
     """
 
     time: Array
@@ -109,11 +126,12 @@ class Cycle:
     voltage_V: Array
     torque_Nm: Array
     vehicle_speed_mps: Array
+    electrical_W: Array
+    brake_W: Array
 
     def inputs(self) -> dict[str, Array]:
         """As inputs of a network's laws."""
-        names = ("current_A", "speed_rpm", "voltage_V", "torque_Nm", "vehicle_speed_mps")
-        return {name: getattr(self, name) for name in names}
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "time"}
 
 
 def drive_cycle(
@@ -131,42 +149,63 @@ def drive_cycle(
     resistance: (nt,) ohm where it changes with temperature, else the machine's R
     step: of the inner integration (s); current by its exact exponential over the step, speed by the midpoint.
     """
-    out = np.zeros((len(time), 5))
+    out = np.zeros((len(time), 7))
     wheel = vehicle.wheel_radius / vehicle.gear
-    load0, load2 = vehicle.load_torque(0.0, np.asarray(slope, float)), float(vehicle.load_torque(1.0, 0.0))
-    drag = load2 - float(vehicle.load_torque(0.0, 0.0))
-    plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag])
+    load = vehicle.wheel_torque(0.0, np.asarray(slope, float))
+    drag = float(vehicle.wheel_torque(1.0, 0.0) - vehicle.wheel_torque(0.0, 0.0))
+    grip = vehicle.brakes * vehicle.mass * wheel
+    plant = np.array([machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B, wheel, drag,
+                      vehicle.efficiency, grip, vehicle.regeneration])  # fmt: skip
     control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
     R = np.full(len(time), machine.R) if resistance is None else resistance
-    arrays = (np.ascontiguousarray(x, float) for x in (time, target_mps, load0, R))
+    arrays = (np.ascontiguousarray(x, float) for x in (time, target_mps, load, R))
     _march(*arrays, plant, control, step, out)
-    return Cycle(time, out[:, 0], out[:, 1] / RPM, out[:, 2], out[:, 3], out[:, 4])
+    return Cycle(time, out[:, 0], out[:, 1] / RPM, *out[:, 2:].T)
 
 
 @entry
 def _march(time, profile, load, resistance, plant, control, step, out):
-    L_af, L, J, B, wheel, drag = plant
+    L_af, L, J, B, wheel, drag, efficiency, grip, share = plant
     Kp, Ki, i_max, v_max, lag = control
-    i, w, integral = 0.0, 0.0, 0.0
+    i, w, integral, generates = 0.0, 0.0, 0.0, False
     for t in range(1, time.size):
         span = time[t] - time[t - 1]
         count = max(1, int(np.ceil(span / step)))
         h, square, V, R = span / count, 0.0, 0.0, 0.5 * (resistance[t - 1] + resistance[t])
+        energy, heat, T = 0.0, 0.0, 0.0
         for s in range(count):
-            share = (s + 0.5) / count
-            target = (profile[t - 1] + share * (profile[t] - profile[t - 1])) / wheel
-            resist = load[t - 1] + share * (load[t] - load[t - 1])
+            part = (s + 0.5) / count
+            target = (profile[t - 1] + part * (profile[t] - profile[t - 1])) / wheel
+            resist = load[t - 1] + part * (load[t] - load[t - 1]) + drag * (wheel * w) ** 2
             demand = Kp * (target - w) + integral
-            i_ref = min(max(demand, 0.0), i_max)
-            if demand == i_ref:
+            command = min(max(demand, -np.sqrt(grip / L_af)), i_max)
+            if demand == command:
                 integral += Ki * (target - w) * h
-            V = min(max((R + L_af * w) * i_ref + L / lag * (i_ref - i), 0.0), v_max)
-            drop = R + L_af * w
-            end = V / drop + (i - V / drop) * np.exp(-drop / L * h)
-            middle = 0.5 * (i + end)
-            square += h * (i * i + i * end + end * end) / 3.0
-            against = (resist + drag * (wheel * w) ** 2 + B * w) if w > 0.0 else min(resist, L_af * middle * middle)
-            w = max(w + h / J * (L_af * middle * middle - against), 0.0)
+            braking = L_af * command * command if command < 0.0 else 0.0
+            i_ref = max(command, 0.0)
+            if braking > 0.0 and L_af * w > R:  # below, a generator would have to be fed
+                i_ref = min(np.sqrt(share * braking / L_af), i_max, v_max / (L_af * w - R))
+            if generates != (command < 0.0) and i <= 0.01 * i_max:
+                generates, i = command < 0.0, 0.0  # the field is reversed when next to no current is left
+            if generates != (command < 0.0):
+                i_ref = 0.0
+            if generates:
+                end = i_ref + (i - i_ref) * np.exp(-h / lag)
+                V = max((L_af * w - R) * i_ref, 0.0)
+            else:
+                V = min(max((R + L_af * w) * i_ref + L / lag * (i_ref - i), 0.0), v_max)
+                drop = R + L_af * w
+                end = V / drop + (i - V / drop) * np.exp(-drop / L * h)
+            mean, before = (i * i + i * end + end * end) / 3.0, w
+            T = -L_af * mean if generates else L_af * mean
+            friction = max(braking + min(T, 0.0), 0.0)
+            against = (resist / efficiency if resist > 0.0 else resist * efficiency) + B * w
+            if w > 0.0 or against < T or (against < 0.0 and target > 0.0):  # else it stands, on a slope by its brakes
+                w = max(w + h / J * (T - against - friction), 0.0)
+            square += h * mean
+            energy += h * (R * mean + T * 0.5 * (before + w)) + 0.5 * L * (end * end - i * i)
+            heat += h * friction * 0.5 * (before + w)
             i = max(end, 0.0)
         out[t, 0] = np.sqrt(square / span) if span > 0.0 else i
-        out[t, 1], out[t, 2], out[t, 3], out[t, 4] = w, V, L_af * i * i, w * wheel
+        out[t, 1], out[t, 2], out[t, 3], out[t, 4] = w, V, -L_af * i * i if generates else L_af * i * i, w * wheel
+        out[t, 5], out[t, 6] = (energy / span, heat / span) if span > 0.0 else (out[t - 1, 5], out[t - 1, 6])

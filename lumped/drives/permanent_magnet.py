@@ -5,16 +5,17 @@ v_d = R i_d - w Lq i_q,  v_q = R i_q + w (Ld i_d + psi),  T = 3/2 p (psi + (Ld -
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import ALPHA_CU, RPM
+from lumped.drives.limits import bisected, highest
 
 Array = NDArray[np.float64]
-HALVINGS = 50  # a current to the last digit
+TINY = 1e-30  # in place of 0 ohm and 0 V/A, where no voltage limits a current
+EDGE = 1e-9  # of a current or voltage limit: what counts as kept
 
 
 @dataclass(frozen=True)
@@ -45,64 +46,183 @@ class PMMachine:
         i_d = np.asarray(i_d, float)
         return 1.5 * self.pole_pairs * (self.flux(magnet_degC) + (self.Ld - self.Lq) * i_d) * np.asarray(i_q, float)
 
+    def voltages(
+        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        magnet_degC: Array | float = 20.0,
+    ) -> tuple[Array, Array]:  # fmt: skip
+        """(v_d, v_q) peak phase voltage (V); a speed has its sign."""
+        w, R = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.resistance(winding_degC)
+        return R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC))
+
     def voltage(
         self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
     ) -> Array:  # fmt: skip
         """Peak phase voltage (V)."""
-        w = self.pole_pairs * np.abs(np.asarray(speed_rpm, float)) * RPM
-        R = self.resistance(winding_degC)
-        return np.hypot(R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC)))
+        return np.hypot(*self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC))
+
+    def power(
+        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        magnet_degC: Array | float = 20.0,
+    ) -> Array:  # fmt: skip
+        """Electrical power taken (W); negative where the machine generates."""
+        v_d, v_q = self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC)
+        return 1.5 * (v_d * i_d + v_q * i_q)
 
     def currents(
         self, torque: Array | float, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
     ) -> tuple[Array, Array]:  # fmt: skip
-        """(i_d, i_q) (A) of the least current that gives the torque (N m) within the voltage; field weakening beyond.
+        """(i_d, i_q) (A) of the least current that gives the torque (N m) within current and voltage limit.
 
-        Torque above the limits is cut to what they allow (compare `torque` of the answer with what was asked).
+        Most torque per ampere, then a weakened field; a torque beyond the limits is cut to the most that they allow,
+        at the current limit or, beyond, at the most torque per volt. Where the voltage cannot be kept at any current,
+        it is the current of least voltage. Compare `torque` of the answer with what was asked.
         """
-        demand, n, Tw, Tm = np.broadcast_arrays(
-            *(np.asarray(x, float) for x in (torque, speed_rpm, winding_degC, magnet_degC))
+        demand, n, Tw, Tm = (
+            np.atleast_1d(x) for x in np.broadcast_arrays(
+                *(np.asarray(x, float) for x in (torque, speed_rpm, winding_degC, magnet_degC))
+            )
+        )  # fmt: skip
+        # A machine that brakes is one that drives with its resistance negative: i_q and v_d change sign together.
+        brakes = demand * n < 0.0
+        w, R = self.pole_pairs * np.abs(n) * RPM, np.where(brakes, -1.0, 1.0) * self.resistance(Tw)
+        target = np.abs(demand) / (1.5 * self.pole_pairs)
+        region = _Region(self, w, R, self.flux(Tm), 1.0)
+        i_d = region.least(target)
+        i_q = target / region.gain(i_d)
+        bounded = ~region.allows(i_d, i_q)
+        if np.any(bounded):
+            i_d[bounded], i_q[bounded] = _limited(region.only(bounded), target[bounded])
+        shape = np.broadcast_shapes(*(np.shape(x) for x in (torque, speed_rpm, winding_degC, magnet_degC)))
+        return i_d.reshape(shape), (i_q * np.where(np.where(demand == 0.0, n, demand) < 0.0, -1.0, 1.0)).reshape(shape)
+
+
+@dataclass(frozen=True)
+class _Region:
+    """Currents that both limits allow, over i_d; w (rad/s), R (ohm), psi (V s): (n,).
+
+    side : 1 where psi + (Ld - Lq) i_d > 0; -1 beyond, where torque wants the other sign of i_q. Currents i_q are in the
+    direction of the torque on either side.
+    """
+
+    machine: PMMachine
+    w: Array
+    R: Array
+    psi: Array
+    side: float
+
+    def only(self, mask: NDArray[np.bool_]) -> _Region:
+        return _Region(self.machine, self.w[mask], self.R[mask], self.psi[mask], self.side)
+
+    def other(self) -> _Region:
+        """The same limits on the other side, where i_q has the other sign: as with -R."""
+        return _Region(self.machine, self.w, -self.R, self.psi, -self.side)
+
+    def gain(self, i_d: Array) -> Array:
+        """Torque over i_q, without 3/2 p (V s)."""
+        return self.side * (self.psi + (self.machine.Ld - self.machine.Lq) * i_d)
+
+    def span(self) -> tuple[Array, Array]:
+        """i_d (n,) from and to: gain positive, inside current circle and voltage ellipse; crossed where nothing is."""
+        m, w, R, psi = self.machine, self.w, self.R, self.psi
+        gap = m.Ld - m.Lq
+        a = w**2 * m.Lq**2 + R**2 + TINY
+        square = (w**2 * m.Ld * m.Lq + R**2) ** 2 + TINY
+        half = w**2 * psi * (a * m.Ld - R**2 * gap)
+        rest = a * (w**2 * psi**2 - m.voltage_limit**2) - R**2 * w**2 * psi**2
+        root = half**2 - square * rest
+        reach = np.sqrt(np.maximum(root, 0.0))
+        low = np.maximum((-half - reach) / square, -m.current_limit)
+        high = np.minimum((-half + reach) / square, m.current_limit)
+        if gap * self.side > 0.0:
+            low = np.maximum(low, -psi / gap)
+        elif gap != 0.0:
+            high = np.minimum(high, -psi / gap)
+        if gap == 0.0 and self.side < 0.0:
+            low = high + 1.0
+        return np.where(root < 0.0, high + 1.0, low), high
+
+    def bounds(self, i_d: Array) -> tuple[Array, Array]:
+        """i_q from and to at an i_d."""
+        m, w, R = self.machine, self.w, self.R
+        a = w**2 * m.Lq**2 + R**2 + TINY
+        b = R * w * (self.psi + (m.Ld - m.Lq) * i_d)
+        c = R**2 * i_d**2 + w**2 * (m.Ld * i_d + self.psi) ** 2 - m.voltage_limit**2
+        reach, room = np.sqrt(np.maximum(b**2 - a * c, 0.0)), np.sqrt(np.maximum(m.current_limit**2 - i_d**2, 0.0))
+        return np.maximum((-b - reach) / a, -room), np.minimum((-b + reach) / a, room)
+
+    def allows(self, i_d: Array, i_q: Array) -> NDArray[np.bool_]:
+        m, w, R = self.machine, self.w, self.R
+        V = np.hypot(R * i_d - w * m.Lq * i_q, R * i_q + w * (m.Ld * i_d + self.psi))
+        return np.asarray(
+            (np.hypot(i_d, i_q) <= m.current_limit * (1.0 + EDGE)) & (m.voltage_limit * (1.0 + EDGE) >= V)
         )
-        size = np.abs(demand)
-        peak = _bisected(lambda i: self.torque(*self._least(i, Tm), Tm) - size, np.zeros_like(size), self.current_limit)
-        i_d, i_q = self._least(peak, Tm)
-        over = self.voltage(i_d, i_q, n, Tw, Tm) > self.voltage_limit
-        if np.any(over):
-            weak_d, weak_q = self._weakened(np.minimum(size, self.torque(i_d, i_q, Tm)), i_d, n, Tw, Tm)
-            i_d, i_q = np.where(over, weak_d, i_d), np.where(over, weak_q, i_q)
-        return i_d, i_q * np.where(demand < 0, -1.0, 1.0)
 
-    def _least(self, peak: Array, magnet_degC: Array) -> tuple[Array, Array]:
-        """(i_d, i_q) of most torque for a current: Morimoto et al. 1990, IEEE Trans. Ind. Appl. 26, 866."""
-        gap, psi = self.Lq - self.Ld, self.flux(magnet_degC)
-        i_d = np.zeros_like(peak) if gap == 0.0 else (psi - np.sqrt(psi**2 + 8 * gap**2 * peak**2)) / (4 * gap)
-        return i_d, np.sqrt(np.maximum(peak**2 - i_d**2, 0.0))
-
-    def _weakened(self, size: Array, start: Array, n: Array, Tw: Array, Tm: Array) -> tuple[Array, Array]:
-        """More negative i_d at the same torque until the voltage fits; then less i_q until voltage and current do."""
-        floor = -min(self.current_limit, float(np.max(self.flux(Tm))) / self.Ld)
-
-        def i_q(i_d: Array) -> Array:
-            return size / (1.5 * self.pole_pairs * (self.flux(Tm) + (self.Ld - self.Lq) * i_d))
-
-        def spare(depth: Array) -> Array:
-            i_d = start - depth
-            return self.voltage_limit - self.voltage(i_d, i_q(i_d), n, Tw, Tm)
-
-        depth = _bisected(spare, np.zeros_like(size), start - floor)
-        i_d = start - depth
-        room = np.sqrt(np.maximum(self.current_limit**2 - i_d**2, 0.0))
-        most = _bisected(lambda q: self.voltage(i_d, q, n, Tw, Tm) - self.voltage_limit, np.zeros_like(size), room)
-        return i_d, np.minimum(i_q(i_d), most)
+    def least(self, target: Array) -> Array:
+        """i_d of the least current for a torque, without limits: where i_d^2 + (target / gain)^2, convex, is least."""
+        slope = self.side * (self.machine.Ld - self.machine.Lq)
+        if slope == 0.0:
+            return np.zeros_like(target)
+        zero = -self.psi * self.side / slope  # where the gain is
+        away = np.abs(zero) + np.sqrt(target / abs(slope)) + TINY
+        low, high = (zero, zero + 2.0 * away) if slope > 0.0 else (zero - 2.0 * away, zero)
+        return bisected(lambda i_d: i_d * self.gain(i_d) ** 3 - slope * (target**2 + TINY), low, high)
 
 
-def _bisected(f: Callable[[Array], Array], low: Array, high: Array | float) -> Array:
-    """Where f, rising from low to high, passes 0; an end where it does not."""
-    a, b = np.array(low, float), np.broadcast_to(high, np.shape(low)).astype(float)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        below = f(middle) < 0.0
-        a, b = np.where(below, middle, a), np.where(below, b, middle)
-    return b
+def _limited(region: _Region, target: Array) -> tuple[Array, Array]:
+    """(i_d, i_q) where the limits bind: of the least current for the torque, or of the most torque."""
+    i_d, i_q = _on_side(region, target)
+    other = region.other()
+    low, high = other.span()
+    if np.any(low <= high):
+        far_d, far_q = _on_side(other, target)
+        torque, far = (np.nan_to_num(r.gain(d) * q, nan=-np.inf) for r, d, q in
+                       ((region, i_d, i_q), (other, far_d, far_q)))  # fmt: skip
+        nearly = 1.0 - EDGE
+        more = (far > torque) & (torque < target * nearly)
+        less = (far >= target * nearly) & (torque >= target * nearly) & (np.hypot(far_d, far_q) < np.hypot(i_d, i_q))
+        i_d, i_q = np.where(more | less, far_d, i_d), np.where(more | less, -far_q, i_q)
+    nowhere = ~np.isfinite(i_d)
+    return np.where(nowhere, _quietest(region), i_d), np.where(nowhere, 0.0, i_q)
+
+
+def _quietest(region: _Region) -> Array:
+    """i_d at which the voltage is least without i_q."""
+    m, w, R = region.machine, region.w, region.R
+    i_d = -(w**2) * m.Ld * region.psi / (R**2 + w**2 * m.Ld**2 + TINY)
+    return np.clip(i_d, -m.current_limit, m.current_limit)
+
+
+def _on_side(region: _Region, target: Array) -> tuple[Array, Array]:
+    """The same on one side; NaN where the limits allow nothing there.
+
+    Limits make a convex region. Over i_d its upper edge is concave, and gain times a concave edge has one maximum.
+    """
+    low, high = region.span()
+    empty = low > high
+    low, high = np.where(empty, 0.0, low), np.where(empty, 0.0, high)
+
+    def room(i_d: Array) -> Array:
+        q = region.bounds(i_d)
+        return q[1] - q[0]
+
+    def spare(i_d: Array) -> Array:
+        i_q, q = target / np.maximum(region.gain(i_d), TINY), region.bounds(i_d)
+        return np.minimum(q[1] - i_q, i_q - q[0])
+
+    widest = highest(room, low, high)
+    empty |= room(widest) < 0.0
+    first, last = bisected(room, low, widest), bisected(room, high, widest)
+    best = highest(lambda i_d: region.gain(i_d) * region.bounds(i_d)[1], first, last)
+    most = region.bounds(best)[1]
+    easiest = highest(spare, first, last)
+    within = spare(easiest) >= 0.0
+    left, right = bisected(spare, first, easiest), bisected(spare, last, easiest)
+    i_d = np.clip(region.least(target), left, right)
+    # Beyond the most torque: that. Below the least, which a machine that brakes at high speed has: the least.
+    over = ~within & (region.gain(best) * most < target)
+    i_d = np.where(within, i_d, np.where(over, best, easiest))
+    i_q = np.where(within, target / np.maximum(region.gain(i_d), TINY),
+                   np.where(over, most, region.bounds(i_d)[0]))  # fmt: skip
+    return np.where(empty, np.nan, i_d), np.where(empty, np.nan, i_q)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Row, Source
 from lumped.numerics.dense import Structure, least_fill
-from lumped.numerics.terms import CONSTANT, FILM, LINEAR, POWER, RADIATION, TABLE, Terms
+from lumped.numerics.terms import CONSTANT, FILM, INVERSE, LINEAR, POWER, RADIATION, TABLE, Terms
 from lumped.transfer import laws
 
 Array = NDArray[np.float64]
@@ -149,6 +149,8 @@ def _code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
         return RADIATION, 0.0, 0.0
     if isinstance(law, laws.Linear):
         return LINEAR, law.alpha, law.reference
+    if isinstance(law, laws.Conductivity):
+        return INVERSE, law.alpha, law.reference
     if isinstance(law, laws.FilmTable):
         return FILM, float(len(law.difference)), 0.0
     return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0

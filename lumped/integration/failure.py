@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.integration.runaway import grows
 from lumped.model.network import Network
 from lumped.numerics.kernel import HOT, KNOT, NODE, OUTSIDE, SHARE, STATUS, Position
 from lumped.numerics.terms import Forcing
@@ -39,7 +40,7 @@ def _instant(forcing: Forcing, at: Position) -> float:
 
 def _growing(network: Network) -> list[str]:
     """Losses that grow with temperature."""
-    sources = [s for s in network.sources if not s.origin and getattr(s.law.temperature, "alpha", 0.0) > 0.0]
+    sources = [s for s in network.sources if not s.origin and grows(s.law)]
     return list(dict.fromkeys(s.name.removeprefix("loss:") for s in sources))
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from geom.errors import NoSolution
 from lumped.model.network import Network
-from lumped.transfer.laws import Linear
+from lumped.transfer.laws import Law, Linear
 
 Array = NDArray[np.float64]
 LIMIT_C = 1e4  # no machine; a run that passes it has no meaning, though its numbers are finite
@@ -27,9 +27,13 @@ def described(network: Network, place: str, t: float) -> str:
     return f"{network.title}: '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
 
 
+def grows(law: Law) -> bool:
+    """Whether a loss grows with temperature."""
+    return isinstance(law.temperature, Linear) and law.temperature.alpha > 0.0
+
+
 def _cause(network: Network) -> str:
-    growing = [s.name.removeprefix("loss:") for s in network.sources
-               if isinstance(law := s.law.temperature, Linear) and law.alpha > 0.0]  # fmt: skip
+    growing = [s.name.removeprefix("loss:") for s in network.sources if grows(s.law)]
     if not growing:
         return "check its capacity, its links and the losses at it"
     tables = ", ".join(f"[losses.{name}]" for name in growing)

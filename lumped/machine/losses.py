@@ -18,7 +18,7 @@ from lumped.machine.settings import Losses, read
 from lumped.machine.shapes import gap_fluid, wound
 from lumped.model.network import Network, Place, Row, Source
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.losses import PowerLoss
+from lumped.sources.losses import EDDY, PowerLoss
 from lumped.transfer.laws import InputPower, Law, Linear
 
 Shares = Mapping[str, float]
@@ -72,7 +72,10 @@ def _declared(machine: Machine) -> list[Loss]:
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
     laws = loss_laws(tables)
-    return [_read(name, table, laws[name]) for name, table in tables.items()]
+    out = [_read(name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()]
+    for table in tables.values():
+        table.close()
+    return out
 
 
 def _everywhere(machine: Machine) -> Shares:
@@ -88,7 +91,6 @@ def _read(name: str, table: Table, law: Law) -> Loss:
         raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
     probe = table.word("temperature_of", max(shares, key=lambda place: shares[place]))
     kind = table.word("kind")
-    table.close()
     return name, kind, shares, law, probe
 
 

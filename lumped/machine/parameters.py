@@ -9,10 +9,12 @@ from geom.errors import InputError
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
+from lumped.sources.losses import EDDY
 
 LOSS_SPREAD = {
     "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
     "stray": 0.5, "switching": 0.3, "constant": 0.3, "measured": 0.1,
+    "ripple": 0.3, "map": 0.1, "inverter": 0.15, "pwm": 0.5,
 }  # fmt: skip
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
@@ -55,9 +57,10 @@ def _contacts(network: Network) -> list[Parameter]:
 
 def _losses(losses: Sequence[Source]) -> list[Parameter]:
     return [
-        Parameter(source.name.replace(":", ".", 1), ((source.name, 1.0),), prior_sd=LOSS_SPREAD[source.kind], low=0.1,
-                  high=10.0, source="spread of published loss formulas")
-        for source in losses
+        Parameter(source.name.replace(":", ".", 1),
+                  tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name),
+                  prior_sd=LOSS_SPREAD[source.kind], low=0.1, high=10.0, source="spread of published loss formulas")
+        for source in losses if not source.name.endswith(EDDY)
     ]  # fmt: skip
 
 

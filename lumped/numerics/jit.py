@@ -4,9 +4,11 @@ Nothing compiled here allocates or counts references, inner functions have no Py
 expressions, of which there are none, are not rewritten: each would cost a good part of the compile time. Every inner
 function costs some time besides its lines, because it is optimised alone and once more in each that calls it: those
 called from one place are pasted there (but for the tangents, which then run slower). Only entries are cached; their
-code holds all inner functions.
+code holds all inner functions: it is stale when any of their files has changed, which numba alone does not look at.
 """
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from numba import njit
@@ -15,7 +17,17 @@ _OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False,
 }  # fmt: skip
 
-entry = njit(**_OPTIONS, cache=True)
+_NEWEST = max(path.stat().st_mtime_ns for path in Path(__file__).parent.glob("*.py"))
+
+
+def entry(function: Callable[..., Any]) -> Any:
+    """Compiled and cached until its own file, or any of this folder, changes."""
+    compiled = njit(**_OPTIONS, cache=True)(function)
+    if (file := getattr(compiled._cache, "_cache_file", None)) is not None:
+        file._source_stamp = (file._source_stamp, _NEWEST)
+    return compiled
+
+
 _HIDDEN = {**_OPTIONS, "no_cpython_wrapper": True}
 inner = njit(**_HIDDEN)
 pasted = njit(**_HIDDEN, inline="always")

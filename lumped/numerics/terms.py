@@ -17,7 +17,7 @@ from lumped.numerics.jit import inner, inner_reordered, pasted
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
-CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM = range(6)
+CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE = range(7)
 PATTERN, ROW, END, HOT, COLD, POINT, LAST = range(7)
 CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
 
@@ -151,6 +151,10 @@ def law(code, a, b, hot, cold, out):
     elif code == LINEAR:
         out[0] = 1.0 + a * (hot - b)
         out[1] = a
+    elif code == INVERSE:
+        out[0] = 1.0 / (1.0 + a * (hot - b))
+        out[1] = -a * out[0] * out[0]
+        out[3] = -2.0 * a * out[0] * out[1]
 
 
 @inner

@@ -91,6 +91,9 @@ KEYS = {
     "coefficients": ANY, "at_speed": ANY, "at_torque": ANY,
     "range": Bounds(0.0, 1e12), "remanence_T": Bounds(0.0, 5.0),
     "power.exponent": Bounds(0.0, 4.0), "mixed.exponent": Bounds(1.0, 10.0), "difference_K": Bounds(0.0, 1e4),
+    "magnetising_A": Bounds(1e-6, 1e7), "regeneration": Bounds(0.0, 1.0), "brakes_m_s2": Bounds(0.0, 100.0),
+    "alpha_stator_1_K": Bounds(0.0, 0.0125), "alpha_cage_1_K": Bounds(0.0, 0.0125),  # no cooling down to -60 degC
+    "switching_J": Bounds(0.0, 1e4), "reference_A": Bounds(1e-6, 1e7), "reference_V": Bounds(1e-6, 1e7),
     "electrical.factor": ANY, "mechanical.factor": ANY, "shares": Bounds(0.0, 1.0),
 }  # fmt: skip
 

@@ -122,7 +122,7 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
 
 
 INNER = ("properties", "additionalProperties")
-COMMON = ("at", "of", "wall", "winding", "magnet")  # tables of name -> share of one whole
+COMMON = ("at", "of", "wall", "winding", "magnet", "cage")  # tables of name -> share of one whole
 
 
 def _owned(key: str, table: str) -> tuple[str, str]:

@@ -11,9 +11,10 @@ import numpy as np
 
 from geom.constants import ALPHA_CU
 from geom.errors import InputError
-from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, Linear, TemperatureLaw
+from lumped.transfer.laws import CONSTANT, Array, Conductivity, Inputs, Law, Linear, TemperatureLaw
 
 Power = tuple[str, float, float]
+EDDY = ":eddy"  # after the name of a copper loss: its second source, what alternating current adds
 
 
 def product(inputs: Inputs, terms: tuple[Power, ...]) -> Array | float:
@@ -26,12 +27,10 @@ def product(inputs: Inputs, terms: tuple[Power, ...]) -> Array | float:
 
 @dataclass(frozen=True)
 class CopperLoss(Law):
-    """factor * R * sum I^2 * (c0 + c1 f + c2 f^2 + ...) * (1 + alpha (T - reference)) (W).
+    """factor * R * sum I^2 * (1 + alpha (T - reference)) (W).
 
     resistance (ohm) at reference (degC); currents: inputs (A); factor: 1.5 for peak dq currents and phase resistance,
-    3 for rms phase current, 1 for direct current; ac: coefficients of the resistance factor in f = |speed / speed_at|.
-    The AC share is taken to grow with temperature like the DC resistance, which overstates it by a few percent.
-    Source: Joule; AC factor as a polynomial in frequency: Liu et al. 2024, doi 10.1109/TPEL.2024.3409388.
+    3 for rms phase current, 1 for direct current.  Source: Joule.
     """
 
     resistance: float
@@ -39,9 +38,6 @@ class CopperLoss(Law):
     factor_: float = 1.0
     alpha: float = ALPHA_CU
     reference: float = 20.0
-    ac: tuple[float, ...] = (1.0,)
-    speed: str | None = None
-    speed_at: float = 1.0
 
     @property
     def temperature(self) -> TemperatureLaw:  # type: ignore[override]
@@ -49,16 +45,40 @@ class CopperLoss(Law):
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (*self.currents, *([self.speed] if self.speed else []))
+        return self.currents
 
     def factor(self, inputs: Inputs) -> Array | float:
         squares = sum(np.asarray(inputs[name], float) ** 2 for name in self.currents)
-        return self.factor_ * self.resistance * squares * self.resistance_factor(inputs)
+        return self.factor_ * self.resistance * squares
+
+
+@dataclass(frozen=True)
+class EddyLoss(Law):
+    """What alternating current adds to a copper loss: P_copper (k - 1) / (1 + alpha (T - reference)) (W).
+
+    k = c0 + c1 f + c2 f^2 + ..., f = |speed / speed_at|: resistance of alternating over that of direct current at the
+    copper's reference temperature. Eddy currents in strands thinner than the skin fall with resistivity (Dowell 1966).
+    Source: AC factor as a polynomial in frequency: Liu et al. 2024, doi 10.1109/TPEL.2024.3409388.
+    """
+
+    copper: CopperLoss
+    ac: tuple[float, ...]
+    speed: str
+    speed_at: float = 1.0
+
+    @property
+    def temperature(self) -> TemperatureLaw:  # type: ignore[override]
+        return Conductivity(self.copper.alpha, self.copper.reference)
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (*self.copper.currents, self.speed)
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        return self.copper.factor(inputs) * (self.resistance_factor(inputs) - 1.0)
 
     def resistance_factor(self, inputs: Inputs) -> Array | float:
         """AC over DC resistance."""
-        if self.speed is None:
-            return self.ac[0]
         f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
         out = np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
         if np.any(out < 0.0):
@@ -69,7 +89,7 @@ class CopperLoss(Law):
         worst = int(np.argmin(factor))
         return InputError(
             f"the resistance factor is {factor[worst]:.3g} at {self.speed} = {f[worst] * self.speed_at:.4g}",
-            f"copper loss of {', '.join(self.currents)}, ac coefficients {list(self.ac)}",
+            f"copper loss of {', '.join(self.copper.currents)}, ac coefficients {list(self.ac)}",
             "coefficients that keep c0 + c1 f + c2 f^2 ... above 0: resistance makes heat",
         )
 

@@ -49,6 +49,14 @@ class Linear(TemperatureLaw):
 
 
 @dataclass(frozen=True)
+class Conductivity(TemperatureLaw):
+    """1 / (1 + alpha (hot - reference)): eddy currents in copper, alpha (1/K) of its resistivity, reference (degC)."""
+
+    alpha: float
+    reference: float
+
+
+@dataclass(frozen=True)
 class Table(TemperatureLaw):
     """Piecewise linear in |hot - cold|: `value` at `difference` (K, increasing from 0), held flat outside.
 

@@ -59,6 +59,7 @@ TAKEN = {
     ),
     "pmsm-machines/m2": MESHED,
     "pmsm-machines/m3": MESHED,
+    "tefc-drive": ("doctor", "simulate --cycle hoist --no-bands", "rate --limit winding=155 --cycle hoist --no-bands"),
     "road-test": (
         *MESHED,
         "simulate --cycle overpass --no-bands",

@@ -13,9 +13,10 @@ from geom.errors import InputError
 from lumped.declarations.separated import FilmOver, Share
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate
 from lumped.transfer.laws import CONSTANT, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.reversal import Direction, OneWay
@@ -32,7 +33,7 @@ def film(speed):
     return 3.0 + 2.0 * speed**0.6, None
 
 
-COPPER = CopperLoss(0.01, ("id_A", "iq_A"), 1.5, ac=(1.0, 0.02, 0.4), speed="speed_rpm", speed_at=4000.0)
+COPPER = EddyLoss(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), (1.1, 0.02, 0.4), "speed_rpm", 4000.0)
 MAP = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0), ((0.0, 1.0), (5.0, 9.0), (20.0, 60.0)), torque="iq_A")
 OVER = FilmOver("flow_l_min", film, 12.0)
 COUNTER = Exchanger(300.0, Flow(60.0, "flow_l_min"), Flow(0.2, "speed_rpm"))
@@ -48,7 +49,9 @@ EXACT = [
     WithTemperature(Fixed(2.0), exponent_derivative(Power(0.25))), WithTemperature(COPPER),
 ]  # fmt: skip
 TABLES = [
-    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), Rate(Flow(60.0, "flow_l_min")), COUNTER,
+    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), PulseLoss("voltage_V", 600.0, 1e-3, 8e3, 0.1),
+    InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0),
+    Rate(Flow(60.0, "flow_l_min")), COUNTER,
     CellFilm((0.0, 4.0, 12.0), (10.0, 400.0, 900.0), Flow(60.0, "flow_l_min"), 0.01, 0.02),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,24 +11,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import ALPHA_CU
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.limits import INSTANTS
-from lumped.drives.coupled import Drive, pm_drive, series_drive
+from lumped.drives.coupled import Drive, induction_drive, pm_drive, series_drive
 from lumped.drives.drive import Controller, SeriesMachine, Vehicle
 from lumped.drives.duty import s1, s2, s3, s6
+from lumped.drives.induction import ALPHA_AL, InductionMachine
 from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.schemas.reader import Table, suggestion
+from lumped.sources.losses import CopperLoss
+from lumped.transfer.laws import Law
 from thermoscope.recordings.consistency import is_amount
 from thermoscope.recordings.grid import LEAST, bridged
 from thermoscope.recordings.sheet import read_sheet
 from thermoscope.recordings.tables import load_table
 
 Array = NDArray[np.float64]
-WINDING, MAGNET = "winding", "magnet"
+WINDING, MAGNET, CAGE = "winding", "magnet", "cage"
+INDUCTION = "induction-machine"
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,7 @@ class Cycle:
     """record : what is known beforehand;  drive : gives the rest from the temperatures of the places it watches
 
     series : what a vehicle with a series machine is, where the cycle has one
+    laws : source -> the loss that the drive's equivalent circuit has in place of the network's own
     notes : doubts about its file
     """
 
@@ -44,7 +50,13 @@ class Cycle:
     drive: Drive | None = None
     watched: Mapping[str, str] = field(default_factory=dict)
     series: Series | None = None
+    laws: Mapping[str, Law] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def on(self, network: Network) -> Network:
+        """The network with the losses that the drive brings."""
+        sources = (replace(s, law=self.laws.get(s.name, s.law)) for s in network.sources)
+        return replace(network, sources=tuple(sources)) if self.laws else network
 
 
 @dataclass(frozen=True)
@@ -83,14 +95,14 @@ def load_cycle(path: Path, network: Network, ratings: Mapping[str, float]) -> Cy
         if name not in network.boundaries:
             raise top.error(f"no boundary is called '{name}'", suggestion(name, network.boundaries))
     start = head.number("initial_degC", _usual(network, boundaries, str(path)))
-    drive, places, series = _drive(top, network, ratings, time, inputs)
+    drive, places, series, laws = _drive(top, network, ratings, time, inputs)
     head.close()
     top.close()
     if columns is not None and drive is None:
         inputs = columns.signals(inputs, time)
     notes = (*(columns.notes if columns is not None else ()), *_unread(network, inputs, drive, str(path)))
-    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, places, series, notes)
-    _complete(network, cycle, str(path))
+    cycle = Cycle(path.stem, Record(time, inputs, boundaries, start), drive, places, series, laws, notes)
+    _complete(cycle.on(network), cycle, str(path))
     return cycle
 
 
@@ -199,10 +211,16 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
 
 def _drive(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
-) -> tuple[Drive | None, dict[str, str], Series | None]:
+) -> tuple[Drive | None, dict[str, str], Series | None, dict[str, Law]]:
+    kinds = [key for key in ("vehicle", "pm-machine", INDUCTION) if key in top]
+    if len(kinds) > 1:
+        raise top.error(f"[{kinds[0]}] and [{kinds[1]}] are two drives", "one of them")
     if "vehicle" in top:
-        return _series(top, network, ratings, time, inputs)
-    return (*_permanent(top, network, inputs), None) if "pm-machine" in top else (None, {}, None)
+        return (*_series(top, network, ratings, time, inputs), {})
+    if INDUCTION in top:
+        drive, places, laws = _induction(top, network, inputs)
+        return drive, places, None, laws
+    return (*_permanent(top, network, inputs), None, {}) if "pm-machine" in top else (None, {}, None, {})
 
 
 def _series(
@@ -216,6 +234,7 @@ def _series(
     vehicle = Vehicle(
         v.number("mass_kg"), v.number("wheel_radius_m"), v.number("gear"), v.number("efficiency", 0.95),
         v.number("rolling", 0.01), v.number("drag_area_m2", 3.0), v.number("air_density_kg_m3", 1.2),
+        v.number("brakes_m_s2", 3.0), v.number("regeneration", 0.0),
     )  # fmt: skip
     control = Controller(
         c.number("Kp", 40.0), c.number("Ki", 4.0), c.number("current_limit_A", rated[3]),
@@ -243,12 +262,46 @@ def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[
         m.number("voltage_limit_V"), alpha_B=m.number("alpha_B_1_K", -1.1e-3),
     )  # fmt: skip
     places = {WINDING: _places(m, network, "winding", WINDING), MAGNET: _places(m, network, "magnet", "rotor")}
+    rms = m.word("current_A", "rms" if network.recovery is not None else "peak", ("rms", "peak")) == "rms"
     m.close()
+    drive = pm_drive(machine, *_torque_and_speed(m, inputs), rms)
+    return _mixed(drive, places), {p: p for shares in places.values() for p in shares}
+
+
+def _torque_and_speed(m: Table, inputs: dict[str, Array]) -> tuple[Array, Array]:
     for name in ("torque_Nm", "speed_rpm"):
         if name not in inputs:
             raise m.error(f"nothing gives '{name}'", f'a column with input = "{name}", or [inputs] {name} = ...')
-    drive = pm_drive(machine, inputs.pop("torque_Nm"), inputs.pop("speed_rpm"))
-    return _mixed(drive, places), {p: p for shares in places.values() for p in shares}
+    return inputs.pop("torque_Nm"), inputs.pop("speed_rpm")
+
+
+def _induction(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str], dict[str, Law]]:
+    m = top.table(INDUCTION)
+    machine = InductionMachine(
+        int(m.number("pole_pairs")), m.number("Rs20_ohm"), m.number("Rr20_ohm"), m.number("Ls_leakage_H"),
+        m.number("Lr_leakage_H"), m.number("Lm_H"), m.number("magnetising_A"), m.number("current_limit_A"),
+        m.number("voltage_limit_V"), m.number("alpha_stator_1_K", ALPHA_CU), m.number("alpha_cage_1_K", ALPHA_AL),
+    )  # fmt: skip
+    if machine.magnetising > machine.current_limit:
+        what = f"magnetising_A = {machine.magnetising:g} is above current_limit_A = {machine.current_limit:g}"
+        raise m.error(what, "less: the rated flux has to be within the current")
+    places = {WINDING: _places(m, network, "winding", WINDING), CAGE: _places(m, network, "cage", CAGE)}
+    # The copper of the equivalent circuit stands in place of what the network has for stator and cage.
+    laws: dict[str, Law] = {
+        _loss(m, network, "stator_loss", "copper"): CopperLoss(machine.Rs, ("current_A",), 3.0, machine.alpha_s),
+        _loss(m, network, "cage_loss", "cage"): CopperLoss(machine.Rr, ("cage_current_A",), 3.0, machine.alpha_r),
+    }
+    m.close()
+    drive = induction_drive(machine, *_torque_and_speed(m, inputs))
+    return _mixed(drive, places), {p: p for shares in places.values() for p in shares}, laws
+
+
+def _loss(table: Table, network: Network, key: str, usual: str) -> str:
+    """The source that a key names."""
+    names = [s.name.removeprefix("loss:") for s in network.sources if s.name.startswith("loss:")]
+    if (name := table.word(key, usual)) not in names:
+        raise table.error(f"{key}: the model has no loss '{name}'", suggestion(name, names))
+    return f"loss:{name}"
 
 
 def _places(table: Table, network: Network, key: str, usual: str) -> dict[str, float]:

@@ -17,10 +17,10 @@ from lumped.condensation.reduction import Recipe
 from lumped.model.network import Network
 from thermoscope.design.machine_keys import short_key
 from validation.optimisation.corrections import Corrections, errors, learned
-from validation.optimisation.hot_spots import hot_spots
 from validation.optimisation.problem import COPPER, SETTLING, Problem
 from validation.optimisation.scaling import Scaling, design_parameters
 from validation.optimisation.space import Variable
+from validation.rating.hot_spots import hot_spots
 
 Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing

@@ -29,10 +29,10 @@ from validation.bands.at_rest import AtRest
 from validation.comparison.predict import thermal
 from validation.optimisation.driven import GAINS, Driven
 from validation.optimisation.electrics import electrics_of, wanted_inputs
-from validation.optimisation.hot_spots import hot_spots
 from validation.optimisation.problem import COPPER, OBJECTIVES, PEAK, SETTLING, Problem
 from validation.optimisation.scaling import Scaling, design_parameters
 from validation.optimisation.space import Space, Variable
+from validation.rating.hot_spots import hot_spots
 from validation.rating.operation import flows, operation
 
 GAIN_RANGE = (0.25, 4.0)  # of a controller's gain

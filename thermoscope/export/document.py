@@ -17,7 +17,7 @@ from thermoscope.export.products import Function, Mapped, Positive, Powered, Str
 KINDS: dict[type, str] = {
     Powered: "power", Straight: "straight", Positive: "positive", Tabulated: "table", Mapped: "map",
 }  # fmt: skip
-LAWS = ("constant", "power", "radiation", "linear", "table", "film table")
+LAWS = ("constant", "power", "radiation", "linear", "table", "film table", "inverse")
 
 
 def document(model: Model) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss
 from lumped.transfer.laws import Fixed, InputPower, Law, Scaled, WithTemperature
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
@@ -48,11 +48,16 @@ def _(law: PowerLoss) -> Sum | Unknown:
 
 @expanded.register
 def _(law: CopperLoss) -> Sum | Unknown:
-    orders = enumerate(law.ac) if law.speed else [(0, law.ac[0])]
-    factors = [(c, (Powered(law.speed, law.speed_at, float(k)),) if k and law.speed else ()) for k, c in orders]
+    return tuple(Product(law.factor_ * law.resistance, (Powered(name, 1.0, 2.0),)) for name in law.currents)
+
+
+@expanded.register
+def _(law: EddyLoss) -> Sum | Unknown:
+    c0, *others = law.ac
+    orders = [(c0 - 1.0, ()), *((c, (Powered(law.speed, law.speed_at, float(k)),)) for k, c in enumerate(others, 1))]
+    R = law.copper.factor_ * law.copper.resistance
     return tuple(
-        Product(law.factor_ * law.resistance * c, (Powered(name, 1.0, 2.0), *ac))
-        for name, (c, ac) in pairs(law.currents, factors)
+        Product(R * c, (Powered(name, 1.0, 2.0), *ac)) for name, (c, ac) in pairs(law.copper.currents, orders) if c
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -10,15 +11,19 @@ from geom.description.machine import Machine
 from lumped.circuits.hydraulics import pressure_drop, pumping_power
 from lumped.machine.coolant import FLOW, INLET, Cooling, channel_of
 from lumped.machine.films import surroundings
+from lumped.machine.outer import Cowl, cowl_of
+from lumped.machine.shapes import Fins, fins_of
 from lumped.transfer.properties import air
 
-EFFICIENCY = 0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6
+EFFICIENCY = (
+    0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6, also on a shaft
+)
 FAN = "fan_flow_m3h"
 
 
 @dataclass(frozen=True)
 class Way:
-    """A jacket as what pressure needs to know: all its channels one after the other."""
+    """What pressure needs to know: all channels of a jacket one after the other, or all between fins side by side."""
 
     section: float
     diameter: float
@@ -27,11 +32,8 @@ class Way:
     coil: float
 
 
-def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
-    """Electrical power (W) of the coolant's pump and of the fan at an operating point.
-
-    A fan on the shaft ([fans.cowl]) takes its power as windage, which is among the losses.
-    """
+def auxiliary_power(machine: Machine, inputs: Mapping[str, float], ambient_C: float = 20.0) -> float:
+    """Power (W) of the coolant's pump and of fans at an operating point; a fan on the shaft moves air of ambient_C."""
     around = surroundings(machine, ())
     out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] * L_MIN)
     ducts = machine.features.ducts
@@ -39,7 +41,22 @@ def auxiliary_power(machine: Machine, inputs: Mapping[str, float]) -> float:
         flow, (way, duct) = inputs[FAN] * M3_H, next(iter(ducts.items()))  # all ways drop the same pressure
         drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
         out += pumping_power(drop, flow, EFFICIENCY)
+    cowl, fins = cowl_of(machine), fins_of(machine)
+    if cowl is not None and fins is not None:
+        out += _shaft_fan(cowl, fins, abs(inputs.get("speed_rpm", 0.0)), ambient_C)
     return out
+
+
+def _shaft_fan(cowl: Cowl, fins: Fins, rpm: float, ambient_C: float) -> float:
+    """Of the air between all fins, as it leaves the cowl: more, higher or thinner fins let more air through.
+
+    Along the fins it slows down in a straight line to `end_share`; friction goes with the mean of its square.
+    """
+    s, length = cowl.end_share, fins.length if fins.axial else math.pi * (fins.root + fins.height)
+    section = fins.number * fins.spacing * fins.height
+    way = Way(section, fins.hydraulic_diameter, length * (1.0 + s + s * s) / 3.0, 0, 0.0)
+    flow = cowl.air_speed * rpm / cowl.at_rpm * section
+    return pumping_power(pressure_drop(way, flow, air(ambient_C)), flow, EFFICIENCY)
 
 
 def _pump(machine: Machine, cooling: Cooling, flow: float) -> float:

@@ -18,10 +18,10 @@ from validation.optimisation.auxiliaries import auxiliary_power
 from validation.optimisation.corrections import NONE, Corrections
 from validation.optimisation.driven import Driven
 from validation.optimisation.electrics import Electrics
-from validation.optimisation.hot_spots import HotSpots
 from validation.optimisation.rest import Rest, losses, rest, without_feedback
 from validation.optimisation.scaling import Scaling
 from validation.optimisation.space import Space
+from validation.rating.hot_spots import HotSpots
 
 Array = NDArray[np.float64]
 PEAK, SETTLING, COPPER, AUXILIARY = OBJECTIVES = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
@@ -108,9 +108,10 @@ class Problem:
         copper = losses(self.network, values, inputs, rest.z, ("copper",)) * self.corrections.ratio(COPPER, share)
         places, slowest = self._temperatures(rest, values, inputs, share)
         hottest = max(list(places.values())[: self.peak])
+        ambient = self.boundaries.get("ambient", 20.0)
         objectives = {
             PEAK: hottest, SETTLING: slowest * self.corrections.ratio(SETTLING, share), COPPER: copper,
-            AUXILIARY: 0.0 if machine is None else auxiliary_power(machine, inputs),
+            AUXILIARY: 0.0 if machine is None else auxiliary_power(machine, inputs, ambient),
         }  # fmt: skip
         excess = {f"{s.name} <= {s.limit:g} degC": places[s.name] / s.limit - 1.0 for s in self.spots}
         limits = self.electrics.excess(inputs, copper) if self.driven is None else lag

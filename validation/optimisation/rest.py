@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 from lumped.integration.assembly import assembly
 from lumped.integration.compiled import compiled
 from lumped.integration.record import Record
+from lumped.integration.runaway import grows
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import solve_steady_start
 from lumped.transfer.laws import Law, Linear, Scaled, WithTemperature
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import loss_slope, temperature_value
 
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
@@ -89,8 +90,8 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     ])  # fmt: skip
     G = every.matrix(coefficient)[:, :n]
     for s, c in zip(network.sources, coefficient[len(network.links) :], strict=True):
-        if isinstance(s.law.temperature, Linear):
-            slope = c * s.law.temperature.alpha * s.weights
+        if slope_1_K := loss_slope(s.law.temperature, _T(s.probe, z)):
+            slope = c * slope_1_K * s.weights
             np.subtract.at(G, (s.index[:, None], s.probe.index[None, :]), np.outer(slope, s.probe.weights))
     return G
 
@@ -116,14 +117,10 @@ def without_feedback(network: Network, T: float) -> Network:
 
     It is above T where the true one is above T or runs away, and below where that one is: which one, a limit can ask.
     """
-    hot = (replace(s, law=_at(s.law, T)) if _grows(s.law) else s for s in network.sources)
+    hot = (replace(s, law=_at(s.law, T)) if grows(s.law) else s for s in network.sources)
     return replace(network, sources=tuple(hot))
 
 
 def _at(law: Law, T: float) -> Law:
     """Another law at a temperature of its own (degC)."""
     return WithTemperature(Scaled(law, temperature_value(law.temperature, T, T)), Linear(0.0, T))
-
-
-def _grows(law: Law) -> bool:
-    return isinstance(law.temperature, Linear) and law.temperature.alpha > 0.0

@@ -118,4 +118,4 @@ def begin_at(model: Model, op: Operation, begin: object, speed: float | None) ->
     """(n_rows,) degC at a start."""
     x = begin.x  # type: ignore[attr-defined]
     z = np.concatenate([x, [op.boundaries[b] for b in model.network.boundaries]])
-    return np.array([r.weights @ z[r.index] for r in model.rows])
+    return model.place_temperatures(z[None])[0]

@@ -18,6 +18,7 @@ from geom.errors import InputError
 from lumped.model.network import Network, Source
 from lumped.schemas.bounds import UNITS
 from lumped.sources.loss_map import MapLoss
+from lumped.sources.losses import EDDY
 from lumped.transfer.laws import Linear
 
 Array = NDArray[np.float64]
@@ -123,9 +124,9 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
             choices = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
             raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {choices}")
     sources = []
-    for s in network.sources:
+    for s in (s for s in network.sources if not s.name.endswith(EDDY)):  # a map says the whole of a copper loss
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
-            alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind)]
+            alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind) and not x.name.endswith(EDDY)]
             sources.append(replace(s, law=_law(grid, grid.watts[name] / len(alike), s)))
     gone = {s.name for s in network.sources} - {s.name for s in sources}
     parameters = tuple(replace(p, targets=tuple(t for t in p.targets if t[0] not in gone)) for p in network.parameters)

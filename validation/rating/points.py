@@ -14,6 +14,7 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, Stand, initial_state, simulate
 from lumped.integration.steady import steady
 from lumped.model.network import Network, Row
+from validation.rating.hot_spots import HotSpots
 from validation.rating.operation import Operation
 
 Array = NDArray[np.float64]
@@ -26,16 +27,29 @@ RUNAWAY_C = 1e4  # what a load without rest counts as
 
 @dataclass(frozen=True)
 class Model:
-    """A network at some values of its parameters, looked at in the places that are limited."""
+    """A network at some values of its parameters, looked at in the places that are limited: mean or hottest point."""
 
     network: Network
     values: Mapping[str, float]
-    rows: Sequence[Row]
+    rows: Sequence[Row | HotSpots]
+
+    def place_temperatures(self, z: Array) -> Array:
+        """(nt, n_rows) degC of the limited places.  z : (nt, n_states + n_boundaries)"""
+        return np.column_stack(
+            [r.along(z) if isinstance(r, HotSpots) else z[:, r.index] @ r.weights for r in self.rows]
+        )
+
+    def run(self, record: Record, begin: Stand) -> tuple[Array, Stand]:
+        """(nt, n_rows) degC over a record, and where it ends."""
+        run = simulate(self.network, record, self.values, keep_states=True, begin=begin)
+        return self.place_temperatures(np.asarray(run.z)), run.end
 
     def rest(self, op: Operation, load: float, speed: float | None) -> Array:
         """(n_rows,) degC under the load for ever; RUNAWAY_C where losses grow faster than the cooling."""
         try:
-            return steady(self.network, op.at(load, speed), op.boundaries, self.values, self.rows).y
+            return self.place_temperatures(
+                steady(self.network, op.at(load, speed), op.boundaries, self.values).z[None]
+            )[0]
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)
 
@@ -59,7 +73,7 @@ class Model:
         time = np.concatenate([[0.0], seconds * np.geomspace(1e-3, 1.0, SAMPLES)])
         record = Record(time, {n: np.full(time.size, u) for n, u in op.at(load, speed).items()}, op.boundaries)
         try:
-            return time, simulate(self.network, record, self.values, self.rows, begin=begin).y
+            return time, self.run(record, begin)[0]
         except ThermoscopeError:
             return time, np.full((time.size, len(self.rows)), RUNAWAY_C)
 
@@ -81,12 +95,12 @@ class Model:
             x = self.start(op, load, speed).x
             iterates: list[tuple[Array, Array]] = []
             for _ in range(ROUNDS):
-                run = simulate(self.network, record, self.values, self.rows, begin=self.at(op, x))
-                iterates = [*iterates, (x, run.end.x)][-DEPTH:]
-                if np.abs(run.end.x - x).max() < REPEATS_K * TOGETHER:
+                T, end = self.run(record, self.at(op, x))
+                iterates = [*iterates, (x, end.x)][-DEPTH:]
+                if np.abs(end.x - x).max() < REPEATS_K * TOGETHER:
                     break
                 x = mixed(iterates)
-            return np.asarray(run.y.max(axis=0))
+            return np.asarray(T.max(axis=0))
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
-from lumped.integration.simulate import Record, simulate
+from lumped.integration.simulate import Record
 from validation.rating.envelope import reached
 from validation.rating.operation import Operation
 from validation.rating.points import REPEATS_K, Model
@@ -59,15 +59,15 @@ def time_to_limit(model: Model, op: Operation, limits: Mapping[str, float], lap:
     span = float(lap.record.time[-1] - lap.record.time[0])
     while laps * span < LONGEST_S:
         try:
-            run = simulate(model.network, lap.record, model.values, model.rows, begin=stand)
+            T, end = model.run(lap.record, stand)
         except ThermoscopeError:
             return laps * span
-        over = np.flatnonzero(np.any(run.y >= most, axis=1))
+        over = np.flatnonzero(np.any(most <= T, axis=1))
         if over.size:
-            return laps * span + _crossing(lap.record.time, run.y - most, int(over[0]))
-        if np.abs(run.end.x - stand.x).max() < REPEATS_K:
+            return laps * span + _crossing(lap.record.time, T - most, int(over[0]))
+        if np.abs(end.x - stand.x).max() < REPEATS_K:
             break
-        stand, laps = model.at(around, run.end.x), laps + 1
+        stand, laps = model.at(around, end.x), laps + 1
     return float("inf")
 
 

@@ -12,6 +12,8 @@ from geom.errors import InputError
 from lumped.declarations.network import load_network, read_network
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
+from lumped.transfer.laws import Conductivity, Linear
+from lumped.transfer.terms_value import temperature_value
 
 
 @pytest.fixture(scope="module")
@@ -68,11 +70,29 @@ def test_the_example_declares_what_its_comments_say(data):
 
 def test_copper_loss_is_the_published_formula(data):
     """Liu et al. 2024: 1.5 Rs (id^2 + iq^2) (1 + alpha (T - 20)) (1 + 0.02174 f + 0.3874 f^2), f = rpm / 4000."""
-    copper = next(s for s in read_network(data).sources if s.name == "loss:copper")
+    sources = {s.name: s for s in read_network(data).sources}
+    copper, eddy = sources["loss:copper"], sources["loss:copper:eddy"]
     f = 0.5
-    by_hand = 1.5 * 4.67e-3 * (40.0**2 + 90.0**2) * (1 + 0.02174 * f + 0.3874 * f * f)
-    assert copper.law.factor(INPUTS) == pytest.approx(by_hand, rel=1e-12)
-    assert (copper.law.temperature.alpha, copper.law.temperature.reference) == (0.0039, 20.0)
+    direct = 1.5 * 4.67e-3 * (40.0**2 + 90.0**2)
+    assert copper.law.factor(INPUTS) == pytest.approx(direct, rel=1e-12)
+    assert eddy.law.factor(INPUTS) == pytest.approx(direct * (0.02174 * f + 0.3874 * f * f), rel=1e-12)
+    assert copper.law.temperature == Linear(0.0039, 20.0)
+    assert eddy.law.temperature == Conductivity(0.0039, 20.0)
+    assert [name for name, _ in next(p for p in read_network(data).parameters if p.name == "loss.copper").targets] == [
+        "loss:copper", "loss:copper:eddy",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("ratio", [1.4, 3.0])
+def test_eddy_currents_fall_with_resistivity(data, ratio):
+    """Alternating over direct current 1.4 and 3 at 20 degC: at 150 degC direct grows by 1.507, the rest falls by it."""
+    data["losses"]["copper"] |= {"ac": {"input": "speed_rpm", "at": 2000.0, "coefficients": [1.0, 0.0, ratio - 1.0]}}
+    network = read_network(data)
+    warm = 1.0 + 0.0039 * 130.0
+    sources = [s for s in network.sources if s.name.startswith("loss:copper")]
+    watts = [float(s.law.factor(INPUTS)) * temperature_value(s.law.temperature, 150.0, 0.0) for s in sources]
+    direct = 1.5 * 4.67e-3 * (40.0**2 + 90.0**2)
+    assert sum(watts) == pytest.approx(direct * (warm + (ratio - 1.0) / warm), rel=1e-12)
 
 
 def test_measured_loss_less_copper_injects_the_measured_sum(data):
@@ -84,7 +104,9 @@ def test_measured_loss_less_copper_injects_the_measured_sum(data):
     network = read_network(data)
     heat = balance(network, Record(TIME, given, AROUND), {"loss.copper": 1.3})
     losses = [name for name in heat.injected if name.startswith(("loss:copper", "loss:iron"))]
-    assert losses == ["loss:copper", "loss:iron", "loss:iron:less:copper"]
+    assert losses == [
+        "loss:copper", "loss:copper:eddy", "loss:iron", "loss:iron:less:copper", "loss:iron:less:copper:eddy",
+    ]  # fmt: skip
     total = sum(heat.injected[name] for name in losses)
     assert_allclose(total, (12000.0 - 50.0 * 2000.0 * np.pi / 30) * TIME, rtol=1e-9, atol=1e-3)
 

@@ -15,14 +15,16 @@ from lumped.declarations.separated import FilmOver, Share
 from lumped.integration.simulate import Record
 from lumped.machine.bases import Switched
 from lumped.machine.laws import Interpolated
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate, counterflow
 from lumped.transfer.laws import (
     CLOCK,
     CONSTANT,
     FILMS,
+    Conductivity,
     Constant,
     FilmTable,
     Fixed,
@@ -72,8 +74,11 @@ LAWS = [
     Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
     Scaled(Fixed(0.4), -1.0), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
     MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))), CopperLoss(0.02, ("current_A",)),
+    EddyLoss(CopperLoss(0.02, ("current_A",)), (1.0, 0.0, 0.4), "speed_rpm", 2000.0),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
     BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
+    InverterLoss(("current_A",), 3.0, 0.1, 0.01, 8e3, 1e-6, 10.0, 600.0, 560.0, 1.0),
+    PulseLoss("voltage_V", 96.0, 1e-3, 1e4, 0.5),
     Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
     OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
     Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
@@ -83,13 +88,14 @@ LAWS = [
     Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
 ]  # fmt: skip
 TEMPERATURES = [
-    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
+    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Conductivity(0.004, 20.0),
+    Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
     FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
 ]  # fmt: skip
 LAWS += [Fixed(0.5, temperature) for temperature in TEMPERATURES]
 NAMES = [f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
          for i, law in enumerate(LAWS)]  # fmt: skip
-LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear)]
+LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear | Conductivity)]
 
 
 ROOMS = (fem, lumped, validation, viz, thermoscope)
@@ -142,6 +148,10 @@ LIMITS = {
     CopperLoss: [
         (CopperLoss(0.02, ("I",)), {"I": 0.0}, 0.0), (CopperLoss(0.02, ("I",), 3.0), {"I": -10.0}, 6.0),
     ],
+    EddyLoss: [  # none at rest, the copper's once more where the resistance has doubled
+        (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": 0.0}, 0.0),
+        (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": -50.0}, 2.0),
+    ],
     PowerLoss: [(PowerLoss(((2.0, (("n", 10.0, 1.5),)), (1.0, ()))), {"n": 0.0}, 1.0)],
     IronLoss: [
         (IronLoss(1.0, 0.5, "n", 100.0, "I", 10.0), {"n": 0.0, "I": 10.0}, 0.0),
@@ -153,6 +163,12 @@ LIMITS = {
         (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0),
         (RippleLoss(48.0, "V", 1e-3, 1e4, 0.05), {"V": 60.0}, 0.0),
     ],
+    InverterLoss: [  # drivers alone; an ohmic switch carries a third of its time's square: 3/2 R I^2
+        (InverterLoss(("I",), 1.5, 1.0, 0.1, 8e3, 1e-3, 10.0, 600.0, 560.0, 7.0), {"I": 0.0}, 7.0),
+        (InverterLoss(("I",), 1.5, 0.0, 0.1, 8e3, 0.0, 10.0, 600.0, 560.0), {"I": -10.0}, 15.0),
+        (InverterLoss(("I",), 3.0, np.pi / 6.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0), {"I": 0.5**0.5}, 1.0),
+    ],
+    PulseLoss: [(PulseLoss("V", 48.0, 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0)],
     Rate: [(Rate(BY_FLOW), {"flow": 0.0}, 0.0), (Rate(BY_FLOW), {"flow": -3.0}, 6.0)],
     Exchanger: [  # nothing flows; endless plates bring the lesser stream all the way; small ones are UA
         (Exchanger(1.0, BY_FLOW, Flow(3.0)), {"flow": 0.0}, 0.0),
@@ -188,6 +204,9 @@ TEMPERATURE_LIMITS = {
     Radiation: [  # near equal temperatures 4 sigma T^3; against nothing sigma T^3
         (Radiation(), 20.0, 20.0, 4 * 5.670374419e-8 * 293.15**3),
         (Radiation(), 20.0, -273.15, 5.670374419e-8 * 293.15**3),
+    ],
+    Conductivity: [
+        (Conductivity(0.004, 20.0), 20.0, 99.0, 1.0), (Conductivity(0.004, 20.0), 270.0, 99.0, 0.5),
     ],
     Linear: [(Linear(0.004, 20.0), 20.0, 99.0, 1.0), (Linear(0.004, 20.0), 270.0, 99.0, 2.0)],
     Table: [

@@ -25,7 +25,7 @@ from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source, stream
 from lumped.model.network import Parameter
 from lumped.numerics.terms import SMOOTH
-from lumped.transfer.laws import Constant, Fixed, Law, Linear, Power, TemperatureLaw
+from lumped.transfer.laws import Conductivity, Constant, Fixed, Law, Linear, Power, TemperatureLaw
 from lumped.transfer.reversal import Direction
 from lumped.transfer.terms_value import temperature_value
 
@@ -123,15 +123,18 @@ def declared_heat(law):
 @pytest.mark.parametrize("law", LOSSES, ids=kinds(LOSSES))
 def test_a_loss_warms_what_it_is_said_to_warm_and_nothing_else(law):
     """Bodies that nothing joins, against the closed form; with F the declared heat and a the coefficient (1/K),
-    1 + a (T - reference) grows by exp(a F / C), and what is not heated stays as it is."""
+    1 + a (T - reference) grows by exp(a F / C), or, of eddy currents, its square by 2 a F / C; what is not heated stays
+    as it is."""
     net = bare_network("alone", {"a": 3e4, "b": 5e4, "c": 5e4}, ("ambient",))
     net = net.extended(sources=[node_source(net, "law", "iron", {"a": 0.4, "b": 0.6}, law, "b")])
     T = simulate(net, Record(TIME, RECORD.inputs, {"ambient": 18.0}, 60.0), keep_states=True).z[:, :3]
     (F, unsure), alpha = declared_heat(law), 0.0
-    if isinstance(law.temperature, Linear):
+    if isinstance(law.temperature, Linear | Conductivity):
         alpha = law.temperature.alpha
     above = 1.0 + alpha * (60.0 - law.temperature.reference) if alpha else 1.0
     rise = above * (np.expm1(0.6 * alpha * F / net.C[1]) / alpha if alpha else 0.6 * F / net.C[1])
+    if isinstance(law.temperature, Conductivity):
+        rise = (np.sqrt(above**2 + 2 * alpha * 0.6 * F / net.C[1]) - above) / alpha
     assert_allclose(T[-1, 1] - 60.0, rise, rtol=1e-3, atol=0.6 * unsure / net.C[1])
     assert_allclose((T[:, 0] - 60.0) * net.C[0] / 0.4, (T[:, 1] - 60.0) * net.C[1] / 0.6, rtol=1e-9, atol=1e-7)
     assert_array_equal(T[:, 2], 60.0)

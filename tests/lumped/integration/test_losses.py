@@ -11,8 +11,9 @@ from lumped.declarations.network import read_network
 from lumped.integration.audit import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
+from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import Law
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}
@@ -26,8 +27,9 @@ def test_iron_follows_frequency_and_flux_exponents():
 
 
 def test_copper_at_speed_has_its_ac_share():
-    law = CopperLoss(0.01, ("current_A",), ac=(1.0, 0.0, 0.4), speed="speed_rpm", speed_at=2000.0)
-    assert_allclose(law.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
+    copper = CopperLoss(0.01, ("current_A",))
+    eddy = EddyLoss(copper, (1.0, 0.0, 0.4), "speed_rpm", 2000.0)
+    assert_allclose(copper.factor(AT) + eddy.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
 
 
 def test_brushes_drop_and_rub():
@@ -81,6 +83,36 @@ class Seen(Law):
         x = inputs["current_A"]
         self.low, self.high = min(self.low, x.min()), max(self.high, x.max())
         return np.abs(x) ** 1.7
+
+
+@pytest.mark.parametrize("modulation", [0.1, 0.4, 0.8, 1.0, 1.15])
+def test_pulses_make_the_ripple_that_their_flux_shows(modulation):
+    """Space-vector pulses against a triangle, 400 angles of 1000 instants: flux of a phase less its mean, over L."""
+    angle = 2 * np.pi * (np.arange(400) + 0.5)[:, None] / 400 - 2 * np.pi / 3 * np.arange(3)
+    phase = 0.5 * modulation * np.cos(angle)
+    phase -= 0.5 * (phase.max(axis=1) + phase.min(axis=1))[:, None]
+    carrier = np.abs(2 * (np.arange(1000) + 0.5) / 1000 - 1) - 0.5
+    legs = np.where(phase[:, :, None] > carrier, 0.5, -0.5)
+    error = legs[:, 0] - legs.mean(axis=1)
+    error -= error.mean(axis=1, keepdims=True)
+    flux = np.cumsum(error, axis=1) / 1000
+    flux -= flux.mean(axis=1, keepdims=True)
+    law = PulseLoss("voltage_V", 560.0, 2e-3, 8e3, 0.3)
+    watts = 3 * 0.3 * (560.0 / 2e-3 / 8e3) ** 2 * np.mean(flux**2)
+    assert law.factor({"voltage_V": 280.0 * modulation}) == pytest.approx(watts, rel=0.01)
+
+
+def test_pulses_beyond_their_supply_are_said():
+    with pytest.warns(UserWarning, match=r"voltage_V = 400 V above 323\.3 V"):
+        PulseLoss("voltage_V", 560.0, 2e-3, 8e3, 0.3).factor({"voltage_V": 400.0})
+
+
+def test_an_inverter_loses_what_its_switches_do_over_a_period():
+    """Three legs of one device each that carries |i|: V0 |i| + R i^2, and the energy of every pulse."""
+    i = 40.0 * np.sin(2 * np.pi * (np.arange(10_000) + 0.5) / 10_000)
+    leg = 0.9 * np.abs(i) + 0.02 * i**2 + 8e3 * 3e-3 * np.abs(i) / 50.0 * 560.0 / 600.0
+    law = InverterLoss(("id_A", "iq_A"), 1.5, 0.9, 0.02, 8e3, 3e-3, 50.0, 600.0, 560.0, 12.0)
+    assert law.factor({"id_A": -24.0, "iq_A": 32.0}) == pytest.approx(12.0 + 3 * np.mean(leg), rel=1e-6)
 
 
 @pytest.mark.parametrize("apart", [1, 7])

@@ -49,6 +49,70 @@ def test_limits_are_kept_everywhere_on_the_map():
     assert np.all(MOTOR.torque(i_d, i_q) <= torque + 1e-6)
 
 
+def random_machine(rng):
+    """Without saliency, with either one; psi / Ld below and above the current limit; up to eight times base speed."""
+    amperes, volts, pairs = 10 ** rng.uniform(0.5, 2.8), 10 ** rng.uniform(1.3, 2.8), int(rng.integers(1, 9))
+    Ld = 1e-3 * volts / amperes / pairs * 10 ** rng.uniform(-0.7, 0.5)
+    Lq = Ld * rng.choice([1.0, rng.uniform(1.0, 5.0), rng.uniform(0.3, 1.0)])
+    psi, R = Ld * amperes * 10 ** rng.uniform(-1.0, 0.7), rng.uniform(0.0, 0.08) * volts / amperes
+    base = volts / pairs / (psi + Ld * amperes) * 30 / np.pi
+    machine = PMMachine(pairs, R, Ld, Lq, psi, amperes, volts)
+    return machine, base * 10 ** rng.uniform(-1.0, 0.9) * rng.choice([-1.0, 1.0]), rng.choice([-1.0, 1.0])
+
+
+def allowed(machine, i_d, i_q, speed):
+    kept = np.hypot(i_d, i_q) <= machine.current_limit * (1 + 1e-9)
+    return kept & (machine.voltage(i_d, i_q, speed) <= machine.voltage_limit * (1 + 1e-9))
+
+
+def test_the_most_torque_is_that_of_a_grid_over_both_currents():
+    """Within 0.5 %, driving and braking; a grid of 0.3 % of the current limit can only miss some of it."""
+    rng, compared = np.random.default_rng(48), 0
+    radius, angle = np.sqrt(np.linspace(0.0, 1.0, 300))[:, None], np.linspace(0.0, 2 * np.pi, 600)
+    for _ in range(120):
+        machine, speed, way = random_machine(rng)
+        d, q = machine.current_limit * radius * np.cos(angle), machine.current_limit * radius * np.sin(angle)
+        torque = way * machine.torque(d, q)[allowed(machine, d, q, speed)]
+        i_d, i_q = machine.currents(way * 1e9, speed)
+        if torque.size < 1000:
+            continue  # the limits allow next to nothing: a grid says little
+        assert allowed(machine, i_d, i_q, speed), machine
+        assert allowed(machine, *machine.currents(0.0, speed), speed), machine  # no torque, where only braking is
+        found, compared = way * float(machine.torque(i_d, i_q)), compared + 1
+        assert found >= torque.max() - 5e-3 * np.abs(torque).max(), (machine, speed, way)
+    assert compared > 60
+
+
+def test_a_torque_within_reach_is_given_by_the_least_current():
+    """Against every i_d of a fine grid at the same torque."""
+    rng, compared = np.random.default_rng(4), 0
+    for _ in range(200):
+        machine, speed, way = random_machine(rng)
+        most = machine.torque(*machine.currents(way * 1e9, speed))
+        torque = rng.uniform(0.02, 1.0) * most
+        if way * most <= 0.0:
+            continue
+        d = np.linspace(-machine.current_limit, machine.current_limit, 20001)
+        q = torque / machine.torque(d, 1.0)
+        kept = allowed(machine, d, q, speed)
+        if not kept.any():
+            continue  # between two of the grid, or less than what braking there makes at least
+        i_d, i_q = machine.currents(torque, speed)
+        compared += 1
+        assert machine.torque(i_d, i_q) == pytest.approx(torque, rel=1e-6)
+        assert allowed(machine, i_d, i_q, speed)
+        assert np.hypot(i_d, i_q) <= np.hypot(d, q)[kept].min() * (1 + 1e-6)
+    assert compared > 120
+
+
+@pytest.mark.parametrize(("torque", "speed"), [(136.0, 3000.0), (60.0, 9000.0), (-60.0, 9000.0), (60.0, -9000.0)])
+def test_electrical_power_is_mechanical_power_and_copper(torque, speed):
+    i_d, i_q = MOTOR.currents(torque, speed, 120.0, 90.0)
+    copper = 1.5 * MOTOR.resistance(120.0) * (i_d**2 + i_q**2)
+    mechanical = MOTOR.torque(i_d, i_q, 90.0) * speed * np.pi / 30
+    assert MOTOR.power(i_d, i_q, speed, 120.0, 90.0) == pytest.approx(mechanical + copper, rel=1e-12)
+
+
 def test_warm_magnets_need_more_current():
     assert MOTOR.flux(120.0) == pytest.approx(0.07 * (1 - 0.11))
     cold, hot = (np.hypot(*MOTOR.currents(100.0, 1000.0, 20.0, T)) for T in (20.0, 120.0))

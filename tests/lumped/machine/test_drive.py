@@ -1,5 +1,7 @@
 """The series machine against its ratings and equations; duty types against their definitions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -60,6 +62,48 @@ def test_a_finer_inner_step_gives_the_same_currents(climb):
     wanted = np.clip(climb.time / 60.0, 0.0, 1.0) * 40 / 3.6
     fine = drive_cycle(MACHINE, VEHICLE, Controller(), climb.time, wanted, slope, step=1e-3)
     assert_allclose(fine.current_A, climb.current_A, rtol=0.01, atol=1.0)
+
+
+def stop_and_go(vehicle):
+    """40 km/h and back every 100 s; the profile, what is driven, and the current that exactly this takes (A, rms)."""
+    time = np.arange(0.0, 600.0, 0.5)
+    wanted = np.interp(time % 100, [0, 5, 25, 55, 65, 100], [0, 0, 1, 1, 0, 0]) * 40 / 3.6
+    course = drive_cycle(MACHINE, vehicle, Controller(), time, wanted, np.zeros(time.size))
+    gathers = (MACHINE.J + vehicle.inertia()) * np.gradient(wanted, time) * vehicle.gear / vehicle.wheel_radius
+    torque = np.where(wanted > 0, vehicle.load_torque(wanted, 0.0), 0.0) + gathers
+    driven = np.where(torque > 0, torque, vehicle.regeneration * -torque)
+    return time, wanted, course, np.sqrt(np.mean(np.minimum(driven / MACHINE.L_af, 511.0**2)))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_a_vehicle_with_brakes_stops_and_takes_the_current_of_its_profile(share):
+    _, wanted, course, exact = stop_and_go(replace(VEHICLE, regeneration=share))
+    assert np.sqrt(np.mean(course.current_A**2)) == pytest.approx(exact, rel=0.015)
+    assert course.vehicle_speed_mps[wanted == 0.0][-1] == 0.0
+    without = stop_and_go(replace(VEHICLE, brakes=0.0, regeneration=0.0))[2]
+    assert np.sqrt(np.mean(without.current_A**2)) < 0.9 * exact
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_energy_from_the_supply_is_copper_brakes_and_load(share):
+    """At rest at both ends; 0.1 % for the 0.5 s at which the load is sampled."""
+    vehicle = replace(VEHICLE, regeneration=share)
+    time, _, course, _ = stop_and_go(vehicle)
+    load = np.trapezoid(vehicle.load_torque(course.vehicle_speed_mps, 0.0) * course.speed_rpm * np.pi / 30, time)
+    step = np.diff(time)
+    spent = step @ (MACHINE.R * course.current_A**2 + course.brake_W)[1:] + load
+    assert step @ course.electrical_W[1:] == pytest.approx(spent, rel=1e-3)
+    assert bool(course.torque_Nm.min() < -100.0) is (share > 0.0)
+
+
+def test_a_slope_is_held_down_and_at_rest():
+    """Downhill at 40 km/h and then at rest on the slope, by the brakes alone."""
+    time = np.arange(0.0, 200.0)
+    wanted = np.interp(time, [0, 40, 100, 120, 200], [0, 1, 1, 0, 0]) * 40 / 3.6
+    course = drive_cycle(MACHINE, VEHICLE, Controller(), time, wanted, np.full(200, -0.06))
+    assert course.vehicle_speed_mps[99] == pytest.approx(40 / 3.6, rel=0.05)
+    assert course.vehicle_speed_mps[-1] == 0.0
+    assert course.current_A[60:].max() < 1.0
 
 
 @pytest.mark.parametrize(

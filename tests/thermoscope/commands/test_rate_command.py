@@ -30,6 +30,21 @@ current_A = 200
 [boundaries]
 ambient = 20
 """
+HOIST = (
+    CYCLE.replace("current_A = 200", "torque_Nm = 200\nspeed_rpm = 1450")
+    + """[induction-machine]
+pole_pairs = 2
+Rs20_ohm = 0.02
+Rr20_ohm = 0.02
+Ls_leakage_H = 2e-4
+Lr_leakage_H = 2e-4
+Lm_H = 7e-3
+magnetising_A = 60
+current_limit_A = 200
+voltage_limit_V = 50
+cage = "winding"
+"""
+)
 HOLES = "torque_Nm,speed_rpm,copper_W\n0,0,0\n50,0,20\n0,1000,0\n"
 
 
@@ -119,6 +134,22 @@ def test_a_cycle_and_a_map(thermoscope, tmp_path):
     assert cycle["share"] * 200.0 == pytest.approx(continuous * 2.0**0.5, rel=0.08)
     assert 0.0 < cycle["until_s"] < 3600.0
     assert thermoscope("use", "rate", case, *asked, "--map").err.splitlines()[-1].endswith("and a limit in reach")
+
+
+def test_a_cycle_of_a_cage_machine_multiplies_both_currents(thermoscope, tmp_path):
+    """An S3 of torque; the cage's current is no input of the model itself, and its loss goes with the square too."""
+    case = small_case(tmp_path)
+    network = case / "network.toml"
+    network.write_text(network.read_text() + '\n[losses.cage]\nkind = "constant"\nat = "winding"\nP_W = 1\n')
+    (case / "cycles").mkdir()
+    (case / "cycles" / "hoist.toml").write_text(HOIST)
+    said = thermoscope("use", "rate", case, "--limit", "winding=120", "--at", "ambient=20", "--cycle", "hoist",
+                       "--json", "-", "--no-bands")  # fmt: skip
+    assert said.code == 0, said.err
+    cycle = said.document["cycle"]
+    assert 0.1 < cycle["share"] < 10.0
+    assert cycle["short_of_s"] == {"torque_Nm": pytest.approx(60.0, abs=11.0)}
+    assert "misses what was wanted by more than 1 %" in said.err
 
 
 def test_a_machine_without_tests_stands_at_its_ratings():

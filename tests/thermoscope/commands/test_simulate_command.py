@@ -80,6 +80,24 @@ voltage_limit_V = 200
 magnet = "flange"
 """
 
+INDUCTION = (
+    PM[: PM.index("[pm-machine]")].replace("2000", "1450")
+    + """[induction-machine]
+pole_pairs = 2
+Rs20_ohm = 0.02
+Rr20_ohm = 0.02
+Ls_leakage_H = 2e-4
+Lr_leakage_H = 2e-4
+Lm_H = 7e-3
+magnetising_A = 60
+current_limit_A = 400
+voltage_limit_V = 325
+cage = "flange"
+cage_loss = "copper"
+stator_loss = "copper"
+"""
+)
+
 
 def ran(case, cycle, tmp_path):
     file = tmp_path / "document.json"
@@ -147,6 +165,25 @@ def test_a_permanent_magnet_machine_runs_from_torque_and_speed(case, tmp_path):
     assert run["coupling"]["residuals_K"][-1] < 1e-3 < run["coupling"]["residuals_K"][0]
 
 
+def test_a_cage_machine_runs_from_torque_and_speed(case, tmp_path):
+    """Beside the copper that the stator's loss becomes, a cage whose loss the network names."""
+    network = case / "network.toml"
+    network.write_text(network.read_text() + '\n[losses.bars]\nkind = "constant"\nat = "flange"\nP_W = 1\n')
+    run = ran(case, cycle_file(case, INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "bars"')), tmp_path)[
+        "runs"
+    ][0]
+    assert run["loss_mismatch"] < 1e-3
+    assert run["energy_balance"] < 1e-4
+    assert run["coupling"]["residuals_K"][-1] < 1e-3 < run["coupling"]["residuals_K"][0]
+    with open(run["file"]) as file:
+        head = file.readline().strip().split(",")
+    last = dict(zip(head, np.loadtxt(run["file"], delimiter=",", skiprows=1)[-1], strict=True))
+    copper = 3 * 0.02 * (1 + 0.00393 * (last["T winding (degC)"] - 20)) * last["current_A"] ** 2
+    cage = 3 * 0.02 * (1 + (last["T flange (degC)"] - 20) / 245) * last["cage_current_A"] ** 2
+    shaft = last["torque_Nm"] * last["speed_rpm"] * np.pi / 30
+    assert last["electrical_W"] == pytest.approx(shaft + copper + cage, rel=1e-4)
+
+
 def test_what_the_limits_leave_undone_is_said(case, tmp_path, capsys):
     """60 A cannot give 80 N m with 0.07 Vs and 4 pole pairs: 1.5 p psi I is 25 N m without reluctance."""
     weak = PM.replace("current_limit_A = 400", "current_limit_A = 60")
@@ -183,13 +220,20 @@ SLIPS = {
     "no boundary": (DUTY.replace("ambient = 25", ""), "boundary 'ambient'"),
     "no input": (DUTY.replace("current_A", "curent_A"), "input 'current_A'"),
     "duty type": (DUTY.replace("S3", "S9"), "'S9'"),
+    "two drives": (PM + INDUCTION[INDUCTION.index("[induction") :], "two drives"),
+    "loss": (
+        INDUCTION.replace('cage_loss = "copper"', 'cage_loss = "coper"'),
+        "no loss 'coper'.*did you mean 'copper'",
+    ),
+    "flux": (INDUCTION.replace("magnetising_A = 60", "magnetising_A = 600"), "above current_limit_A = 400"),
+    "regeneration": (DRIVE.replace("gear = 4.52", "gear = 4.52\nregeneration = 60"), "regeneration = 60"),
     "place": (PM.replace('magnet = "flange"', 'magnet = "flang"'), "'flang'.*did you mean 'flange'"),
 }
 
 
 @pytest.mark.parametrize(("text", "message"), SLIPS.values(), ids=SLIPS)
 def test_slips_are_named(case, text, message):
-    cycle_file(case, text)
+    cycle_file(case, text, TABLE)
     network = load_case(case).case.model.network
     with pytest.raises(InputError, match=message):
         load_cycle(case / "cycles" / "mine.toml", network, {})

@@ -1,20 +1,25 @@
 """Ratings of one node against closed forms, and loss maps against their own numbers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from geom.errors import InputError
+from lumped.condensation.recovery import PartShape, Shapes
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source
-from lumped.model.network import Row
+from lumped.model.network import Link, Row
 from lumped.transfer.laws import Fixed, InputPower, Linear
+from thermoscope.rating import places
 from validation.rating import points
 from validation.rating.derating import deratings
 from validation.rating.envelope import rated, until
 from validation.rating.holding_map import holding_times
+from validation.rating.hot_spots import hot_spots
 from validation.rating.loss_grid import loss_grid, with_losses
 from validation.rating.operation import at_altitude, density, operation
 from validation.rating.points import Duty, Model, mixed
@@ -45,6 +50,31 @@ def test_the_continuous_rating_is_the_balance():
     assert found.at == "body"
     assert_allclose(found.load, REST, rtol=2e-3)
     assert_allclose(found.slope, 200.0 / REST, rtol=0.02)  # T - air ~ load^2
+
+
+def test_a_limit_holds_at_the_hottest_point_and_that_of_a_mean_at_the_mean():
+    """A coil whose one shape rises by P / k, all of it at its third point: P (1 / G + 1 / k) is the limit's rise."""
+    k = 8.0
+    net = replace(bare_network("coil", {"coil": C, "coil#1": 0.1 * C}, ("air",)), capacity_group=("coil", "coil"))
+    shape = Link("shape", "conduction", ("coil", "coil"), np.array([1]), np.array([1]), np.ones(1), Fixed(k),
+                 Row(np.array([1]), np.ones(1)), Row(np.array([1]), np.ones(1)))  # fmt: skip
+    loss = node_source(net, "loss:copper", "copper", {"coil": 1.0}, InputPower(R, (("current_A", 1.0, 2.0),)))
+    loss = replace(loss, index=np.array([0, 1]), weights=np.ones(2))
+    net = net.extended([node_link(net, "film", "film", "coil", "air", Fixed(G)), shape], [loss])
+    V = np.column_stack([np.ones(3), [-1.0, 0.0, 1.0]])
+    shapes = Shapes({"coil": PartShape(np.arange(3), None, V, np.array([0.25, 0.5, 0.25]), np.array([0, 1]))})
+    net = replace(net, recovery=shapes)
+    op = operation(net, (), {"current_A": 50.0, "air": AIR})
+    rows = {"coil": net.places["coil"].mean}
+    for name, conductance in (("coil", 1.0 / (1.0 / G + 1.0 / k)), ("coil.mean", G)):
+        limits = places({name: 120.0}, rows, net.identities)
+        assert list(limits) == [name]
+        spots = hot_spots(net, rows, limits)
+        found = rated(Model(net, {}, spots), op, limits, "S1", None)
+        assert found.at == name
+        assert found.load * 50.0 == pytest.approx(np.sqrt(conductance * 100.0 / R), rel=2e-3)
+        short = rated(Model(net, {}, spots), op, limits, "S2 60 min", None)
+        assert short.load == pytest.approx(found.load, rel=5e-3)  # seven time constants
 
 
 @pytest.mark.parametrize(("form", "seconds"), [("S2 10 s", 10.0), ("S2 60 s", 60.0), ("S2 60 min", 3600.0)])

@@ -12,6 +12,7 @@ from geom.errors import InputError
 from lumped.integration.balance import balance
 from lumped.model.network import Source
 from lumped.transfer.laws import InputPower
+from lumped.transfer.terms_value import temperature_value
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects import catalogue, effect, kinds
 from validation.effects.above import Above
@@ -207,7 +208,7 @@ def test_a_warmer_winding_loses_more(net):
 
 
 INPUT = {"rpm": ("speed_rpm", 1.0), "A": ("current_A", 1.0), "m/s": ("vehicle_speed_mps", 1.0),
-         "kHz": ("switching_Hz", 1000.0)}  # fmt: skip
+         "kHz": ("switching_Hz", 1000.0), "degC": ("of the place", 1.0)}  # fmt: skip
 
 
 def condition(at):
@@ -222,8 +223,15 @@ def test_an_amplitude_is_what_the_effect_amounts_to_at_its_condition(kind, net):
     new = added(bigger, net)
     assert new
     at = condition(KINDS[kind].at)
-    assert [float(one.law.factor(at)) for one in new] == pytest.approx([1.0] * len(new))
+    there = at.get("of the place", 20.0)
+    watts = [float(one.law.factor(at)) * temperature_value(one.law.temperature, there, there) for one in new]
+    assert watts == pytest.approx([1.0] * len(new))
     assert p.unit.endswith(f" at {KINDS[kind].at}")
+
+
+def test_eddy_currents_in_copper_fall_with_its_resistivity(net):
+    (loss,) = added(grown(first("copper.ac", net), net)[0], net)
+    assert temperature_value(loss.law.temperature, 150.0, 0.0) == pytest.approx(1.0 / (1.0 + 0.00393 * 130.0))
 
 
 def test_natural_convection_is_its_amplitude_at_the_rise_it_says(net):

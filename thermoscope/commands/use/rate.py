@@ -21,6 +21,7 @@ from thermoscope.case_folder.settings import Settings, read_settings
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.commands.use.export import read_limits
+from thermoscope.commands.use.simulate_readings import short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.escapes import toml_value
@@ -143,7 +144,7 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
     from thermoscope.case_folder.cycle import find_cycle, load_cycle
 
     tell(f"cycle {request.cycle}")
-    network, op = it.model.network, it.op
+    network, op, model = it.model.network, it.op, it.model
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
     cycle = load_cycle(find_cycle(folder.settings.path, request.cycle), network, ratings)
     notes(cycle.notes)
@@ -151,11 +152,17 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
     if cycle.drive is not None:
         from lumped.drives.coupled import coupled
 
-        drive = coupled(network, record, cycle.drive, cycle.watched, it.model.values, it.model.rows)
+        model = replace(model, network=cycle.on(network))
+        drive = coupled(model.network, record, cycle.drive, cycle.watched, model.values)
         record = replace(record, inputs=drive.inputs)
-    lap = Lap(record, op.loads)
-    share, at = share_for_ever(it.model, op, it.limits, lap)
-    return {"name": cycle.name, "share": share, "at": at, "until_s": time_to_limit(it.model, op, it.limits, lap)}
+        currents = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
+        op = replace(op, inputs={**currents, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *currents))))
+    lap, short = Lap(record, op.loads), short_of(record)
+    notes(f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
+          for name, seconds in short.items())  # fmt: skip
+    share, at = share_for_ever(model, op, it.limits, lap)
+    until_s = time_to_limit(model, op, it.limits, lap)
+    return {"name": cycle.name, "share": share, "at": at, "until_s": until_s, "short_of_s": short}
 
 
 def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:

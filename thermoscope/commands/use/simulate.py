@@ -87,8 +87,10 @@ def _ran(
     from thermoscope.verification.error_budget import error_budgets
     from validation.comparison.predict import thermal
 
+    network = cycle.on(network)
     rows, record, whole = named_rows(network, folder), cycle.record, network
     network = thermal(network)
+    posterior = posterior and replace(posterior, network=cycle.on(posterior.network))
     residuals: tuple[float, ...] = ()
     if cycle.drive is None:
         run = integrated(network, record, values, list(rows.values()), keep_states=True)
@@ -129,7 +131,7 @@ def _document(
     cycle: Cycle, record: Record, rows: Mapping[str, Row], y: Array, heat: Audit, residuals: tuple[float, ...],
     file: Path,
 ) -> dict[str, Any]:  # fmt: skip
-    span = float(record.time[-1] - record.time[0]) or 1.0
+    span, short = float(record.time[-1] - record.time[0]) or 1.0, short_of(record)
     hottest = np.argmax(y, axis=0)
     return {
         "name": cycle.name, "file": str(file), "duration_s": span,
@@ -143,7 +145,8 @@ def _document(
             for n, J in heat.declared_J.items()
         ],
         "energy_balance": heat.residual, "loss_mismatch": heat.mismatch,
-        "short_of": short_of(record), "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
+        "short_of": {name: seconds / span for name, seconds in short.items()}, "short_of_s": short,
+        "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
     }  # fmt: skip
 
 
@@ -191,8 +194,8 @@ def _losses(run: Mapping[str, Any]) -> Grid:
 
 def _closing(run: Mapping[str, Any]) -> list[str]:
     """What the drive could not do, whether it agrees with the temperatures, and the balance of heat."""
-    lines = [f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits."
-             for name, share in run["short_of"].items()]  # fmt: skip
+    lines = [f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits: "
+             f"{run['short_of_s'][name]:.4g} s." for name, share in run["short_of"].items()]  # fmt: skip
     if rounds := run["coupling"]["residuals_K"]:
         lines.append(f"Drive and temperatures agree after {len(rounds)} rounds (last change {rounds[-1]:.2g} K).")
     return [*lines, f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "

@@ -28,13 +28,13 @@ def readings(network: Network, folder: Folder, name: str, record: Record, T: Arr
 
 
 def short_of(record: Record, share: float = 0.01) -> dict[str, float]:
-    """What the drive could not deliver: quantity -> share of the time at which it was short by more than `share`.
+    """What the drive could not deliver: quantity -> seconds for which it missed what was wanted by more than `share`.
 
-    Of the torque or speed wanted, against the largest wanted.
+    Of the torque or speed wanted, against the largest wanted: too little, and, where it has no brake for it, too much.
     """
-    out = {}
+    out, step = {}, np.diff(record.time, prepend=record.time[0])
     for name, demand in record.inputs.items():
         if (actual := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
-            missing = np.abs(demand) - np.abs(actual) > share * np.abs(demand).max(initial=1e-12)
-            out[name.replace("_wanted", "")] = float(np.mean(missing))
-    return {name: of for name, of in out.items() if of > 0.0}
+            missed = np.abs(demand - actual) > share * np.abs(demand).max(initial=1e-12)
+            out[name.replace("_wanted", "")] = float(step @ missed)
+    return {name: seconds for name, seconds in out.items() if seconds > 0.0}

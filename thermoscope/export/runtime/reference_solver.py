@@ -23,7 +23,7 @@ def law(g, hot, cold):
     if g["kind"] == "film table":
         return np.interp((hot + cold) / 2, g["films"], [np.interp(d, g["x"], y) for y in g["y"]])
     laws = {"constant": lambda: 1.0, "power": lambda: (d * d + 1e-4) ** (g["a"] / 2),
-            "linear": lambda: 1 + g["a"] * (hot - g["b"]),
+            "linear": lambda: 1 + g["a"] * (hot - g["b"]), "inverse": lambda: 1 / (1 + g["a"] * (hot - g["b"])),
             "table": lambda: np.interp(hot - cold if g["x"][0] < 0 else d, g["x"], g["y"]),
             "radiation": lambda: 5.670374419e-8 * (h * h + c * c) * (h + c)}  # fmt: skip
     return laws[g["kind"]]()

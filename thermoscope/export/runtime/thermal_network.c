@@ -15,7 +15,7 @@ typedef thermal_real real;
 
 static const real G_ = (real)0.43586652150845899941601945119356;
 static const real SIGMA = (real)5.670374419e-8, ZERO_C = (real)273.15, SMOOTH = (real)0.01;
-enum { CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM };
+enum { CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE };
 enum { POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED };
 enum { MOST_TRIES = 12, MOST_ITERATIONS = 50 };
 
@@ -108,6 +108,9 @@ static void law(int e, real hot, real cold, real *out) {
     } else if (LAW[e] == LINEAR) {
         out[0] = 1 + a * (hot - b);
         out[1] = a;
+    } else if (LAW[e] == INVERSE) {
+        out[0] = 1 / (1 + a * (hot - b));
+        out[1] = -a * out[0] * out[0];
     } else if (LAW[e] == TABLE) {
         int with_sign = x[0] < 0;
         real at = with_sign ? d : size_of(d);

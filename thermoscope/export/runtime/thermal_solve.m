@@ -41,6 +41,7 @@ function v = law(g, hot, cold)
     case 'power', v = (d ^ 2 + 1e-4) ^ (g.a / 2);
     case 'radiation', v = 5.670374419e-8 * (h ^ 2 + c ^ 2) * (h + c);
     case 'linear', v = 1 + g.a * (hot - g.b);
+    case 'inverse', v = 1 / (1 + g.a * (hot - g.b));
     case 'table', if g.x(1) < 0, d = hot - cold; end, v = interp1(g.x, g.y, held(d, g.x));
     case 'film table', v = interp2(g.x, g.films, g.y, held(d, g.x), held((hot + cold) / 2, g.films));
   end

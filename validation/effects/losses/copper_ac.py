@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass
 
+from geom.constants import ALPHA_CU
 from geom.description.roles import Role
+from lumped.model.network import Network
+from lumped.transfer.laws import Conductivity, Law, WithTemperature
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
 from validation.effects.sites import heated, role, windings
@@ -10,12 +13,15 @@ from validation.effects.sites import heated, role, windings
 
 @dataclass(frozen=True)
 class AcCopper(AddedLoss):
-    """P = a (n / 1000 rpm)^2 (I / 100 A)^2, a the loss (W) at 1000 rpm and 100 A."""
+    """P = a (n / 1000 rpm)^2 (I / 100 A)^2 / (1 + alpha (T - 20 degC)), a the loss (W) at 1000 rpm, 100 A and 20 degC.
+
+    Eddy currents fall with the resistivity of copper, as those of a declared `ac` do.
+    """
 
     kind = "copper.ac"
     title = "AC copper loss"
     sits = "a winding with copper loss"
-    at = "1000 rpm and 100 A"
+    at = "1000 rpm and 100 A and 20 degC"
     source = "Dowell 1966, low-frequency limit, P ~ f^2 I^2"
     isolating_test = "DC against AC at the same current"
     typical = (5.0, 300.0)
@@ -23,6 +29,9 @@ class AcCopper(AddedLoss):
     needs = ("speed", "current")
     heats = "copper.ac"
     follows = (("speed", 1000.0, 2.0), ("current", 100.0, 2.0))
+
+    def law(self, network: Network) -> Law:
+        return WithTemperature(super().law(network), Conductivity(ALPHA_CU, 20.0))
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from geom.constants import ALPHA_CU
 from lumped.model.network import Network, Source
+from lumped.sources.losses import EDDY
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_source
@@ -38,12 +39,17 @@ class CopperFeedback(Effect):
         return [s.name.split(":", 1)[-1] for s in copper if _reference(s) is not None]
 
     def extend(self, network: Network) -> Network:
-        (source,) = [s for s in network.sources if s.name.split(":", 1)[-1] == self.place]
-        rising, constant = f"{self.name}:rise", f"{self.name}:base"
-        law = WithTemperature(source.law, Linear(1.0, _reference(source) or REFERENCE))
-        network = copy_source(network, source, rising, law)
-        network = copy_source(network, source, constant, WithTemperature(Scaled(source.law, -1.0)))
-        return with_parameter(network, self.parameter(rising, constant))
+        mine = {s.name.split(":", 1)[-1]: s for s in network.sources}
+        source, names = mine[self.place], []
+        reference = _reference(source) or REFERENCE
+        # Eddy currents fall as the resistance rises: to first order in a, what is copied turns its sign.
+        parts = [(source, 1.0, ""), *((s, -1.0, EDDY) for s in [mine.get(f"{self.place}{EDDY}")] if s is not None)]
+        for part, sign, end in parts:
+            names += [f"{self.name}:rise{end}", f"{self.name}:base{end}"]
+            law = WithTemperature(Scaled(part.law, sign), Linear(1.0, reference))
+            network = copy_source(network, part, names[-2], law)
+            network = copy_source(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
+        return with_parameter(network, self.parameter(*names))
 
 
 def _copper(source: Source, wound: set[str]) -> bool:

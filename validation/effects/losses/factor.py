@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
+from lumped.sources.losses import EDDY
 from validation.effects.base import Effect, Scene, with_parameter
 
 
@@ -26,7 +27,8 @@ class LossFactor(Effect):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return [s.name for s in scene.network.sources if not s.origin]
+        return [s.name for s in scene.network.sources if not s.origin and not s.name.endswith(EDDY)]
 
     def extend(self, network: Network) -> Network:
-        return with_parameter(network, self.parameter(self.place))
+        parts = (s.name for s in network.sources if s.name.removesuffix(EDDY) == self.place)
+        return with_parameter(network, self.parameter(*parts))

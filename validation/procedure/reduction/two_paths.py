@@ -16,7 +16,8 @@ import numpy as np
 from geom.errors import InputError, ThermoscopeError
 from lumped.integration.steady import Steady, steady
 from lumped.model.network import Network, Source
-from lumped.transfer.laws import Constant, Linear
+from lumped.transfer.laws import Conductivity, Constant, Linear
+from lumped.transfer.terms_value import temperature_value
 from validation.case import Case, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model
@@ -110,14 +111,12 @@ def power_of(source: Source, inputs: Mapping[str, float], state: Steady) -> floa
     one = {name: np.array([float(value)]) for name, value in inputs.items()}
     factor = float(np.ravel(source.law.factor(one))[0])
     law = source.law.temperature
-    if isinstance(law, Linear):
-        T = float(source.probe.weights @ state.z[source.probe.index])
-        return factor * (1.0 + law.alpha * (T - law.reference))
-    if not isinstance(law, Constant):
+    if not isinstance(law, Constant | Linear | Conductivity):
         raise InputError(
-            f"loss '{source.name}' follows a {type(law).__name__}", "two resistances", "constant or linear"
+            f"loss '{source.name}' follows a {type(law).__name__}", "two resistances", "constant, or as copper does"
         )
-    return factor
+    T = float(source.probe.weights @ state.z[source.probe.index])
+    return factor * temperature_value(law, T, T)
 
 
 def _multiplier(network: Network, source: Source, values: Mapping | None) -> float:

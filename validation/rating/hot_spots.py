@@ -1,4 +1,4 @@
-"""Places whose largest temperature is limited: the hot spot of a part that was meshed, else a node."""
+"""Places whose largest temperature is limited: the hot spot of a part that was meshed, else a node; or its mean."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from lumped.condensation.recovery import Shapes
 from lumped.model.network import Network, Row
 
 Array = NDArray[np.float64]
+MEAN = ".mean"  # after the name of a place: its mean instead of its hottest point
+CHUNK = 64  # instants that are looked at together: a part of 10,000 points then takes 5 MB
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,11 @@ class HotSpots:
     states: NDArray[np.int64]
     V: Array
 
+    def along(self, z: Array) -> Array:
+        """(nt,) degC of the hottest point at every instant.  z : (nt, n_states + n_boundaries)"""
+        x = z[:, self.states]
+        return np.concatenate([(x[k : k + CHUNK] @ self.V.T).max(axis=1) for k in range(0, len(x), CHUNK)])
+
     def hottest(self, z: Array) -> tuple[float, Row]:
         """degC, and the point's row."""
         T = self.V @ z[self.states]
@@ -31,12 +38,13 @@ class HotSpots:
 
 
 def hot_spots(network: Network, rows: Mapping[str, Row], limits: Mapping[str, float]) -> tuple[HotSpots, ...]:
-    """One per limited place; a part's mean becomes its field."""
+    """One per limited place, by its hottest point; "NAME.mean" is the mean of a place.  rows : place -> its mean"""
     parts = network.recovery.parts if isinstance(network.recovery, Shapes) else {}
     out = []
     for name, limit in limits.items():
         if name in parts:
             out.append(HotSpots(name, limit, parts[name].states, np.unique(parts[name].V, axis=0)))
         else:
-            out.append(HotSpots(name, limit, rows[name].index, rows[name].weights[None, :]))
+            mean = rows[name if name in rows else name.removesuffix(MEAN)]
+            out.append(HotSpots(name, limit, mean.index, mean.weights[None, :]))
     return tuple(out)

@@ -1,0 +1,126 @@
+"""The cage induction machine: from torque and speed to slip, currents and losses, with winding and cage temperature.
+
+The equivalent circuit at constant speed, its phasors turned so that the cage's flux lies along d (peak values):
+
+    psi = Lm i_d,   slip w_s = Rr i_q / (Lr i_d),   w = p Omega + w_s,   T = 3/2 p (Lm^2 / Lr) i_d i_q
+    v_d = Rs i_d - w (Ls - Lm^2 / Lr) i_q,   v_q = Rs i_q + w Ls i_d,   cage current = (Lm / Lr) i_q
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.constants import ALPHA_CU, RPM
+from lumped.drives.limits import bisected, highest
+
+Array = NDArray[np.float64]
+ALPHA_AL = 1.0 / 245.0  # 1/K at 20 degC, cast aluminium: 1 / (225 + 20), IEC 60034-2-1
+RATIOS = 1e-6, 1e3  # i_q / i_d: from no load to far beyond pull-out, which lies below 1 / leakage factor
+TINY = 1e-30  # V, in place of none at all
+
+
+@dataclass(frozen=True)
+class InductionMachine:
+    """pole_pairs; Rs, Rr (ohm) at 20 degC, Ls_leak, Lr_leak, Lm (H): of the equivalent circuit, per phase, cage as seen
+    from the stator; magnetising (A): peak phase current that makes the rated flux; limits: peak phase current (A),
+    peak phase voltage (V); alpha_s, alpha_r : relative change of Rs and Rr per K
+    """
+
+    pole_pairs: int
+    Rs: float
+    Rr: float
+    Ls_leak: float
+    Lr_leak: float
+    Lm: float
+    magnetising: float
+    current_limit: float
+    voltage_limit: float
+    alpha_s: float = ALPHA_CU
+    alpha_r: float = ALPHA_AL
+
+    def stator_resistance(self, winding_degC: Array | float) -> Array:
+        return self.Rs * (1.0 + self.alpha_s * (np.asarray(winding_degC, float) - 20.0))
+
+    def cage_resistance(self, cage_degC: Array | float) -> Array:
+        return self.Rr * (1.0 + self.alpha_r * (np.asarray(cage_degC, float) - 20.0))
+
+    @property
+    def coupling(self) -> float:
+        """Cage current over i_q."""
+        return self.Lm / (self.Lm + self.Lr_leak)
+
+    def torque(self, i_d: Array | float, i_q: Array | float) -> Array:
+        """N m"""
+        return 1.5 * self.pole_pairs * self.Lm * self.coupling * np.asarray(i_d, float) * np.asarray(i_q, float)
+
+    def slip_speed(self, i_d: Array, i_q: Array, cage_degC: Array | float) -> Array:
+        """Of the stator's field against the rotor (rad/s, electrical)."""
+        return self.cage_resistance(cage_degC) * i_q / ((self.Lm + self.Lr_leak) * i_d)
+
+    def operation(
+        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        cage_degC: Array | float = 20.0,
+    ) -> Operation:  # fmt: skip
+        """What the machine does at two currents and a speed."""
+        turning, slip = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.slip_speed(i_d, i_q, cage_degC)
+        w, Rs, Ls = turning + slip, self.stator_resistance(winding_degC), self.Lm + self.Ls_leak
+        v_d = Rs * i_d - w * (Ls - self.Lm * self.coupling) * i_q
+        v_q = Rs * i_q + w * Ls * i_d
+        cage = self.coupling * np.abs(i_q)
+        share = np.divide(slip, w, out=np.full(np.shape(w), np.nan), where=w != 0.0)
+        return Operation(
+            np.asarray(i_d), np.asarray(i_q), self.torque(i_d, i_q), np.hypot(v_d, v_q), w / (2.0 * np.pi),
+            share, cage,
+            1.5 * (v_d * i_d + v_q * i_q), 1.5 * Rs * (i_d**2 + i_q**2),
+            1.5 * self.cage_resistance(cage_degC) * cage**2,
+        )  # fmt: skip
+
+    def currents(
+        self, torque: Array | float, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        cage_degC: Array | float = 20.0,
+    ) -> tuple[Array, Array]:  # fmt: skip
+        """(i_d, i_q) (A) for the torque (N m) at the rated flux; at as much of it as current and voltage allow beyond.
+
+        A torque beyond the limits is cut to the most that they allow, the pull-out torque where the voltage binds:
+        compare `torque` of the answer with what was asked.
+        """
+        demand, n, Tw, Tc = (
+            np.asarray(x, float) for x in np.broadcast_arrays(torque, speed_rpm, winding_degC, cage_degC)
+        )
+        sign, target = np.where(demand < 0.0, -1.0, 1.0), np.abs(demand)
+
+        def most(ratio: Array) -> Array:
+            """Largest i_d at a ratio i_q / i_d: slip does not change with it, so that voltages grow in proportion."""
+            one = self.operation(np.ones_like(ratio), sign * ratio, n, Tw, Tc)
+            volts, amperes = (
+                self.voltage_limit / np.maximum(one.voltage, TINY),
+                self.current_limit / np.hypot(1.0, ratio),
+            )
+            return np.minimum(np.minimum(volts, amperes), self.magnetising)
+
+        low, high = np.full(demand.shape, np.log(RATIOS[0])), np.full(demand.shape, np.log(RATIOS[1]))
+        pull_out = np.exp(highest(lambda x: 2.0 * np.log(np.maximum(most(np.exp(x)), TINY)) + x, low, high))
+        ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - target, np.zeros(demand.shape), pull_out)
+        return most(ratio), sign * ratio * most(ratio)
+
+
+@dataclass(frozen=True)
+class Operation:
+    """i_d, i_q, cage: peak currents (A), torque (N m), voltage: peak phase (V), frequency (Hz), slip: NaN at 0 Hz
+
+    power: electrical (W) = torque times speed + stator_W + cage_W
+    """
+
+    i_d: Array
+    i_q: Array
+    torque: Array
+    voltage: Array
+    frequency: Array
+    slip: Array
+    cage: Array
+    power: Array
+    stator_W: Array
+    cage_W: Array
