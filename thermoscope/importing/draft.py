@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from thermoscope.importing.aligned import Recording
-from thermoscope.importing.guess import Guess, in_memory
+from thermoscope.importing.guess import AXES, Guess, in_memory
 from thermoscope.importing.target import Target
-from thermoscope.importing.words import tokens
+from thermoscope.importing.words import axis_of
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
 NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
-AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 STILL = 5  # readings whose median a column starts from
 
 
@@ -56,8 +55,7 @@ def squares_of(guesses: Sequence[Guess], target: Target) -> dict[str, tuple[str,
     out = {}
     for name in (n for n, q in target.inputs.items() if q == "current" and n not in names):
         for axes in AXES:
-            parts = {next(iter(axes & set(tokens(g.column)))): g.column for g in guesses
-                     if g.feeds and axes & set(tokens(g.column))}  # fmt: skip
+            parts = {axis: g.column for g in reversed(guesses) if g.feeds and (axis := axis_of(g.column)) in axes}
             if set(parts) == axes:
                 out[name] = tuple(parts[a] for a in sorted(axes))
     return out

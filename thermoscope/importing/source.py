@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,16 +15,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
-from thermoscope.importing.rows import layout
-from thermoscope.importing.text import text_rows
+from thermoscope.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from thermoscope.importing.rows import Layout, layout
+from thermoscope.importing.text import text_table
+from thermoscope.importing.words import is_time, quantities_of, roles_of
 from thermoscope.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
+from thermoscope.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 EPOCH = np.datetime64(0, "s")  # 1970
+UNNAMED = re.compile(r"column \d+")
+ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BOOKS = (".xlsx", ".xlsm")
+UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
 @dataclass(frozen=True)
@@ -52,9 +59,15 @@ class Source:
             self.values[column] = as_numbers(self.cells[column])
         return self.values[column]
 
+    def is_filled(self, column: str) -> bool:
+        """Does it hold anything but ways to write that nothing was read?"""
+        return _any(self.cells[column])
+
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
         finite = np.isfinite(self.numbers(column))
+        if isinstance(self.cells[column], np.ndarray) and self.cells[column].dtype.kind == "f":
+            return bool(finite.any())
         words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
         return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
 
@@ -94,8 +107,16 @@ def read_source(file: Path) -> Source:
         raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
-        return _of_rows(file, _book(file))
-    return _of_frame(file) if suffix in BINARY else _of_rows(file, text_rows(file))
+        return _of_rows(file, _book(file), _formulas(file))
+    return _of_frame(file) if suffix in BINARY else _of_table(file, *text_table(file))
+
+
+def _formulas(file: Path) -> list[str]:
+    """A doubt where formulas have no value, as programs leave them that do not calculate."""
+    with zipfile.ZipFile(file) as book:
+        sheets = [name for name in book.namelist() if name.startswith("xl/worksheets/") and name.endswith(".xml")]
+        count = sum(len(UNCALCULATED.findall(book.read(name))) for name in sheets)
+    return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
 
 
 def _book(file: Path) -> list[list[Any]]:
@@ -110,19 +131,19 @@ def _book(file: Path) -> list[list[Any]]:
     return rows
 
 
-def _of_rows(file: Path, rows: list[Any]) -> Source:
+def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
     plan = layout(rows, str(file))
     body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-    columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-    whole = in_thousands(columns)
-    columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
-    names = plan.names if all(plan.names) else tuple(name or f"column {j + 1}" for j, name in enumerate(plan.names))
+    return _of_table(file, plan, [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)], notes)
+
+
+def _of_table(file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str]) -> Source:
+    """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
-    notes = [f"{file.name}: no header; columns are called after their number"] if unnamed else []
-    if plan.preamble:
-        notes.append(f"{file.name}: {plan.preamble} lines before the header are left out")
-    notes += [f"{file.name}: the sign in the numbers of '{_once(names)[j]}' stands between thousands" for j in whole]
-    source = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
+    names = _once([name or f"column {j + 1}" for j, name in enumerate(plan.names)])
+    said = [f"{file.name}: no header; columns are called after their number"] * unnamed
+    said += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
+    source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*said, *notes])
     return replace(source, unnamed=unnamed)
 
 
@@ -136,14 +157,34 @@ def _source(
     file: Path, names: Sequence[str], columns: Sequence[Any], units: Mapping[str, str], notes: Sequence[str],
     start: float | None = None,
 ) -> Source:  # fmt: skip
-    empty = [n for n, cells in zip(names, columns, strict=True) if not _any(cells)]
-    cells = {n: c for n, c in zip(names, columns, strict=True) if n not in empty}
-    if len(cells) < 2:
+    pairs = list(zip(names, columns, strict=True))
+    cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
+    if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}
-    unit_of = {n: units.get(n, "") or split[n][1] for n in cells}
+    stems = Counter(label for label, unit in split.values() if unit)
+    split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
+    written = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(file, cells, unit_of, labels, tuple(notes), start)
+    return Source(file, cells, written, labels, tuple(notes), start)
+
+
+def _phase(name: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
+    """Is the last letter of a name that of a phase or a sensor: one of several, or of a unit that does not fit?"""
+    last = name[-1:]
+    if not letter or is_time(label) or last.lower() != letter[-1].lower() or name[-2:-1].isalpha():
+        return False
+    told = quantities_of(label) or (["temperature"] if roles_of(label) else [])
+    fits = any(unit_of(letter) in QUANTITIES[q].units for q in told)
+    return (stems[label] > 1 and last in "ABCUVW") or (bool(told) and not fits) or bool(ONE_OF.search(label))
+
+
+def _in_cells(cells: Sequence[Any]) -> str:
+    """The unit behind the first number of a column of cells such as "23.5 C"."""
+    if isinstance(cells, np.ndarray):
+        return ""
+    first = next((m for c in cells if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip()))), None)
+    return first[2] if first and is_unit(first[2]) else ""
 
 
 def _any(cells: Sequence[Any]) -> bool:
