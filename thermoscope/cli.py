@@ -93,8 +93,8 @@ def new(
     from thermoscope.commands.test.new import Wishes, places, settings
     from thermoscope.commands.test.new import new as run
 
-    placed = places(place or ())
-    wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, (start, end), placed)
+    window = (start, end)
+    wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, window, places(place or ()))
     raise typer.Exit(run(files, wishes, json))
 
 

@@ -33,7 +33,7 @@ COMPACT = re.compile(r"(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])(?:[
 EMPTY = MISSING | set(VOCABULARY["cells"]["empty"])
 SWITCH = {word: value for name, value in (("on", 1.0), ("off", 0.0)) for word in VOCABULARY["cells"][name].split()}
 SPELLED = {word: unit for unit, words in VOCABULARY["units"].items() for word in words.split()}
-KNOWN = frozenset(VOCABULARY["units"]) | {"MW"}  # as sheets write them; a capital M is another unit
+SHEET_UNITS = frozenset(VOCABULARY["units"]) | {"MW"}  # as sheets write them; a capital M is another unit
 OTHER = frozenset(VOCABULARY["other_units"]["all"].split())
 DEGREES = re.compile(
     r"(?:deg(?:ree)?s?|grad|grd|gr|[°º˚⁰*'’o])?\.?_?(?:(c)(?:el(?:sius)?)?|(f)(?:ahrenheit)?|(k)(?:elvin)?)°?|(℃)|(℉)"
@@ -46,12 +46,13 @@ def number(cell: object) -> float:
         return float(cell)
     if isinstance(cell, int | float):
         return float(cell)
-    text = str(cell).strip().replace("\u2212", "-")
+    text = re.sub(r"^([-+])\s+", r"\1", str(cell).strip().replace("\u2212", "-"))
     if NUMBER.fullmatch(text):
         return float(text.replace(",", "."))
     if GROUPED.fullmatch(text):
         return float(_ungrouped(text))
-    return number(match[1]) if (match := WITH_UNIT.fullmatch(text)) and is_unit(match[2]) else float("nan")
+    valued = WITH_UNIT.fullmatch(text)
+    return number(valued[1]) if valued and is_unit(valued[2]) else float("nan")
 
 
 def _ungrouped(text: str) -> str:
@@ -109,7 +110,7 @@ def is_reading(cell: object) -> bool:
 
 def unit_of(text: str) -> str:
     """A unit as sheets write it, "" where it is none that is known."""
-    if text in KNOWN:
+    if text in SHEET_UNITS:
         return text
     plain = text.strip().strip("[](){}<>").replace(" ", "").replace("Ω", "ω").lower()
     if match := DEGREES.fullmatch(plain):
@@ -138,8 +139,8 @@ def split_unit(header: str) -> tuple[str, str]:
             return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
                 inside
             ) or inside.strip()
-    if (match := TRAILING.match(header)) and match[1] and _surely(match[2]):
-        return match[1].strip(), unit_of(match[2])
+    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]):
+        return last[1].strip(), unit_of(last[2])
     return header.strip(), ""
 
 

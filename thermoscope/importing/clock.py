@@ -29,7 +29,9 @@ INSTANT = re.compile(
 )
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
+MILLISECONDS = ("ms", "msec", "millisecond", "milliseconds", "millisekunden")
 DAY_FIRST = frozenset({"datum", "fecha", "data", "uhrzeit", "zeit", "heure", "zeitstempel", "horodatage"})
+DAY_NAMES = frozenset({"uhrzeit", "heure", "hora", "ora", "day"})  # of a clock on the wall
 DAY_S, HOUR_S = 86400.0, 3600.0
 UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
 # Times by their size: days of spreadsheets and of mathematics programs; ticks of 100 ns since 1601 and since year 1.
@@ -104,17 +106,17 @@ def checked(clock: Clock, source: Source) -> Clock:
         t[at:] += HOUR_S
         doubts.append(f"the clock runs back by an hour in row {at + 1}: taken as the end of summer time")
     elif back.size:
-        raise InputError(f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings", where,
-                         "rows in the order of time")  # fmt: skip
+        what = f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings"
+        raise InputError(what, where, "rows in the order of time")
     elif clock.start is not None and hour.size == 1 and usual < HOUR_S / 4 and "without" in clock.words:
-        doubts.append(f"the clock leaps an hour in row {int(hour[0]) + 2} of the readings: does summer time begin?")
+        doubts.append(f"the clock leaps an hour in row {int(hour[0]) + 2}: does summer time begin?")
     first = float(t[finite][0])
     start = None if clock.start is None else clock.start + first
-    t, equal = _apart(t - first)
+    t, equal = _spread(t - first)
     return Clock(t, start, clock.columns, clock.words, "; ".join([*doubts, *equal]))
 
 
-def _apart(t: Array) -> tuple[Array, list[str]]:
+def _spread(t: Array) -> tuple[Array, list[str]]:
     """With rows of one stamp spread evenly up to the next one, and the doubt, where most stamps stand in several rows.
 
     A clock of minutes beside rows of seconds writes such.
@@ -139,14 +141,14 @@ def _guessed_clock(source: Source) -> Clock | None:
     """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock) and c not in dates]
-    timed = [c for c in dates if _has_time(source.cells[c])]
-    if timed:
-        found = _instants(source.cells[timed[0]], (timed[0],), source.labels[timed[0]])
-        return _with_ms(source, found)
+    with_time = [c for c in dates if _has_time(source.cells[c])]
+    if with_time:
+        result = _instants(source.cells[with_time[0]], (with_time[0],), source.labels[with_time[0]])
+        return _with_ms(source, result)
     if dates and clocks:
         texts = [f"{_day(d)} {t}" for d, t in zip(source.cells[dates[0]], source.cells[clocks[0]], strict=True)]
-        found = _instants(texts, (dates[0], clocks[0]), source.labels[dates[0]])
-        return _with_ms(source, found) if np.isfinite(found.seconds).sum() >= LEAST else _of_day(source, clocks[0])
+        result = _instants(texts, (dates[0], clocks[0]), source.labels[dates[0]])
+        return _with_ms(source, result) if np.isfinite(result.seconds).sum() >= LEAST else _of_day(source, clocks[0])
     if clocks:
         by_name = [c for c in clocks if is_time(source.labels[c])]
         return _of_day(source, (by_name or clocks)[0])
@@ -162,7 +164,7 @@ def _rising(seconds: Array) -> bool:
 def _with_ms(source: Source, clock: Clock) -> Clock:
     """With the milliseconds that some loggers write in a column of their own."""
     for c in source.cells:
-        if source.labels[c].strip().lower() in ("ms", "msec") and source.is_numeric(c):
+        if source.labels[c].strip().lower() in MILLISECONDS and source.is_numeric(c):
             ms = source.numbers(c)
             if np.nanmin(ms) >= 0 and np.nanmax(ms) < 1000 and not rises(source, c):
                 return replace(clock, seconds=clock.seconds + np.nan_to_num(ms) / 1e3, columns=(*clock.columns, c))
@@ -221,14 +223,14 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     read = [m for m in parts if m]
     short = [m for m in read if len(m["a"]) < 4]
     points = bool(short) and all(m["sign"] == "." for m in short)
-    asked = re.search(r"(?i)\bd{1,2}[-/. ]?m", label) or set(tokens(label)) & DAY_FIRST
-    day_first = points or bool(asked) or any(int(m["a"]) > 12 for m in short) or (
+    label_order = re.search(r"(?i)\bd{1,2}[-/. ]?m", label) or set(tokens(label)) & DAY_FIRST
+    day_first = points or bool(label_order) or any(int(m["a"]) > 12 for m in short) or (
         not any(int(m["b"]) > 12 for m in short) and bool(short) and _fewer_leaps(short)
     )  # fmt: skip
     zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
     seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
     order = ("day before month, " if day_first else "month before day, ") if short else ""
-    unclear = short and not points and not asked and all(int(m["a"]) <= 12 and int(m["b"]) <= 12 for m in short)
+    unclear = short and not points and not label_order and all(int(m["a"]) <= 12 and int(m["b"]) <= 12 for m in short)
     several = len({m[0][: m.start("hour")] if m["hour"] else m[0] for m in short}) > 1
     doubt = f"is it {order.rstrip(', ')}?" if unclear and several else ""
     lost = len([c for c in cells if str(c or "").strip()]) - len(read)
@@ -262,8 +264,8 @@ def _month_in_digits(text: str) -> str:
     rest = text[match.start() :] if match else ""
     if match and (year := re.search(r"\s((?:19|20)\d\d)$", rest)):  # Sat Mar 28 12:00:10 2026
         day, rest = f"{day} {year[1]}", rest[: year.start()]
-    found = _date_in_words(day.strip(" ,T"))
-    return f"{found} {rest}".strip() if found else text
+    result = _date_in_words(day.strip(" ,T"))
+    return f"{result} {rest}".strip() if result else text
 
 
 @cache
@@ -315,17 +317,20 @@ def _of_day(source: Source, column: str) -> Clock:
     two = all(len(p) == 2 for p in read)
     texts = [str(c).strip() for c in cells[:SAMPLE] if c is not None]
     halves = any(text.lower().endswith("m") for text in texts)
-    said_hours, said_minutes = "hh" in label or "h:m" in label or halves, "mm:ss" in label and "hh" not in label
+    hours_in_label, minutes_in_label = (
+        "hh" in label or "h:m" in label or halves or bool(DAY_NAMES & set(tokens(label))),
+        "mm:ss" in label and "hh" not in label,
+    )
     fraction = any("." in t or "," in t for t in texts)
     from_zero = two and bool(read) and read[0][0] == 0 and read[0][1] < FROM_ZERO
     of_day = two and not fraction and all(p[0] < 24 for p in read) and not from_zero
-    hours = two and not said_minutes and (said_hours or of_day)
+    hours = two and not minutes_in_label and (hours_in_label or of_day)
     seconds = np.array([_total(p, two and not hours) for p in parsed])
     finite = np.flatnonzero(np.isfinite(seconds))
     turns = np.zeros(seconds.size)
     turns[finite[1:]] = np.cumsum(np.diff(seconds[finite]) < -DAY_S / 2)
     words = "minutes:seconds" if two and not hours else "hours:minutes" if two else "hours:minutes:seconds"
-    unsure = two and not (said_hours or said_minutes or fraction or any(p[0] > 23 for p in read))
+    unsure = two and not (hours_in_label or minutes_in_label or fraction or any(p[0] > 23 for p in read))
     doubt = (
         f"taken as {words}; the other of hours:minutes and minutes:seconds: write the unit (mm:ss)" if unsure else ""
     )
@@ -361,7 +366,7 @@ def _numeric(source: Source) -> Clock | None:
     """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
     numeric = [c for c in source.cells if source.is_numeric(c)]
     by_name = [c for c in numeric if is_time(source.labels[c])]
-    by_unit = [c for c in numeric if _unit_of_time(source, c) and rises(source, c)]
+    by_unit = [c for c in numeric if rises(source, c) and (_unit_of_time(source, c) or _since_1970(source, c))]
     candidates = sorted(dict.fromkeys(c for c in (*by_name, *by_unit) if c != TIME), key=lambda c: not rises(source, c))
     is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
     if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
@@ -390,13 +395,17 @@ def _unit_of_time(source: Source, column: str) -> str:
 
 def is_second_clock(source: Source, column: str) -> bool:
     """Is it a time beside the clock: by its name, its unit, its size (seconds since 1970 in any unit) or its cells?"""
-    if is_time(source.labels[column]) or _unit_of_time(source, column) or is_instants(source, column):
+    if is_time(source.labels[column]) or unit_of(source.units[column]) in TIME_UNITS or is_instants(source, column):
         return True
-    if not source.is_numeric(column):
-        return False
-    first = float(np.nanmin(source.numbers(column)))
-    words = set(tokens(column)) & CLOCKS
-    return rises(source, column) and (bool(words) or any(size <= first < 5 * size for size in UNIX))
+    has_name = bool(set(tokens(column)) & CLOCKS) or bool(_unit_of_time(source, column))
+    return rises(source, column) and (has_name or _since_1970(source, column))
+
+
+def _since_1970(source: Source, column: str) -> bool:
+    """Are its numbers seconds since 1970, or parts of them, as they are now?"""
+    values = source.numbers(column)
+    first = float(values[np.isfinite(values)][0])
+    return any(size <= first < 2 * size for size in UNIX)
 
 
 def _counts(values: Array) -> bool:

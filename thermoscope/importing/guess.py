@@ -38,6 +38,8 @@ KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a 
 ROOM_K, ROOM_F = (253.0, 318.0), (50.0, 100.0)  # where a machine at rest in a room or a yard starts, in K and in degF
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
+ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
+ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 PINT_UNITS = {
     "mW": "power",
@@ -52,6 +54,7 @@ PINT_UNITS = {
     "l/h": "water_flow",
     "gallon/min": "water_flow",
     "ml/min": "water_flow",
+    "ml/s": "water_flow",
     "ft**3/min": "air_flow",
 }  # units of loggers that no table of a sheet lists, for pint
 WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
@@ -108,7 +111,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
         assumed = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
-    if out := _beyond(source, base):
+    if out := _impossible(source, base):
         return Guess(column, "", doubt=out)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
@@ -134,7 +137,7 @@ def _left_out(source: Source, column: str) -> str:
     return "a number that names a row" if identifies and _counts_on(source, column) else ""
 
 
-def _beyond(source: Source, g: Guess) -> str:
+def _impossible(source: Source, g: Guess) -> str:
     """Why its readings cannot be what the name says, "" where they can: one bad column costs one column."""
     values = in_memory(source, g)
     finite = values[np.isfinite(values)]
@@ -188,15 +191,16 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if of_unit:
         unsure = len(of_unit) > 1 and not both
         return (both or of_unit)[0], "unit and name" if both else "unit", f"or a {of_unit[1]}" if unsure else ""
-    if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]):
+    if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
         weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
         return "temperature", "name of a part", "by its letters alone" if weak else ""
-    if by_name:
+    if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not _worded(label) else ""
-    place, _ = target.place_of(label) if any(len(w) >= 3 for w in tokens(label)) else ("", "")
-    return ("temperature", f"name like the place {place}", "") if place else ("", "", "")
+    place, _ = target.place_of(label)
+    alike = label in target.places_by_header or {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
+    return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
 
 
 def _worded(label: str) -> bool:
@@ -226,13 +230,15 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         first = float(values[np.isfinite(values)][0])
         if unit == "degC" and kelvin and ROOM_K[0] < first < ROOM_K[1]:
             return "K", f"{source.units[column]} in its header, but K by its values"
-        return (unit, "") if unit else ("degC", "")
+        unit = unit or "degC"
+        hot = unit == "degC" and first > ROOM_C[1]
+        return unit, f"starts at {first:.4g} degC: is it in other units?" if hot else ""
     if unit:
         return unit, ""
     if quantity == "share":
         small = float(np.nanmax(np.abs(values))) <= 1.0
         return ("1" if small else "%"), "no unit: by its values"
-    first_unit = next(iter(QUANTITIES[quantity].units))
+    first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"no unit: {first_unit} is assumed"
 
 
@@ -259,7 +265,12 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
-    for g in sorted(guesses, key=lambda g: (bool(SETPOINT & set(tokens(g.column))), not READ & set(tokens(g.column)))):
+
+    def order(g: Guess) -> tuple[bool, ...]:
+        words = set(tokens(g.column))
+        return bool(SETPOINT & words), not READ & words, bool(g.place) and g.place not in words
+
+    for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
         if not key:
             continue

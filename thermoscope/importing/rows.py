@@ -49,10 +49,10 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     first = _first(head, width, where)
     block = _block(rows, first, width)
     units = next((i for i in reversed(block) if _all_units(rows[i])), None)
-    named = [i for i in block if i != units]
-    if not named:
+    candidates = [i for i in block if i != units]
+    if not candidates:
         return Layout(("",) * width, ("",) * width, first, width, 0)
-    header = max(named, key=lambda i: (_told(rows[i]), i))
+    header = max(candidates, key=lambda i: (_informative(rows[i]), i))
     names = [str(c or "").strip() for c in trimmed(rows[header])]
     if names and names[0].strip("#%/ ") != names[0]:
         names[0] = names[0].strip("#%/ ")
@@ -63,9 +63,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         raise InputError(f"{width} values under {len(names)} names", where, "as many as names: decimal commas become "
                          "points, or semicolons stand between columns")  # fmt: skip
     width = len(names) if len(names) > width else width
-    above = [_padded(rows[i], width) for i in named if i < header]
+    above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     if above and len(set(names)) < len(names):  # names of groups over those of columns
-        groups = _carried(above[-1])
+        groups = _forward_filled(above[-1])
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     return Layout(tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width,
                   block[0])  # fmt: skip
@@ -83,7 +83,7 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     return block
 
 
-def _told(row: Row) -> int:
+def _informative(row: Row) -> int:
     """How many of its cells say what a column is, or at least differ from each other."""
     cells = {str(c).strip() for c in row if c is not None and str(c).strip()}
     return sum(2 if quantities_of(c) or roles_of(c) or is_time(c) or split_unit(c)[1] else 0 for c in cells) + (
@@ -97,7 +97,7 @@ def _counts(rows: Sequence[Row]) -> bool:
     return len(first) > 1 and bool((np.diff(first[:FIRM]) == 1).all())
 
 
-def _carried(cells: Sequence[str]) -> list[str]:
+def _forward_filled(cells: Sequence[str]) -> list[str]:
     """Cells that are merged with those after them in each of them."""
     out: list[str] = []
     for cell in cells:

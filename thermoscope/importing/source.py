@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import zipfile
 from collections import Counter
@@ -19,6 +20,7 @@ from thermoscope.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, numbe
 from thermoscope.importing.rows import Layout, layout
 from thermoscope.importing.text import text_table
 from thermoscope.importing.words import is_time, quantities_of, roles_of
+from thermoscope.recordings.csv_file import CHUNK
 from thermoscope.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
 from thermoscope.recordings.units import QUANTITIES
 
@@ -27,6 +29,7 @@ TEXT = 0.2  # share of cells that are words from which a column holds no reading
 BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 EPOCH = np.datetime64(0, "s")  # 1970
 UNNAMED = re.compile(r"column \d+")
+UNIT_NAMES = ("unit", "einheit", "unité", "unità")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BOOKS = (".xlsx", ".xlsm")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -66,7 +69,7 @@ class Source:
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
         finite = np.isfinite(self.numbers(column))
-        if isinstance(self.cells[column], np.ndarray) and self.cells[column].dtype.kind == "f":
+        if isinstance(cells := self.cells[column], np.ndarray) and cells.dtype.kind == "f":
             return bool(finite.any())
         words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
         return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
@@ -114,8 +117,11 @@ def read_source(file: Path) -> Source:
 def _formulas(file: Path) -> list[str]:
     """A doubt where formulas have no value, as programs leave them that do not calculate."""
     with zipfile.ZipFile(file) as book:
-        sheets = [name for name in book.namelist() if name.startswith("xl/worksheets/") and name.endswith(".xml")]
-        count = sum(len(UNCALCULATED.findall(book.read(name))) for name in sheets)
+        sheets = [
+            inside for inside in book.namelist() if inside.startswith("xl/worksheets/") and inside.endswith(".xml")
+        ]
+        heads = [book.open(sheet).read(CHUNK) for sheet in sheets]  # of a huge sheet its beginning tells enough
+    count = sum(len(UNCALCULATED.findall(head)) for head in heads)
     return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
 
 
@@ -141,9 +147,9 @@ def _of_table(file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once([name or f"column {j + 1}" for j, name in enumerate(plan.names)])
-    said = [f"{file.name}: no header; columns are called after their number"] * unnamed
-    said += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
-    source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*said, *notes])
+    doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
+    doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
+    source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
     return replace(source, unnamed=unnamed)
 
 
@@ -164,19 +170,24 @@ def _source(
     split = {n: split_unit(n) for n in cells}
     stems = Counter(label for label, unit in split.values() if unit)
     split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
-    written = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
+    unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
+    for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
+        is_unit_column = header.lower().startswith(UNIT_NAMES)
+        beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
+        if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
+            unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(file, cells, written, labels, tuple(notes), start)
+    return Source(file, cells, unit_texts, labels, tuple(notes), start)
 
 
-def _phase(name: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
+def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
     """Is the last letter of a name that of a phase or a sensor: one of several, or of a unit that does not fit?"""
-    last = name[-1:]
-    if not letter or is_time(label) or last.lower() != letter[-1].lower() or name[-2:-1].isalpha():
+    last = header[-1:]
+    if not letter or is_time(label) or last.lower() != letter[-1].lower() or header[-2:-1].isalpha():
         return False
-    told = quantities_of(label) or (["temperature"] if roles_of(label) else [])
-    fits = any(unit_of(letter) in QUANTITIES[q].units for q in told)
-    return (stems[label] > 1 and last in "ABCUVW") or (bool(told) and not fits) or bool(ONE_OF.search(label))
+    quantities = quantities_of(label) or (["temperature"] if roles_of(label) else [])
+    fits = any(unit_of(letter) in QUANTITIES[q].units for q in quantities)
+    return (stems[label] > 1 and last in "ABCUVW") or (bool(quantities) and not fits) or bool(ONE_OF.search(label))
 
 
 def _in_cells(cells: Sequence[Any]) -> str:

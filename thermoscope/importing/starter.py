@@ -119,8 +119,8 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
     for i, (feeds, values) in enumerate(selection, 1):
         mean = float(np.sqrt(np.nanmean(np.square(values)))) or 1.0
         watts = mean if kind == "power" else ASSUMED_W
-        of = f"of = {{ input = {json.dumps(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
-        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, of))
+        law = f"of = {{ input = {json.dumps(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
+        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, law))
         total += watts
     return "\n".join(lines), total
 
@@ -131,13 +131,13 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     A power that is below zero passes through, as of a machine that brakes or a cell that is discharged; so does that of
     a machine whose torque is recorded beside its current, unless it says that it is a loss.
     """
-    own = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
+    candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
-        return own
+        return candidates
     kinds = {g.quantity for _, g in columns if g.feeds}
-    lost = [(s, g) for s, g in own if LOSS & set(tokens(g.column))]
-    own = lost or ([] if {"torque", "current"} <= kinds else own)
-    return [(s, g) for s, g in own if not _passes(in_memory(s, g), "current" in kinds)]
+    lost = [(s, g) for s, g in candidates if LOSS & set(tokens(g.column))]
+    candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)
+    return [(s, g) for s, g in candidates if not _passes(in_memory(s, g), "current" in kinds)]
 
 
 def _passes(values: Array, beside_current: bool) -> bool:

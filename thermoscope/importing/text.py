@@ -16,7 +16,7 @@ from thermoscope.recordings.csv_file import Body, chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
 BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have single blanks in them
-TOLD = 400  # lines from the middle that tell the delimiter
+SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250")
@@ -60,13 +60,13 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str]]:
 
 def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | None:
     """By the reader of plain CSV, which a table is once signs are replaced; None where it is not that simple."""
-    body = "".join(lines)
-    if '"' in body or sign in BLANKS or (sign != "," and "," in body and BOTH_SIGNS.search(body)):
+    content = "".join(lines)
+    if '"' in content or sign in BLANKS or (sign != "," and "," in content and BOTH_SIGNS.search(content)):
         return None
     if sign != ",":
-        body = body.replace(",", ".").replace(sign, ",")
+        content = content.replace(",", ".").replace(sign, ",")
     try:
-        return Body(file, [str(j) for j in range(plan.width)], strict=False).columns(body.encode(), 0)
+        return Body(file, [str(j) for j in range(plan.width)], strict=False).columns(content.encode(), 0)
     except csv.Error:
         return None
 
@@ -77,9 +77,13 @@ def _raw(rows: list[list[str]], width: int) -> Columns:
 
 def _keys(rows: list[list[str]]) -> list[str]:
     """The names in rows such as "T1: 23.5, T2: 24.1", where all have the same."""
-    found = [tuple(m[1] if (m := KEYED.fullmatch(c)) else "" for c in row) for row in rows if any(row)]
-    same = max(set(found), key=found.count, default=())
-    return list(same) if sum(map(bool, same)) >= max(1, len(same) - 1) and found.count(same) > 0.9 * len(found) else []
+    patterns = [tuple(m[1] if (m := KEYED.fullmatch(c)) else "" for c in row) for row in rows if any(row)]
+    same = max(set(patterns), key=patterns.count, default=())
+    return (
+        list(same)
+        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.9 * len(patterns)
+        else []
+    )
 
 
 def decoded(raw: bytes, file: Path) -> str:
@@ -110,8 +114,8 @@ def delimiter(lines: list[str]) -> str:
 
     Blanks stand within instants too, so they are it only where no other sign leaves readings nearly everywhere.
     """
-    middle = max(0, len(lines) // 2 - TOLD // 2)
-    sample = [line for line in lines[middle : middle + TOLD] if line.strip()]
+    middle = max(0, len(lines) // 2 - SAMPLE_LINES // 2)
+    sample = [line for line in lines[middle : middle + SAMPLE_LINES] if line.strip()]
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
         cells = [cell for row in _split(sample, sign) if len(row) > 1 for cell in row]

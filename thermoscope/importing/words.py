@@ -61,14 +61,17 @@ def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
     paths = [tokens(part) for part in re.split(r"[/\\.:|]", name)]  # Model Root/i_phase, Motor.T_winding
     words = [word for path in paths for word in path]
-    told = {w for path in paths for i, w in enumerate(path) if len(w) > 1 or i == 0}
-    found = [q for q, terms in QUANTITY.items() if told & terms]
-    if found == ["power"] and re.match(r"p(?![a-z])", name):
+    spoken = {w for path in paths for i, w in enumerate(path) if len(w) > 1 or i == 0}
+    quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
+    if quantities == ["power"] and re.match(r"p(?![a-z])", name):
         return []
     long = {q: [k for k in terms if len(k) > SHORTEST or k[0] >= IDEOGRAPHS] for q, terms in QUANTITY.items()}
     inside = {q: max((len(k) for k in terms for w in words if k in w), default=0) for q, terms in long.items()}
-    found = found or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
-    return found or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
+    inside |= {
+        q: SHORTEST for q, terms in QUANTITY.items() if not inside[q] and any(w[-SHORTEST:] in terms for w in words)
+    }
+    quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
+    return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
 
 
 def roles_of(name: str) -> list[Role]:
@@ -91,5 +94,5 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 def is_time(label: str) -> bool:
     """Is it a name for time?  A small t is one, a large T a temperature."""
     words = re.split(r"[^a-zäöüé\u3040-\u9fff]+", label.lower().strip())
-    known = label.lower().startswith(("timestamp", "x_value", "zeit"))
-    return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or known
+    starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
+    return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or starts

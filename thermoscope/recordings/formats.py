@@ -170,6 +170,9 @@ def _tdms(file: Path, group: str) -> Columns:
             raise InputError("holds no channels", str(file), "a TDMS file with readings")
         channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
         names = [c.name for _, c in channels]
+        for _, channel in channels:
+            if (step := channel.properties.get("wf_increment", 0.0)) < 0:
+                raise InputError(f"its increment is {step:g} s", f"{file} channel '{channel.name}'", "a positive one")
         return joined((c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels)
 
 

@@ -10,8 +10,8 @@ from thermoscope.importing.guess import guesses, in_memory
 from thermoscope.importing.source import read_source
 
 # Names that the reader makes itself: of these formats columns are told by their order.
-RENAMED = {"no header", "Arduino", "a serial monitor", "a second name over each", "names for statistics programs",
-           "a comment sign before the names"}  # fmt: skip
+RENAMED = {"no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
+           "names for statistics programs", "a comment sign before the names"}  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", FORMATS)

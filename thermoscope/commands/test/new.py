@@ -169,12 +169,12 @@ def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:
     return put
 
 
-def first_model(read: Sequence[tuple[Source, Clock]], said: Mapping[str, str]) -> Model:
+def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str, str]) -> Model:
     """A network made from the columns of recordings.  said : column -> place that is not to be guessed"""
     from lumped.declarations.network import read_network
 
     columns = [
-        (source, g if (place := said.get(g.column)) is None else _as_said(source, g, place))
+        (source, g if (place := fixed_places.get(g.column)) is None else _at_place(source, g, place))
         for source, clock in read for g in guesses(source, clock.columns, Target())
     ]  # fmt: skip
     text = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
@@ -188,7 +188,7 @@ def first_model(read: Sequence[tuple[Source, Clock]], said: Mapping[str, str]) -
     return Model(network, replace(target_of(network), places_by_header=places), put, True)
 
 
-def _as_said(source: Source, g: Guess, place: str) -> Guess:
+def _at_place(source: Source, g: Guess, place: str) -> Guess:
     """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
     if place == g.feeds or not source.is_numeric(g.column):
         return g
@@ -199,16 +199,16 @@ def _as_said(source: Source, g: Guess, place: str) -> Guess:
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
     """Files into tests, columns into places; what is missing is asked for once."""
     dialogue = Dialogue(model.target, not wishes.yes, dict(wishes.constants or {}))
-    known = {c for source, _ in read for c in source.cells}
+    columns = {c for source, _ in read for c in source.cells}
     for column in wishes.places or {}:
-        if column not in known:
-            raise InputError(f"no column '{column}'", "--place", suggestion(column, sorted(known)))
+        if column not in columns:
+            raise InputError(f"no column '{column}'", "--place", suggestion(column, sorted(columns)))
     records = []
     for source, clock in read:
-        found = guesses(source, clock.columns, model.target)
+        guessed_columns = guesses(source, clock.columns, model.target)
         for column, place in (wishes.places or {}).items():
-            found = assigned(found, source, column, place, model.target)
-        records.append(Recording(source, clock, dialogue.answered(source, found)))
+            guessed_columns = assigned(guessed_columns, source, column, place, model.target)
+        records.append(Recording(source, clock, dialogue.answered(source, guessed_columns)))
     return drafts_of(records, dialogue, wishes.window_s)
 
 

@@ -402,6 +402,36 @@ FORMATS: dict[str, Format] = {
         stamp=at("%Y-%m-%d %H:%M:%S+00:00", 3600),
         doubt="by its letters",
     ),
+    "a counter called t": Format(
+        "zxPHA",
+        ["date", "t", "P_heat", "yTi1", "Ta"],
+        step_s=3600,
+        cells={"x": lambda k: 2750 + k, "z": at("%Y-%m-%d %H:%M:%S", 3600)},
+        doubt="by its letters",
+    ),
+    "an angle": Format("tIxWA", ["t", "i_q [A]", "theta_e", "theta_winding", "theta_amb"]),
+    "a robot's state": Format(
+        "tnMIWA",
+        ["stamp", "j1_vel [rad/s]", "j1_effort [Nm]", "j1_current [A]", "j1_winding_temp", "room_temp"],
+        ";",
+        scale={"n": RADS},
+        stamp=lambda k: f"{UNIX + 5 * k}.25",
+        digits=4,
+    ),
+    "one meter": Format(
+        "xtWy",
+        ["Index", "Timestamp", "Reading", "Units"],
+        stamp=at("%m/%d/%Y %H:%M:%S.000000"),
+        cells={"y": lambda k: "Celsius"},
+        before="Model,DMM\nSample Interval,5.000\n,,\n",
+    ),
+    "signs apart": Format(
+        "tWA", ["Time [s]", "CH1 winding [degC]", "CH2 room [degC]"], row=lambda c: f"{c[0]},+ {c[1]},+ {c[2]}"
+    ),
+    "three phases": Format(
+        "tWWWI", ["Zeit [s]", "T1_Wicklung_U", "T2_Wicklung_V", "T3_Wicklung_W", "I_eff [A]"], ";", ","
+    ),
+    "groups over names": Format("tWIA", ["s", "Temp [°C]", "Strom [A]", "Temp [°C]"], ";", before=";Motor;;Umwelt\n"),
     "an incubator": Format(
         "tPWxA",
         ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],
