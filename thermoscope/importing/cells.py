@@ -36,7 +36,7 @@ SPELLED = {word: unit for unit, words in VOCABULARY["units"].items() for word in
 SHEET_UNITS = frozenset(VOCABULARY["units"]) | {"MW"}  # as sheets write them; a capital M is another unit
 OTHER = frozenset(VOCABULARY["other_units"]["all"].split())
 DEGREES = re.compile(
-    r"(?:deg(?:ree)?s?|grad|grd|gr|[°º˚⁰*'’o])?\.?_?(?:(c)(?:el(?:sius)?)?|(f)(?:ahrenheit)?|(k)(?:elvin)?)°?|(℃)|(℉)"
+    r"(?:deg(?:ree)?s?|grad|grd|gr|â?[°º˚⁰*'’o]|\?|\ufffd|&deg;)?\.?_?(?:(c)(?:el(?:sius)?)?|(f)(?:ahrenheit)?|(k)(?:elvin)?)°?|(℃)|(℉)"
 )
 
 

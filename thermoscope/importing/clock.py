@@ -27,6 +27,7 @@ INSTANT = re.compile(
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
     r"\s*(?P<zone>Z|UTC|GMT|CET|CEST|MEZ|MESZ|(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?)?"
 )
+POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
 MILLISECONDS = ("ms", "msec", "millisecond", "milliseconds", "millisekunden")
@@ -53,6 +54,7 @@ class Clock:
     """seconds : (rows,) from the first row;  start : s since 1970, None where only a duration is known
 
     columns : those it was read from;  words : how;  doubt : what is not sure of it, "" for nothing
+    invented : nothing in the file says how far its rows are apart
     """
 
     seconds: Array
@@ -60,6 +62,7 @@ class Clock:
     columns: tuple[str, ...]
     words: str
     doubt: str = ""
+    invented: bool = False
 
     @property
     def end_s(self) -> float:
@@ -77,7 +80,7 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         doubt = "" if period_s is not None else f"{still}: rows {step:g} s apart are assumed (--period SECONDS)"
         columns = () if clock is None else clock.columns
         start = source.start if clock is None else clock.start
-        return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt)
+        return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
 
 
@@ -197,8 +200,13 @@ def _compact(numbers: Array) -> bool:
 def _has_time(cells: Sequence[Any]) -> bool:
     if isinstance(cells, np.ndarray):
         return True
-    return any(":" in str(c) or (isinstance(c, datetime) and c.time() != time(0)) or COMPACT.fullmatch(_digits(c))
-               for c in cells[:SAMPLE])  # fmt: skip
+    return any(
+        ":" in str(c)
+        or POINTED.search(str(c))
+        or (isinstance(c, datetime) and c.time() != time(0))
+        or COMPACT.fullmatch(_digits(c))
+        for c in cells[:SAMPLE]
+    )
 
 
 def _digits(cell: Any) -> str:
@@ -218,14 +226,13 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return _since_first((cells - EPOCH) / np.timedelta64(1, "s"), columns, "dates")
-    texts = [_spelled_out(c) for c in cells]
-    parts = [INSTANT.fullmatch(text) for text in texts]
+    parts = [INSTANT.fullmatch(str(c).strip()) or INSTANT.fullmatch(_spelled_out(c)) for c in cells]
     read = [m for m in parts if m]
     short = [m for m in read if len(m["a"]) < 4]
     points = bool(short) and all(m["sign"] == "." for m in short)
     label_order = re.search(r"(?i)\bd{1,2}[-/. ]?m", label) or set(tokens(label)) & DAY_FIRST
     day_first = points or bool(label_order) or any(int(m["a"]) > 12 for m in short) or (
-        not any(int(m["b"]) > 12 for m in short) and bool(short) and _fewer_leaps(short)
+        not any(int(m["b"]) > 12 for m in short) and bool(short) and _fewer_leaps(short[:: len(short) // SAMPLE + 1])
     )  # fmt: skip
     zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
     seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
@@ -253,7 +260,7 @@ def _spelled_out(cell: Any) -> str:
         clock = ":".join(re.findall("..", re.split(r"\D", text[8:14])[0]))
         return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
     text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip())
-    text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", text)
+    text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text))
     return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
 
 

@@ -14,6 +14,7 @@ from thermoscope.importing.target import Target
 from thermoscope.importing.words import axis_of
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
+LONGEST_STEP_S = 86400.0  # of an analysis
 NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
 STILL = 5  # readings whose median a column starts from
 
@@ -87,7 +88,7 @@ def sample_of(drafts: Sequence[Draft]) -> float:
     needed = max(max(d.step_s for d in drafts), max(d.span_s for d in drafts) / INSTANTS)
     scale = 10.0 ** np.floor(np.log10(needed))
     steps = [n * scale for n in (*NICE, 10)]
-    return float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}")
+    return min(float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}"), max(needed, LONGEST_STEP_S))
 
 
 def test_name(file: Path, names: Sequence[str]) -> str:

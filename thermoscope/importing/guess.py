@@ -35,9 +35,11 @@ from thermoscope.recordings.units import QUANTITIES, converted
 
 Array = NDArray[np.float64]
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
-ROOM_K, ROOM_F = (253.0, 318.0), (50.0, 100.0)  # where a machine at rest in a room or a yard starts, in K and in degF
+ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
+ALIKE_F = 4.0  # degF between sensors of a machine at rest
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
+LARGEST_THERMOCOUPLE = 1820.0  # codes up to it are limits of thermocouples, and may be speeds
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
@@ -111,6 +113,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
         assumed = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    odd = coded(source.numbers(column)) & (np.abs(source.numbers(column)) > LARGEST_THERMOCOUPLE)
+    if quantity != "temperature" and odd.any():
+        base = replace(base, doubt=f"is {source.numbers(column)[odd][0]:g} a reading, or a logger's code?")
     if out := _impossible(source, base):
         return Guess(column, "", doubt=out)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
@@ -163,8 +168,11 @@ def _in_fahrenheit(source: Source, g: Guess, every: Sequence[Guess]) -> Guess:
     starts = [v[0] for o in hot if (v := (r := in_memory(source, o))[np.isfinite(r)]).size]
     rooms = [v[0] for o in hot if Role.AMBIENT in roles_of(source.labels[o.column])[:1]
              and (v := (r := in_memory(source, o))[np.isfinite(r)]).size]  # fmt: skip
-    if g not in hot or not rooms or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts):
+    alike = len(starts) > 1 and np.ptp(starts) < ALIKE_F
+    if g not in hot or not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts):
         return g
+    if not rooms:
+        return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
     if source.units[g.column]:
         return replace(g, doubt=f"{source.units[g.column]} in its header, Fahrenheit by its values?")
     return replace(g, unit="degF", doubt="no unit: degF by its values")

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -98,10 +99,13 @@ def _quick(cell: Any) -> float:
 
 
 def _number(cell: Any) -> float:
-    if cell is None:
-        return float("nan")
+    return float("nan") if cell is None else _of_word(str(cell))
+
+
+@lru_cache(maxsize=2**16)
+def _of_word(cell: str) -> float:
     value = number(cell)
-    return SWITCH.get(str(cell).strip().lower(), value) if np.isnan(value) else value
+    return SWITCH.get(cell.strip().lower(), value) if np.isnan(value) else value
 
 
 def read_source(file: Path) -> Source:

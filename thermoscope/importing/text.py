@@ -47,7 +47,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str]]:
     plan = layout(head, str(file))
     columns = _plain(file, lines[plan.first :], sign, plan)
     if columns is None:
-        rows = _split(lines[plan.first :], sign)
+        rows = _split(lines, sign)[plan.first :]
         long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         columns = _raw([row for row in rows if any(row)], plan.width)

@@ -432,6 +432,12 @@ FORMATS: dict[str, Format] = {
         "tWWWI", ["Zeit [s]", "T1_Wicklung_U", "T2_Wicklung_V", "T3_Wicklung_W", "I_eff [A]"], ";", ","
     ),
     "groups over names": Format("tWIA", ["s", "Temp [°C]", "Strom [A]", "Temp [°C]"], ";", before=";Motor;;Umwelt\n"),
+    "points in times": Format("tIWA", ["Data e ora", *IWA], ";", ",", stamp=at("%d/%m/%Y %H.%M.%S")),
+    "degrees that were lost": Format("tIWA", ["Time [s]", "I [A]", "winding [?C]", "room [\u00c2\u00b0C]"]),
+    "names over two lines": Format("tIWA", ["Time\n[s]", "I\n[A]", "winding\n[°C]", "room\n[°C]"], quote=True),
+    "a code among currents": Format(
+        "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"
+    ),
     "an incubator": Format(
         "tPWxA",
         ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],
