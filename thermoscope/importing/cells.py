@@ -23,7 +23,9 @@ CLOCK = re.compile(
     r"(?:(?P<days>\d+)(?:\s*d(?:ays?)?,?\s*|[.\s]))?(?P<first>\d{1,4}):(?P<second>\d{2}(?:[.,]\d+)?)"
     r"(?::(?P<third>\d{2}(?:[.,:]\d+)?))?\s?(?P<half>[AaPp])?\.?\s?(?(half)[Mm]\.?)"
 )
-SPAN = re.compile(r"P(?:(\d+)D)?T?(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:[.,]\d+)?)S)?")
+SPAN = re.compile(
+    r"P?(?:(\d+)\s?D)?\s?T?(?:(\d+)\s?H)?\s?(?:(\d+)\s?M(?:IN)?)?\s?(?:(\d+(?:[.,]\d+)?)\s?S)?", re.IGNORECASE
+)  # and 1h 10m 5s
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
     r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
@@ -90,7 +92,16 @@ def is_clock(cell: object) -> bool:
     if isinstance(cell, time | timedelta):
         return True
     text = str(cell).strip()
-    return bool(CLOCK.fullmatch(text)) or (len(text) > 2 and bool(SPAN.fullmatch(text)))
+    return bool(CLOCK.fullmatch(text)) or is_span(text)
+
+
+def is_span(text: str) -> bool:
+    """PT1H5S, or 1h 5s: a number with one unit alone is a reading."""
+    return (
+        bool(SPAN.fullmatch(text))
+        and (text[:1] in "Pp" or len(re.findall("[a-z]+", text.lower())) > 1)
+        and len(text) > 2
+    )
 
 
 def is_date(cell: object) -> bool:

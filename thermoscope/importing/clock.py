@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from thermoscope.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, unit_of
+from thermoscope.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
 from thermoscope.importing.source import BINARY, EPOCH, Source
 from thermoscope.importing.words import CLOCKS, VOCABULARY, is_time, tokens
 from thermoscope.recordings.formats import TIME
@@ -74,10 +74,11 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
     clock = None if period_s is not None else _guessed_clock(source)
     if clock is None or not _runs(clock.seconds):
-        step = 1.0 if period_s is None else period_s
+        step = period_s or source.period_s or 1.0
         seconds = step * np.arange(source.rows, dtype=np.float64)
         still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
-        doubt = "" if period_s is not None else f"{still}: rows {step:g} s apart are assumed (--period SECONDS)"
+        how = "as the lines before its header say" if source.period_s else "are assumed (--period SECONDS)"
+        doubt = "" if period_s is not None else f"{still}: rows {step:g} s apart {how}"
         columns = () if clock is None else clock.columns
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
@@ -201,11 +202,11 @@ def _has_time(cells: Sequence[Any]) -> bool:
     if isinstance(cells, np.ndarray):
         return True
     return any(
-        ":" in str(c)
-        or POINTED.search(str(c))
-        or (isinstance(c, datetime) and c.time() != time(0))
-        or COMPACT.fullmatch(_digits(c))
+        c.time() != time(0)
+        if isinstance(c, datetime)
+        else ":" in str(c) or POINTED.search(str(c)) or COMPACT.fullmatch(_digits(c))
         for c in cells[:SAMPLE]
+        if c is not None
     )
 
 
@@ -357,7 +358,7 @@ def _parts(cell: Any) -> list[float]:
             first = first % 12 + 12.0 * (m["half"].lower() == "p")
         first += 24.0 * int(m["days"] or 0)
         return [x for x in (first, second, third) if x is not None]
-    if len(text) > 2 and (m := SPAN.fullmatch(text)):
+    if is_span(text) and (m := SPAN.fullmatch(text)):
         days, hours, minutes, seconds = (float((x or "0").replace(",", ".")) for x in m.groups())
         return [24 * days + hours, minutes, seconds]
     return []

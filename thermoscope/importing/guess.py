@@ -113,9 +113,10 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
         assumed = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
-    odd = coded(source.numbers(column)) & (np.abs(source.numbers(column)) > LARGEST_THERMOCOUPLE)
-    if quantity != "temperature" and odd.any():
-        base = replace(base, doubt=f"is {source.numbers(column)[odd][0]:g} a reading, or a logger's code?")
+    values = source.numbers(column)
+    codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
+    if quantity != "temperature" and codes.size:
+        base = replace(base, doubt=f"is {codes[0]:g} a reading, or a logger's code?")
     if out := _impossible(source, base):
         return Guess(column, "", doubt=out)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
@@ -134,7 +135,7 @@ def _left_out(source: Source, column: str) -> str:
     if unit_text and not unit_of(unit_text):
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
-    if words & DIFFERENCE and not words & QUANTITY["power"]:
+    if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
     if words & NOTHING and unit_of(unit_text) in WEAK:
         return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"

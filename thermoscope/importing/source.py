@@ -41,7 +41,7 @@ class Source:
     """cells : column -> its cells, numbers where the file has numbers;  units : column -> unit as the file writes it
 
     labels : column -> its name without the unit;  start : of its clock, where the format keeps one (s since 1970)
-    notes : what was done to read it;  unnamed : the file has no header
+    notes : what was done to read it;  unnamed : the file has no header;  period_s : between rows, by its preamble
     """
 
     file: Path
@@ -51,6 +51,7 @@ class Source:
     notes: tuple[str, ...] = ()
     start: float | None = None
     unnamed: bool = False
+    period_s: float | None = None
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -147,20 +148,22 @@ def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
     return _of_table(file, plan, [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)], notes)
 
 
-def _of_table(file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str]) -> Source:
+def _of_table(
+    file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
+) -> Source:  # fmt: skip
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once([name or f"column {j + 1}" for j, name in enumerate(plan.names)])
     doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
-    return replace(source, unnamed=unnamed)
+    return replace(source, unnamed=unnamed, period_s=period_s)
 
 
 def _of_frame(file: Path) -> Source:
     table = read_recording(file)
-    units, start = _described(file)
-    return _source(file, table.columns, list(table.cells.values()), units, [], start)
+    units, start, notes = _described(file)
+    return _source(file, table.columns, list(table.cells.values()), units, notes, start)
 
 
 def _source(
@@ -218,21 +221,25 @@ def _once(names: Sequence[str]) -> list[str]:
     return out
 
 
-def _described(file: Path) -> tuple[dict[str, str], float | None]:
-    """Units, and the start of the clock (s since 1970), of formats that keep them."""
+def _described(file: Path) -> tuple[dict[str, str], float | None, list[str]]:
+    """Units, and the start of the clock (s since 1970), of formats that keep them; a doubt where they lack a clock."""
     if file.suffix.lower() == ".tdms":
         from nptdms import TdmsFile
 
         channels = [c for group in TdmsFile.read_metadata(file).groups() for c in group.channels()]
         starts = [c.properties.get("wf_start_time") for c in channels]
         units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
-        return units, _seconds(next((s for s in starts if s is not None), None))
+        timeless = all("wf_increment" not in c.properties for c in channels)
+        notes = [
+            f"{file.name}: no channel has an increment; without a channel of times rows are taken as 1 s apart"
+        ] * timeless
+        return units, _seconds(next((s for s in starts if s is not None), None)), notes
     if file.suffix.lower() == ".mf4":
         from asammdf import MDF
 
         with MDF(file) as mdf:
-            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time)
-    return {}, None
+            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time), []
+    return {}, None, []
 
 
 def _seconds(instant: Any) -> float | None:

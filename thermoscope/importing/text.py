@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
-from thermoscope.importing.cells import in_thousands, is_reading
+from thermoscope.importing.cells import in_thousands, is_reading, number
 from thermoscope.importing.rows import SAMPLE, Layout, layout
 from thermoscope.recordings.csv_file import Body, chunks
 
@@ -21,6 +21,11 @@ BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-si
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250")
 LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñ℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
+INTERVAL = re.compile(
+    r"(?im)^\W*(?:delta_x|sampl\w*[ _](?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
+    r"[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
+)
+TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
@@ -29,11 +34,16 @@ BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a
 Columns = list[Any]
 
 
-def text_table(file: Path) -> tuple[Layout, Columns, list[str]]:
-    """Where the table stands in a text file, its columns (numbers, or cells where there are words), and doubts."""
+def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
+    """Where the table stands in a text file, its columns (numbers, or cells where there are words), and doubts.
+
+    The last is the time between rows (s) where the lines before the header say it.
+    """
     text, notes = decoded(b"".join(chunks(file)), file), []
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
+    if text.startswith("{"):  # an object of JSON on every line
+        text = re.sub('[{}"]', "", text)
     lines = text.splitlines(keepends=True)
     if sum(line.count('"') for line in lines) % 2:
         at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
@@ -43,7 +53,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str]]:
     head = _split(lines[: 2 * SAMPLE], sign)
     if keys := _keys(head):
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
-        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes
+        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
     columns = _plain(file, lines[plan.first :], sign, plan)
     if columns is None:
@@ -55,7 +65,14 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str]]:
         notes += [f"{file.name}: the sign in the numbers of '{plan.names[j] or f'column {j + 1}'}' stands between "
                   "thousands" for j in whole]  # fmt: skip
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
-    return plan, columns, notes
+    return plan, columns, notes, _interval("".join(lines[: plan.first]))
+
+
+def _interval(preamble: str) -> float | None:
+    """Time between rows (s) as lines before a header give it: "Delta_X 0,5", "Sampling interval, 5 s"."""
+    match = INTERVAL.search(preamble)
+    step = number(match[1]) * TIMES.get((match[2] or "s").lower(), 1.0) if match else 0.0
+    return step if step > 0 else None
 
 
 def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | None:

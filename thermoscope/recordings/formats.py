@@ -199,6 +199,8 @@ def joined(signals: Iterable[Signal]) -> Columns:
     columns: dict[str, Array] = {TIME: instants * GRAIN}
     for name, time, values in whole:
         at = np.searchsorted(instants, np.round(time / GRAIN))
+        if values.dtype.kind == "M":  # times of their own
+            values = values.astype("datetime64[us]").astype(float) * 1e-6  # s since 1970
         if np.issubdtype(values.dtype, np.number):
             column = np.full(instants.size, np.nan)
             column[at] = values

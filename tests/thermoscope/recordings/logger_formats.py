@@ -438,6 +438,26 @@ FORMATS: dict[str, Format] = {
     "a code among currents": Format(
         "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"
     ),
+    "LabVIEW without times": Format(
+        "eIWAe",
+        ["", "Current [A]", "Winding [°C]", "Room [°C]", "Comment"],
+        "\t",
+        step_s=0.5,
+        name="a.lvm",
+        before=LVM.replace("X_Columns\tOne", "X_Columns\tNo").replace("5.0", "0.5"),
+        doubt="as the lines before its header say",
+    ),
+    "hours, minutes and seconds": Format("tIWA", ["Elapsed", *IWA], stamp=lambda k: f"0h {5 * k // 60}m {5 * k % 60}s"),
+    "dutch": Format("tIWA", ["Tijd", "Stroom", "Temperatuur wikkeling", "Omgevingstemperatuur"], ";", ","),
+    "greek letters": Format(
+        "tMnWxA",
+        ["t [s]", "τ [Nm]", "ω [rad/s]", "ϑ winding [°C]", "Δϑ [K]", "ϑ room [°C]"],
+        scale={"n": RADS},
+        digits=3,
+    ),
+    "an object on every line": Format(
+        "tIWA", [], row=lambda c: f'{{"t": {c[0]}, "I": {c[1]}, "winding": {c[2]}, "room": {c[3]}}}'
+    ),
     "an incubator": Format(
         "tPWxA",
         ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],

@@ -1,4 +1,4 @@
-"""Eighty formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
+"""Ninety-four formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,10 @@ from thermoscope.importing.guess import guesses, in_memory
 from thermoscope.importing.source import read_source
 
 # Names that the reader makes itself: of these formats columns are told by their order.
-RENAMED = {"no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
-           "names for statistics programs", "a comment sign before the names"}  # fmt: skip
+RENAMED = {
+    "no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
+    "an object on every line", "names for statistics programs", "a comment sign before the names",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", FORMATS)

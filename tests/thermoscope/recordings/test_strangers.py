@@ -176,6 +176,20 @@ def test_times_of_workbooks(tmp_path):
         assert step == pytest.approx(90.0 if name == "span" else 60.0)
 
 
+def test_channels_of_a_tdms_without_increments_have_the_times_of_their_channel(tmp_path):
+    """Instants in a channel are its clock; without any that rows are 1 s apart is said."""
+    from nptdms import ChannelObject, TdmsWriter
+
+    instants = np.datetime64("2026-03-28T12:00:10") + np.arange(30) * np.timedelta64(5, "s")
+    for name, channels in (("with", {"Time": instants}), ("without", {})):
+        with TdmsWriter(tmp_path / f"{name}.tdms") as file:
+            channels = {**channels, "Wicklung": np.arange(30.0), "Strom": np.ones(30)}
+            file.write_segment([ChannelObject("Log", n, v) for n, v in channels.items()])
+    source = read_source(tmp_path / "with.tdms")
+    assert np.diff(clock_of(source).seconds) == pytest.approx(5.0)
+    assert any("rows are taken as 1 s apart" in note for note in read_source(tmp_path / "without.tdms").notes)
+
+
 def test_a_negative_increment_of_a_waveform_is_refused(tmp_path):
     from nptdms import ChannelObject, TdmsWriter
 
