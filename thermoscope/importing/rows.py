@@ -60,8 +60,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     if len(names) == width - 1:
         names = ["", *names] if all(names) and _counts(head[first:]) else [*names, ""]
     if len(names) < width - 1:
-        raise InputError(f"{width} values under {len(names)} names", where, "as many as names: decimal commas become "
-                         "points, or semicolons stand between columns")  # fmt: skip
+        right = "as many as names: decimal commas become points, or columns stand between ';'"
+        raise InputError(f"{width} values under {len(names)} names", where, right)
     width = len(names) if len(names) > width else width
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     if above and len(set(names)) < len(names):  # names of groups over those of columns

@@ -231,7 +231,7 @@ def _described(file: Path) -> tuple[dict[str, str], float | None, list[str]]:
         units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
         timeless = all("wf_increment" not in c.properties for c in channels)
         notes = [
-            f"{file.name}: no channel has an increment; without a channel of times rows are taken as 1 s apart"
+            f"{file.name}: no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
         ] * timeless
         return units, _seconds(next((s for s in starts if s is not None), None)), notes
     if file.suffix.lower() == ".mf4":

@@ -172,7 +172,11 @@ def _tdms(file: Path, group: str) -> Columns:
         names = [c.name for _, c in channels]
         for _, channel in channels:
             if (step := channel.properties.get("wf_increment", 0.0)) < 0:
-                raise InputError(f"its increment is {step:g} s", f"{file} channel '{channel.name}'", "a positive one")
+                raise InputError(
+                    f"its wf_increment is {step:g} s",
+                    f"{file} channel '{channel.name}'",
+                    "a time from row to row above 0",
+                )
         return joined((c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels)
 
 

@@ -69,7 +69,7 @@ def _far_from_heat(name: str, sensors: Sequence[Sensor], network: Network) -> li
     if any(kind is None or kind.role not in COOL for kind in kinds):
         return []
     of = ", ".join(dict.fromkeys(s.channel.place for s in sensors))
-    return [f"{name} is measured at {of} alone: no reading says how warm the winding is, where most of the heat arises"]
+    return [f"{name} is measured at {of} alone: no reading says how warm the winding is, where most of the heat is"]
 
 
 @dataclass(frozen=True)

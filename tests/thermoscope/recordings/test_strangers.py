@@ -195,7 +195,7 @@ def test_a_negative_increment_of_a_waveform_is_refused(tmp_path):
 
     with TdmsWriter(tmp_path / "a.tdms") as file:
         file.write_segment([ChannelObject("Log", "T", np.arange(9.0), properties={"wf_increment": -0.1})])
-    with pytest.raises(InputError, match=r"channel 'T': its increment is -0\.1 s"):
+    with pytest.raises(InputError, match=r"channel 'T': its wf_increment is -0\.1 s"):
         read_recording(tmp_path / "a.tdms")
 
 
