@@ -26,10 +26,12 @@ CLOCK = re.compile(
 SPAN = re.compile(
     r"P?(?:(\d+)\s?D)?\s?T?(?:(\d+)\s?H)?\s?(?:(\d+)\s?M(?:IN)?)?\s?(?:(\d+(?:[.,]\d+)?)\s?S)?", re.IGNORECASE
 )  # and 1h 10m 5s
+_MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\\d_]{{0,7}}"
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
     r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
-    r"|\d{1,2}[-/. ]{1,2}[^\W\d_]{3,10}\.?[-/., ]{1,2}\d{2,4}|[^\W\d_]{3,10}\.?\s\d{1,2},?(\s\d{4})?)([T ,].*)?"
+    rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)([T ,].*)?",
+    re.IGNORECASE,
 )
 COMPACT = re.compile(r"(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])(?:[01]\d|2[0-3])[0-5]\d[0-5]\d")
 EMPTY = MISSING | set(VOCABULARY["cells"]["empty"])

@@ -458,6 +458,9 @@ FORMATS: dict[str, Format] = {
     "an object on every line": Format(
         "tIWA", [], row=lambda c: f'{{"t": {c[0]}, "I": {c[1]}, "winding": {c[2]}, "room": {c[3]}}}'
     ),
+    "channels with numbers": Format(
+        "tIWH", ["Channel 1", "Channel 2", "Channel 3", "Channel 4"], ";", ",", units=["s", "A", "°C", "°C"]
+    ),
     "an incubator": Format(
         "tPWxA",
         ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],
