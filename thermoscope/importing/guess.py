@@ -59,6 +59,7 @@ PINT_UNITS = {
     "ml/s": "water_flow",
     "ft**3/min": "air_flow",
 }  # units of loggers that no table of a sheet lists, for pint
+SUREST = "unit and name"  # by which a column was told: such a one goes before others
 WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
 FIRST = ("temperature", "current", "speed", "torque", "power", "vehicle_speed", "voltage", "share", "water_flow",
          "air_flow", "frequency")  # fmt: skip
@@ -139,7 +140,7 @@ def _left_out(source: Source, column: str) -> str:
         return "a difference of temperatures, not a temperature"
     if words & NOTHING and unit_of(unit_text) in WEAK:
         return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"
-    identifies = axis_of(label) == "id" and label.lower().strip() == "id" and (values == np.round(values)).all()
+    identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
     return "a number that names a row" if identifies and _counts_on(source, column) else ""
 
 
@@ -199,7 +200,7 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     both = [q for q in by_name if q in of_unit]
     if of_unit:
         unsure = len(of_unit) > 1 and not both
-        return (both or of_unit)[0], "unit and name" if both else "unit", f"or a {of_unit[1]}" if unsure else ""
+        return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
@@ -277,7 +278,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
 
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
-        return bool(SETPOINT & words), not READ & words, bool(g.place) and g.place not in words
+        return bool(SETPOINT & words), not READ & words, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")

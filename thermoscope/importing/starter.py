@@ -24,6 +24,7 @@ NOISE = 0.02  # of the largest: as far below zero a power meter may read when no
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
+MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 SPREAD = 1.0  # prior of everything here, in powers of e
@@ -114,7 +115,8 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
         parts = [f"{axis}_A" for axis in axes]
         if "current_A" not in sources and all(name in sources for name in parts):
             sources["current_A"] = np.sqrt(sum(np.square(sources[name]) for name in parts))
-    selection = list(sources.items()) if kind == "share" else list(sources.items())[-1:]
+    first = MAIN[kind] if MAIN.get(kind) in sources else list(sources)[-1]
+    selection = list(sources.items()) if kind == "share" else [(first, sources[first])]
     lines, total = [], 0.0
     for i, (feeds, values) in enumerate(selection, 1):
         mean = float(np.sqrt(np.nanmean(np.square(values)))) or 1.0

@@ -61,7 +61,9 @@ def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
     paths = [tokens(part) for part in re.split(r"[/\\.:|]", name)]  # Model Root/i_phase, Motor.T_winding
     words = [word for path in paths for word in path]
-    spoken = {w for path in paths for i, w in enumerate(path) if len(w) > 1 or i == 0}
+    spoken = {
+        w for path in paths for i, w in enumerate(path) if len(w) > 1 or (i == 0 and path in (paths[0], paths[-1]))
+    }
     quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
     if quantities == ["power"] and re.match(r"p(?![a-z])", name):
         return []

@@ -461,6 +461,19 @@ FORMATS: dict[str, Format] = {
     "channels with numbers": Format(
         "tIWH", ["Channel 1", "Channel 2", "Channel 3", "Channel 4"], ";", ",", units=["s", "A", "°C", "°C"]
     ),
+    "a cycler that counts": Format(
+        "xytIUWA",
+        ["Record ID", "Step", "Test Time", "Current/mA", "Voltage/V", "Aux Temp 1/C", "Amb Temp 2/C"],
+        cells={"x": lambda k: k + 1},
+        stamp=lambda k: f"00:{5 * k // 60:02d}:{5 * k % 60:02d}.000",
+        scale={"I": (1e3, 0)},
+    ),
+    "a cycler with a control": Format(
+        "txUIW",
+        ["time/s", "control/V/mA", "Ecell/V", "I/mA", "Temperature/°C"],
+        cells={"x": lambda k: 1},
+        scale={"I": (1e3, 0)},
+    ),
     "an incubator": Format(
         "tPWxA",
         ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],

@@ -1,4 +1,4 @@
-"""Ninety-four formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
+"""Ninety-seven formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
 
 import numpy as np
 import pytest
