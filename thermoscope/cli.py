@@ -86,6 +86,10 @@ def new(
     constants: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What was not recorded: ambient=21.5.")
     ] = None,
+    place: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN=PLACE", help="Where a column belongs: a place, an input, nothing."),
+    ] = None,
     period: Annotated[
         float | None, typer.Option(min=1e-6, max=1e7, help="Seconds between rows without a clock.")
     ] = None,
@@ -96,10 +100,11 @@ def new(
     json: Json = None,
 ) -> None:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
-    from thermoscope.commands.test.new import Wishes, settings
+    from thermoscope.commands.test.new import Wishes, places, settings
     from thermoscope.commands.test.new import new as run
 
-    wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, (start, end))
+    window = (start, end)
+    wishes = Wishes(machine, network, out, yes, settings(constants or ()), period, window, places(place or ()))
     raise typer.Exit(run(files, wishes, json))
 
 

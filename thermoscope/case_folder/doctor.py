@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least
+ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
+NEAR_F = 18.0  # degF between the sensors of such a machine
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
 SOME = np.array([1.0, 1e3, 1e6])  # of every input: small, usual, large
 SWITCHES = ((0.0, 1.0), (0.0, 100.0))  # levels of an input that is switched: as a number, in percent
@@ -49,6 +51,19 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
         if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
             yield p.finding(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
                           "use = false, or the wires the right way round")  # fmt: skip
+
+
+def _all_units(p: Patient, network: Network) -> Iterator[Finding]:
+    """Temperatures that all start where rooms do in kelvin, or a room in Fahrenheit beside machines at rest in it."""
+    starts = first_readings(p)
+    if not starts:
+        return
+    low, high = min(starts.values()), max(starts.values())
+    outside = any(c.is_temperature and c.place in network.boundaries for c in p.sheet.columns)
+    for (cold, hot), unit, word in ((ROOM_K, "K", "kelvin"), (ROOM_F, "degF", "Fahrenheit")):
+        if cold < low and high < hot and (unit == "K" or (outside and high - low < NEAR_F)):
+            yield p.finding("all temperatures", f"start at {low:.0f} to {high:.0f} degC: {word}?",
+                          f'unit = "{unit}" for each')  # fmt: skip
 
 
 def _within(p: Patient, network: Network) -> list[Column]:
@@ -112,7 +127,7 @@ def _noted(p: Patient, network: Network) -> Iterator[Finding]:
             yield p.finding("", note, "look at it; use = false leaves a column out")
 
 
-INSIDE = (_noted, _frozen, _power, _reversed, _declared)
+INSIDE = (_all_units, _noted, _frozen, _power, _reversed, _declared)
 
 
 def _rates(patients: list[Patient]) -> Iterator[Finding]:

@@ -31,6 +31,7 @@ class Grid:
     """A table.  headers : in the order they are shown;  keep : those that are left out last, after the first column
 
     rows : most important first;  marked : words that make their row stand out
+    folded : the header of a column whose words go over several lines rather than be cut
     """
 
     title: str
@@ -38,6 +39,7 @@ class Grid:
     rows: Sequence[Sequence[Any]]
     marked: Sequence[str] = ()
     keep: Sequence[str] = ()
+    folded: str = ""
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,14 @@ def _lines(part: Grid | str, width: int, most: int | None) -> list[tuple[str, st
         return lines if most is None or len(lines) <= most else []
     if most is not None and most < TITLE + 2:
         return []
-    rows = part.rows if most is None or len(part.rows) + TITLE <= most else part.rows[: most - TITLE - 1]
-    lines = grid(part, rows, width)
+    rows, lines = part.rows, grid(part, part.rows, width)
+    while (
+        most is not None
+        and len(rows) > 1
+        and len(lines) + (len(rows) < len(part.rows)) > max(most, len(lines[:TITLE]) + 2)
+    ):
+        rows = rows[:-1]
+        lines = grid(part, rows, width)
     left = len(part.rows) - len(rows)
     return [*lines, *([(f"{GAP}... and {left} more", "dim")] if left else [])]
 
@@ -142,9 +150,15 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
     def line(cells: Sequence[str]) -> str:
         return GAP.join(_padded(cells[j], widths[j], right[j]) for j in columns).rstrip()
 
+    def lines(cells: Sequence[str]) -> list[str]:
+        last = columns[-1]
+        words = wrap(cells[last], widths[last]) if table.headers[last] == table.folded else []
+        rest = [line([""] * last + [word] + [""] * (len(cells) - last - 1)) for word in words[1:]]
+        return [line([*cells[:last], words[0], *cells[last + 1 :]] if words else cells), *rest]
+
     styles = ["bold" if any(c in table.marked for c in row) else "" for row in body]
     head = [*((title, "bold") for title in folded(table.title, width)[:1]), (line(list(table.headers)), "dim")]
-    return [*head, *((line(row), style) for row, style in zip(body, styles, strict=True))]
+    return [*head, *((text, style) for row, style in zip(body, styles, strict=True) for text in lines(row))]
 
 
 def _fitting(table: Grid, body: list[list[str]], widths: list[int], width: int) -> list[int]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from datetime import date, datetime, time
+from datetime import date, datetime, time, timedelta
 
+from thermoscope.importing.words import VOCABULARY
 from thermoscope.recordings.data_table import MISSING
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
@@ -16,39 +17,31 @@ GROUPED = re.compile(
 )
 ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
 DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
-CLOCK = re.compile(r"\d{1,3}:\d{2}(:\d{2})?([.,]\d+)?(\s?[AaPp][Mm])?")
-DATE = re.compile(r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})([T ].*)?")
-EMPTY = MISSING | {
-    "-", "--", "---", "n.a.", "no data", "nodata", "inf", "-inf", "overload", "ovld", "ovl", "ovf", "ol", "over",
-    "overrange", "over range", "open", "error", "err", "bad", "bad input", "invalid", "????", "***", "****", "*****",
-}  # fmt: skip
-SWITCH = {"on": 1.0, "off": 0.0, "true": 1.0, "false": 0.0, "ein": 1.0, "aus": 0.0, "yes": 1.0, "no": 0.0,
-          "an": 1.0, "running": 1.0, "stopped": 0.0}  # fmt: skip
-
-# As written in headers of loggers, in lower case and without blanks -> as sheets write it.
-SPELLED = {
-    "°c": "degC", "degc": "degC", "deg.c": "degC", "gradc": "degC", "celsius": "degC", "℃": "degC", "c": "degC",
-    "ºc": "degC", "degreec": "degC", "degreesc": "degC", "grdc": "degC",
-    "°f": "degF", "degf": "degF", "fahrenheit": "degF", "k": "K", "kelvin": "K",
-    "a": "A", "ma": "mA", "ka": "kA", "amp": "A", "amps": "A", "aeff": "A", "arms": "A",
-    "v": "V", "mv": "mV", "kv": "kV", "volt": "V", "w": "W", "kw": "kW", "watt": "W", "watts": "W",
-    "nm": "Nm", "n*m": "N*m", "n.m": "N*m", "n·m": "N*m", "n-m": "N*m", "knm": "kN*m",
-    "rpm": "rpm", "r/min": "rpm", "u/min": "rpm", "1/min": "1/min", "min-1": "1/min", "min^-1": "1/min",
-    "rev/min": "rpm", "upm": "rpm", "rad/s": "rad/s", "hz": "Hz", "khz": "kHz",
-    "m/s": "m/s", "km/h": "km/h", "kmh": "km/h", "mps": "m/s",
-    "kph": "km/h", "mph": "mph",
-    "l/min": "l/min", "lpm": "l/min", "l/m": "l/min", "m3/h": "m3/h", "m³/h": "m3/h", "m^3/h": "m3/h", "m3/s": "m3/s",
-    "m3h": "m3/h",
-    "m³/s": "m3/s", "l/s": "l/s", "%": "%", "percent": "%", "pct": "%", "1": "1", "-": "1", "ohm": "ohm", "ω": "ohm",
-    "Ω".lower(): "ohm", "mohm": "mohm", "mω": "mohm", "kohm": "kohm",
-    "s": "s", "sec": "s", "secs": "s", "seconds": "s", "second": "s", "sek": "s", "ms": "ms", "min": "min",
-    "sekunden": "s", "minuten": "min", "stunden": "h", "msec": "ms",
-    "minutes": "min", "h": "h", "hours": "h", "hour": "h", "std": "h",
-}  # fmt: skip
-OTHER = frozenset({
-    "bar", "mbar", "pa", "kpa", "g", "mm", "m", "kg", "var", "va", "kva", "db", "m/s2", "m/s²", "n", "kn", "rev", "°",
-    "deg", "wh", "kwh", "mm:ss", "hh:mm", "hh:mm:ss", "hh:mm:ss.000", "dd.mm.yyyy", "yyyy-mm-dd",
-})  # fmt: skip
+WITH_UNIT = re.compile(r"([-+]?\d+(?:[.,]\d+)?)\s*([^\d\s.,:;+-][^\d\s]{0,5})")
+# 10:05, 1:10:05.5 and 10:05:00 pm; 3 days 10:05:00 and 3.10:05:00 of a span of time; PT1H10M5S.
+CLOCK = re.compile(
+    r"(?:(?P<days>\d+)(?:\s*d(?:ays?)?,?\s*|[.\s]))?(?P<first>\d{1,4}):(?P<second>\d{2}(?:[.,]\d+)?)"
+    r"(?::(?P<third>\d{2}(?:[.,:]\d+)?))?\s?(?P<half>[AaPp])?\.?\s?(?(half)[Mm]\.?)"
+)
+SPAN = re.compile(
+    r"P?(?:(\d+)\s?D)?\s?T?(?:(\d+)\s?H)?\s?(?:(\d+)\s?M(?:IN)?)?\s?(?:(\d+(?:[.,]\d+)?)\s?S)?", re.IGNORECASE
+)  # and 1h 10m 5s
+_MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\\d_]{{0,7}}"
+DATE = re.compile(
+    r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
+    r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
+    rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)([T ,].*)?",
+    re.IGNORECASE,
+)
+COMPACT = re.compile(r"(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])(?:[01]\d|2[0-3])[0-5]\d[0-5]\d")
+EMPTY = MISSING | set(VOCABULARY["cells"]["empty"])
+SWITCH = {word: value for name, value in (("on", 1.0), ("off", 0.0)) for word in VOCABULARY["cells"][name].split()}
+SPELLED = {word: unit for unit, words in VOCABULARY["units"].items() for word in words.split()}
+SHEET_UNITS = frozenset(VOCABULARY["units"]) | {"MW"}  # as sheets write them; a capital M is another unit
+OTHER = frozenset(VOCABULARY["other_units"]["all"].split())
+DEGREES = re.compile(
+    r"(?:deg(?:ree)?s?|grad|grd|gr|â?[°º˚⁰*'’o]|\?|\ufffd|&deg;)?\.?_?(?:(c)(?:el(?:sius)?)?|(f)(?:ahrenheit)?|(k)(?:elvin)?)°?|(℃)|(℉)"
+)
 
 
 def number(cell: object) -> float:
@@ -57,10 +50,13 @@ def number(cell: object) -> float:
         return float(cell)
     if isinstance(cell, int | float):
         return float(cell)
-    text = str(cell).strip()
+    text = re.sub(r"^([-+])\s+", r"\1", str(cell).strip().replace("\u2212", "-"))
     if NUMBER.fullmatch(text):
         return float(text.replace(",", "."))
-    return float(_ungrouped(text)) if GROUPED.fullmatch(text) else float("nan")
+    if GROUPED.fullmatch(text):
+        return float(_ungrouped(text))
+    valued = WITH_UNIT.fullmatch(text)
+    return number(valued[1]) if valued and is_unit(valued[2]) else float("nan")
 
 
 def _ungrouped(text: str) -> str:
@@ -94,8 +90,20 @@ def _grouping(cells: Sequence[str]) -> str:
 
 
 def is_clock(cell: object) -> bool:
-    """A time of day, or minutes and seconds."""
-    return isinstance(cell, time) or bool(CLOCK.fullmatch(str(cell).strip()))
+    """A time of day, minutes and seconds, or a span of time."""
+    if isinstance(cell, time | timedelta):
+        return True
+    text = str(cell).strip()
+    return bool(CLOCK.fullmatch(text)) or is_span(text)
+
+
+def is_span(text: str) -> bool:
+    """PT1H5S, or 1h 5s: a number with one unit alone is a reading."""
+    return (
+        bool(SPAN.fullmatch(text))
+        and (text[:1] in "Pp" or len(re.findall("[a-z]+", text.lower())) > 1)
+        and len(text) > 2
+    )
 
 
 def is_date(cell: object) -> bool:
@@ -105,37 +113,59 @@ def is_date(cell: object) -> bool:
 
 def is_reading(cell: object) -> bool:
     """A number, an instant, on or off, or one of the ways to write that there is none."""
-    if isinstance(cell, int | float | datetime | date | time):
+    if isinstance(cell, int | float | datetime | date | time | timedelta):
         return True
     text = str(cell).strip()
-    if NUMBER.fullmatch(text) or GROUPED.fullmatch(text):
+    if number(text) == number(text):
         return True
     return text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
 
 
 def unit_of(text: str) -> str:
     """A unit as sheets write it, "" where it is none that is known."""
-    return SPELLED.get(text.strip().strip("[]()").replace(" ", "").lower(), "")
+    if text in SHEET_UNITS:
+        return text
+    plain = text.strip().strip("[](){}<>").replace(" ", "").replace("Ω", "ω").lower()
+    if match := DEGREES.fullmatch(plain):
+        c, _, k, celsius, _ = match.groups()
+        return "degC" if c or celsius else "K" if k else "degF"
+    return SPELLED.get(plain, "")
 
 
 def is_unit(text: str) -> bool:
     """Is it a unit, also one that no column of a sheet has?"""
-    return bool(unit_of(text)) or text.strip().strip("[]()").lower() in OTHER
+    return bool(unit_of(text)) or text.strip().strip("[](){}<>").replace(" ", "").lower() in OTHER
 
 
-BRACKETED = re.compile(r"^(.*?)\s*[\[(<{]([^\])>}]+)[\])>}]\s*(.*)$")
-TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)([^\s_/]+(?:/[a-z0-9]+)?)$")
+BRACKETS = re.compile(r"\[([^\[\]]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
+TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
 
 
 def split_unit(header: str) -> tuple[str, str]:
-    """A header without its unit, and the unit: "T1 [°C]", "Speed (1/min)", "T_yoke / °C", "t in s", "speed_rpm"."""
-    if (match := BRACKETED.match(header)) and is_unit(match[2]):
-        return f"{match[1]} {match[3]}".strip(), unit_of(match[2])
-    if (match := TRAILING.match(header)) and match[1] and _surely(match[2]):
-        return match[1].strip(), unit_of(match[2])
+    """A header without its unit, and the unit as sheets write it: "T1 [°C]", "Speed (1/min)", "T_yoke / °C", "n_rpm".
+
+    A unit that no column of a sheet has ("position [rad]") is one too, as it is written.
+    """
+    for match in reversed([*BRACKETS.finditer(header)]):
+        inside = next(g for g in match.groups() if g)
+        if is_unit(inside):
+            return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
+                inside
+            ) or inside.strip()
+    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]):
+        return last[1].strip(), unit_of(last[2])
     return header.strip(), ""
 
 
 def _surely(word: str) -> bool:
     """A word that is a unit and hardly the name of a phase, a winding or a sensor (A, C, K, V, W, 1)."""
-    return (bool(unit_of(word)) and (len(word) > 1 or word == "%")) or word in ("s", "A", "V", "W", "K", "C", "h")
+    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in (
+        "s",
+        "A",
+        "V",
+        "W",
+        "K",
+        "C",
+        "F",
+        "h",
+    )

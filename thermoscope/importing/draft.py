@@ -10,13 +10,13 @@ import numpy as np
 
 from geom.description.names import cut_short
 from thermoscope.importing.aligned import Recording
-from thermoscope.importing.guess import Guess, in_memory
+from thermoscope.importing.guess import AXES, Guess, in_memory
 from thermoscope.importing.target import Target
-from thermoscope.importing.words import tokens
+from thermoscope.importing.words import axis_of
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
+LONGEST_STEP_S = 86400.0  # of an analysis
 NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
-AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 STILL = 5  # readings whose median a column starts from
 
 
@@ -57,8 +57,7 @@ def squares_of(guesses: Sequence[Guess], target: Target) -> dict[str, tuple[str,
     out = {}
     for name in (n for n, q in target.inputs.items() if q == "current" and n not in names):
         for axes in AXES:
-            parts = {next(iter(axes & set(tokens(g.column)))): g.column for g in guesses
-                     if g.feeds and axes & set(tokens(g.column))}  # fmt: skip
+            parts = {axis: g.column for g in reversed(guesses) if g.feeds and (axis := axis_of(g.column)) in axes}
             if set(parts) == axes:
                 out[name] = tuple(parts[a] for a in sorted(axes))
     return out
@@ -90,7 +89,7 @@ def sample_of(drafts: Sequence[Draft]) -> float:
     needed = max(max(d.step_s for d in drafts), max(d.span_s for d in drafts) / INSTANTS)
     scale = 10.0 ** np.floor(np.log10(needed))
     steps = [n * scale for n in (*NICE, 10)]
-    return float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}")
+    return min(float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}"), max(needed, LONGEST_STEP_S))
 
 
 def test_name(file: Path, names: Sequence[str]) -> str:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import re
+import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +18,23 @@ from numpy.typing import NDArray
 
 from geom.description.names import plain_header
 from geom.errors import InputError
-from thermoscope.importing.cells import EMPTY, SWITCH, in_thousands, number, split_unit
-from thermoscope.importing.rows import layout
-from thermoscope.importing.text import text_rows
+from thermoscope.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from thermoscope.importing.rows import Layout, layout
+from thermoscope.importing.text import text_table
+from thermoscope.importing.words import is_time, quantities_of, roles_of
+from thermoscope.recordings.csv_file import CHUNK
 from thermoscope.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
+from thermoscope.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 EPOCH = np.datetime64(0, "s")  # 1970
+UNNAMED = re.compile(r"column \d+")
+UNIT_NAMES = ("unit", "einheit", "unité", "unità")
+ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BOOKS = (".xlsx", ".xlsm")
+UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
 @dataclass(frozen=True)
@@ -31,7 +42,7 @@ class Source:
     """cells : column -> its cells, numbers where the file has numbers;  units : column -> unit as the file writes it
 
     labels : column -> its name without the unit;  start : of its clock, where the format keeps one (s since 1970)
-    notes : what was done to read it;  unnamed : the file has no header
+    notes : what was done to read it;  unnamed : the file has no header;  period_s : between rows, by its preamble
     """
 
     file: Path
@@ -41,6 +52,7 @@ class Source:
     notes: tuple[str, ...] = ()
     start: float | None = None
     unnamed: bool = False
+    period_s: float | None = None
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -53,9 +65,15 @@ class Source:
             self.values[column] = as_numbers(self.cells[column])
         return self.values[column]
 
+    def is_filled(self, column: str) -> bool:
+        """Does it hold anything but ways to write that nothing was read?"""
+        return _any(self.cells[column])
+
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
         finite = np.isfinite(self.numbers(column))
+        if isinstance(cells := self.cells[column], np.ndarray) and cells.dtype.kind == "f":
+            return bool(finite.any())
         words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
         return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
 
@@ -83,10 +101,13 @@ def _quick(cell: Any) -> float:
 
 
 def _number(cell: Any) -> float:
-    if cell is None:
-        return float("nan")
+    return float("nan") if cell is None else _of_word(str(cell))
+
+
+@lru_cache(maxsize=2**16)
+def _of_word(cell: str) -> float:
     value = number(cell)
-    return SWITCH.get(str(cell).strip().lower(), value) if np.isnan(value) else value
+    return SWITCH.get(cell.strip().lower(), value) if np.isnan(value) else value
 
 
 def read_source(file: Path) -> Source:
@@ -95,8 +116,19 @@ def read_source(file: Path) -> Source:
         raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
-        return _of_rows(file, _book(file))
-    return _of_frame(file) if suffix in BINARY else _of_rows(file, text_rows(file))
+        return _of_rows(file, _book(file), _formulas(file))
+    return _of_frame(file) if suffix in BINARY else _of_table(file, *text_table(file))
+
+
+def _formulas(file: Path) -> list[str]:
+    """A doubt where formulas have no value, as programs leave them that do not calculate."""
+    with zipfile.ZipFile(file) as book:
+        sheets = [
+            inside for inside in book.namelist() if inside.startswith("xl/worksheets/") and inside.endswith(".xml")
+        ]
+        heads = [book.open(sheet).read(CHUNK) for sheet in sheets]  # of a huge sheet its beginning tells enough
+    count = sum(len(UNCALCULATED.findall(head)) for head in heads)
+    return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
 
 
 def _book(file: Path) -> list[list[Any]]:
@@ -111,28 +143,30 @@ def _book(file: Path) -> list[list[Any]]:
     return rows
 
 
-def _of_rows(file: Path, rows: list[Any]) -> Source:
+def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
     plan = layout(rows, str(file))
     body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-    columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-    whole = in_thousands(columns)
-    columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
-    names = _plain(plan.names)
+    return _of_table(file, plan, [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)], notes)
+
+
+def _of_table(
+    file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
+) -> Source:  # fmt: skip
+    """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
-    notes = [f"{file.name}: no header; columns are called after their number"] if unnamed else []
-    if plan.preamble:
-        notes.append(f"{file.name}: {plan.preamble} lines before the header are left out")
-    notes += [f"{file.name}: the sign in the numbers of '{_once(names)[j]}' stands between thousands" for j in whole]
-    source = _source(file, _once(names), columns, dict(zip(_once(names), plan.units, strict=True)), notes)
-    return replace(source, unnamed=unnamed)
+    names = _once(_plain(plan.names))
+    doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
+    doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
+    source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
+    return replace(source, unnamed=unnamed, period_s=period_s)
 
 
 def _of_frame(file: Path) -> Source:
     table = read_recording(file)
-    units, start = _described(file)
+    units, start, notes = _described(file)
     names = _once(_plain(table.columns))
     units = {name: units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
-    return _source(file, names, list(table.cells.values()), units, [], start)
+    return _source(file, names, list(table.cells.values()), units, notes, start)
 
 
 def _plain(names: Sequence[str]) -> list[str]:
@@ -144,14 +178,39 @@ def _source(
     file: Path, names: Sequence[str], columns: Sequence[Any], units: Mapping[str, str], notes: Sequence[str],
     start: float | None = None,
 ) -> Source:  # fmt: skip
-    empty = [n for n, cells in zip(names, columns, strict=True) if not _any(cells)]
-    cells = {n: c for n, c in zip(names, columns, strict=True) if n not in empty}
-    if len(cells) < 2:
+    pairs = list(zip(names, columns, strict=True))
+    cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
+    if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}
-    unit_of = {n: units.get(n, "") or split[n][1] for n in cells}
+    stems = Counter(label for label, unit in split.values() if unit)
+    split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
+    unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
+    for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
+        is_unit_column = header.lower().startswith(UNIT_NAMES)
+        beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
+        if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
+            unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(file, cells, unit_of, labels, tuple(notes), start)
+    return Source(file, cells, unit_texts, labels, tuple(notes), start)
+
+
+def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
+    """Is the last letter of a name that of a phase or a sensor: one of several, or of a unit that does not fit?"""
+    last = header[-1:]
+    if not letter or is_time(label) or last.lower() != letter[-1].lower() or header[-2:-1].isalpha():
+        return False
+    quantities = quantities_of(label) or (["temperature"] if roles_of(label) else [])
+    fits = any(unit_of(letter) in QUANTITIES[q].units for q in quantities)
+    return (stems[label] > 1 and last in "ABCUVW") or (bool(quantities) and not fits) or bool(ONE_OF.search(label))
+
+
+def _in_cells(cells: Sequence[Any]) -> str:
+    """The unit behind the first number of a column of cells such as "23.5 C"."""
+    if isinstance(cells, np.ndarray):
+        return ""
+    first = next((m for c in cells if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip()))), None)
+    return first[2] if first and is_unit(first[2]) else ""
 
 
 def _any(cells: Sequence[Any]) -> bool:
@@ -170,21 +229,25 @@ def _once(names: Sequence[str]) -> list[str]:
     return out
 
 
-def _described(file: Path) -> tuple[dict[str, str], float | None]:
-    """Units, and the start of the clock (s since 1970), of formats that keep them."""
+def _described(file: Path) -> tuple[dict[str, str], float | None, list[str]]:
+    """Units, and the start of the clock (s since 1970), of formats that keep them; a doubt where they lack a clock."""
     if file.suffix.lower() == ".tdms":
         from nptdms import TdmsFile
 
         channels = [c for group in TdmsFile.read_metadata(file).groups() for c in group.channels()]
         starts = [c.properties.get("wf_start_time") for c in channels]
         units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
-        return units, _seconds(next((s for s in starts if s is not None), None))
+        timeless = all("wf_increment" not in c.properties for c in channels)
+        notes = [
+            f"{file.name}: no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
+        ] * timeless
+        return units, _seconds(next((s for s in starts if s is not None), None)), notes
     if file.suffix.lower() == ".mf4":
         from asammdf import MDF
 
         with MDF(file) as mdf:
-            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time)
-    return {}, None
+            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time), []
+    return {}, None, []
 
 
 def _seconds(instant: Any) -> float | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Sequence
+from shlex import quote
 
 import numpy as np
 
@@ -15,14 +16,16 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from thermoscope.escapes import toml_key, toml_value
-from thermoscope.importing.guess import Guess, in_memory
+from thermoscope.importing.draft import Draft
+from thermoscope.importing.guess import AXES, Array, Guess, in_memory
 from thermoscope.importing.source import Source
-from thermoscope.importing.words import QUANTITY, SETPOINT, roles_of, tokens
+from thermoscope.importing.words import LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
+MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 SPREAD = 1.0  # prior of everything here, in powers of e
@@ -47,11 +50,46 @@ def starter(columns: Columns, name: str, span_s: float) -> str:
     return _toml(name, nodes, boundaries, G * TIME_CONSTANT * span_s / len(nodes), G, heat)
 
 
+def unplaced(drafts: Sequence[Draft]) -> list[str]:
+    """What matters and was left out: a temperature of the winding, the only heat, a clock; of the first such test."""
+    out: dict[str, str] = {}
+    for draft in drafts:
+        columns = [(r.source, g) for r in draft.records for g in r.guesses]
+        left = [(s, g) for s, g in columns if not g.used and s.is_filled(g.column) and g.doubt not in ALONE]
+        wound = [g.column for s, g in left if Role.WINDING in roles_of(s.labels[g.column])[:1] and _warms(s, g)]
+        if wound and not any(
+            Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place
+        ):
+            out.setdefault("winding", f"the winding was not placed: '{wound[0]}' looks like winding; "
+                           f"--place {quote(f'{wound[0]}=PLACE')}")  # fmt: skip
+        hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
+        if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
+            out.setdefault("bearing", "no winding is measured, a bearing alone")
+        heats = [g for s, g in columns if g.feeds and g.quantity in (*HEATS, "torque", "voltage")]
+        warm = [g.column for s, g in left if set(quantities_of(s.labels[g.column])) & set(HEATS)]
+        if not heats and not draft.constants and warm:
+            out.setdefault("heat", f"the only heat was left out: '{warm[0]}'; --place {quote(f'{warm[0]}=INPUT')}")
+        elif not heats and not draft.constants:
+            out.setdefault("heat", "no column says what heats it")
+        doubts = [r.clock.doubt for r in draft.records if r.clock.invented]
+        if doubts:
+            out.setdefault("clock", doubts[0])
+    return list(out.values())
+
+
+def _warms(source: Source, g: Guess) -> bool:
+    """Is it a temperature by its name or its unit?"""
+    return g.quantity in ("", "temperature") and quantities_of(source.labels[g.column]) in ([], ["temperature"])
+
+
+ALONE = ("a set point, not a reading", "left out by hand", "--set gives it")
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 
 def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is no temperature."""
+    if g.place and g.quantity == "temperature":
+        return g.place  # as the user said
     if g.quantity != "temperature" or SETPOINT & set(tokens(label)):
         return ""
     words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
@@ -69,31 +107,46 @@ def rise(source: Source, g: Guess) -> float:
 
 def _heat(columns: Columns, at: str) -> tuple[str, float]:
     """The losses as lines of TOML, and their mean (W)."""
-    through = {g.feeds for s, g in columns if g.feeds and not _heats(s, g)}
-    by_quantity = {
-        q: [(s, g) for s, g in columns if g.quantity == q and g.feeds and g.feeds not in through] for q in HEATS
-    }
-    kind = next((q for q in HEATS if by_quantity[q]), "")
+    by_quantity = {q: {g.feeds: in_memory(s, g) for s, g in reversed(of)} for q in HEATS if (of := heating(columns, q))}
+    kind = next((q for q in HEATS if q in by_quantity), "")
     if not kind:
         return _loss("heat", at, ASSUMED_W, ""), ASSUMED_W
-    sources = {g.feeds: (s, g) for s, g in reversed(by_quantity[kind])}
-    selection = list(sources.items()) if kind == "share" else list(sources.items())[-1:]
+    sources = by_quantity[kind]
+    for axes in AXES:
+        parts = [f"{axis}_A" for axis in axes]
+        if "current_A" not in sources and all(name in sources for name in parts):
+            sources["current_A"] = np.sqrt(sum(np.square(sources[name]) for name in parts))
+    first = MAIN[kind] if MAIN.get(kind) in sources else list(sources)[-1]
+    selection = list(sources.items()) if kind == "share" else [(first, sources[first])]
     lines, total = [], 0.0
-    for i, (feeds, (source, g)) in enumerate(selection, 1):
-        mean = float(np.sqrt(np.nanmean(np.square(in_memory(source, g))))) or 1.0
+    for i, (feeds, values) in enumerate(selection, 1):
+        mean = float(np.sqrt(np.nanmean(np.square(values)))) or 1.0
         watts = mean if kind == "power" else ASSUMED_W
-        of = f"of = {{ input = {toml_value(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
-        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, of))
+        law = f"of = {{ input = {toml_value(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
+        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, law))
         total += watts
     return "\n".join(lines), total
 
 
-def _heats(source: Source, g: Guess) -> bool:
-    """Can it be what heats? A power that changes its sign is one that passes through, as of a machine that brakes; one
-    that is always below zero is a reversed clamp, which is refused."""
-    values = in_memory(source, g)
+def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
+    """Columns of a quantity that can be what heats, losses first.
+
+    A power that is below zero passes through, as of a machine that brakes or a cell that is discharged; so does that of
+    a machine whose torque is recorded beside its current, unless it says that it is a loss.
+    """
+    candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
+    if quantity != "power":
+        return candidates
+    kinds = {g.quantity for _, g in columns if g.feeds}
+    lost = [(s, g) for s, g in candidates if LOSS & set(tokens(g.column))]
+    candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)
+    return [(s, g) for s, g in candidates if not _passes(in_memory(s, g), "current" in kinds)]
+
+
+def _passes(values: Array, beside_current: bool) -> bool:
+    """Does a power pass through?  One that is always below zero, with no current beside it, is a reversed clamp."""
     noise = NOISE * float(np.nanmax(np.abs(values)))
-    return g.quantity != "power" or not (np.nanmin(values) < -noise and np.nanmax(values) > noise)
+    return bool(np.nanmin(values) < -noise and (np.nanmax(values) > noise or beside_current))
 
 
 def _loss(name: str, at: str, watts: float, of: str) -> str:

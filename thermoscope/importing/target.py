@@ -45,7 +45,13 @@ class Target:
     def input_of(self, label: str, quantity: str) -> str:
         """The input a name means: by its words, or because it is the only one of its quantity."""
         alike = {n: q for n, q in self.inputs.items() if not quantity or q in (quantity, "")}
-        best, _ = _best({n: _likeness(label, n, None) for n in alike if quantity or _words(label) & _words(n)})
+        best, _ = _best(
+            {
+                n: _likeness(label, n, None)
+                for n in alike
+                if quantity or any(len(w) > 1 for w in _words(label) & _words(n))
+            }
+        )
         same = [n for n, q in alike.items() if q == quantity and quantity]
         return best or (same[0] if len(same) == 1 else "")
 

@@ -1,72 +1,79 @@
-"""Words in headers of other people's files, English and German, and what they usually mean: a guess, always shown."""
+"""What headers of other people's files usually mean, by the words of vocabulary.toml: a guess, always shown."""
 
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 
 from geom.description.roles import Role
 
-WORD = re.compile(r"[A-ZÄÖÜ]?[a-zäöüß]+|[A-ZÄÖÜ]+(?![a-zäöüß])|\d+")
+WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ÿ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[\u3040-\u9fff]+|[α-ωϑ]+")
 
-QUANTITY: Mapping[str, frozenset[str]] = {
-    "temperature": frozenset({"temperature", "temp", "temperatur", "tc", "thermocouple", "pt", "ntc", "theta", "t"}),
-    "current": frozenset({"current", "strom", "i", "id", "iq", "irms", "amps", "iu", "iv", "iw"}),
-    "speed": frozenset({"speed", "drehzahl", "rpm", "n", "omega"}),
-    "vehicle_speed": frozenset({"vehicle", "wind", "fahrgeschwindigkeit", "road"}),
-    "air_flow": frozenset({"airflow", "fan", "blower", "volumenstrom", "luftstrom"}),
-    "water_flow": frozenset({"flow", "durchfluss", "flowrate"}),
-    "torque": frozenset({"torque", "drehmoment", "moment", "md", "m"}),
-    "power": frozenset({"power", "leistung", "loss", "losses", "verlust", "verluste", "p", "pel", "pele", "pin"}),
-    "voltage": frozenset({"voltage", "spannung", "u", "ud", "uq", "vdc", "udc", "urms"}),
-    "resistance": frozenset({"resistance", "widerstand", "rdc"}),
-    "share": frozenset({"share", "duty", "percent", "heater", "valve", "pwm"}),
-}  # fmt: skip
 
-ROLES: Mapping[Role, frozenset[str]] = {
-    Role.WINDING: frozenset({"winding", "wdg", "wicklung", "wickelkopf", "coil", "spule", "endwinding",
-                             "endwind", "activewind", "copper", "kupfer", "wind", "nut", "slot"}),
-    Role.IRON: frozenset({"stator", "yoke", "joch", "tooth", "teeth", "zahn", "core", "iron", "lamination",
-                          "blechpaket", "pole", "staender", "ständer"}),
-    Role.ROTOR: frozenset({"rotor", "läufer", "laeufer", "armature", "anker"}),
-    Role.CAGE: frozenset({"cage", "käfig"}),
-    Role.MAGNET: frozenset({"magnet", "pm"}),
-    Role.SHAFT: frozenset({"shaft", "welle"}),
-    Role.BEARING: frozenset({"bearing", "lager", "brg"}),
-    Role.COMMUTATOR: frozenset({"commutator", "kommutator", "brush"}),
-    Role.HOUSING: frozenset({"housing", "frame", "gehäuse", "gehaeuse", "casing", "enclosure"}),
-    Role.END_SHIELD: frozenset({"flange", "flansch", "endcap", "endshield", "shield", "lagerschild", "endbell"}),
-    Role.FOOT: frozenset({"foot", "feet", "fuss", "fuß"}),
-    Role.COOLANT: frozenset({"coolant", "water", "wasser", "glycol", "oil", "öl", "inlet", "vorlauf", "kühlmittel",
-                             "kuehlmittel", "kühlwasser", "kuehlwasser"}),
-    Role.AMBIENT: frozenset({"ambient", "amb", "room", "umgebung", "raum", "umg", "lab", "surrounding", 
-                             "air", "luft", "tamb"}),
-    Role.TEST_BED: frozenset({"bench", "bed", "plate", "prüfstand", "pruefstand"}),
-}  # fmt: skip
+VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
 
-SETPOINT = frozenset(
-    {"ref", "set", "setpoint", "soll", "sp", "target", "cmd", "demand", "command", "sollwert", "limit"}
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
+ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
+SETPOINT, READ, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS = (
+    _words(VOCABULARY["words"][name])
+    for name in ("setpoint", "read", "inlet", "nothing", "difference", "clock", "loss")
 )
-READ = frozenset({"fbk", "act", "actual", "ist", "meas", "measured", "feedback", "mess", "istwert"})
-INLET = frozenset({"inlet", "in", "vorlauf", "supply"})
 SHORTEST = 4  # letters of a word that may be looked for inside another
+IDEOGRAPHS = "\u3040"  # from here on a sign is a word
+LETTERED = re.compile(
+    r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
+)
+OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
+AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:current|strom)[_ .]?(d|q)(?![a-z])")
 
 
 def tokens(name: str) -> tuple[str, ...]:
-    """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2."""
-    return tuple(_singular(word.lower()) for word in WORD.findall(name))
+    """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
+    out: list[str] = []
+    for word in WORD.findall(name):
+        low = _singular(word.lower())
+        joint = len(low) > 2 and low[0] == "t" and low not in PARTS and low[1:] in PARTS
+        out += ["t", low[1:]] if joint else [low]
+    return tuple(out)
 
 
 def _singular(word: str) -> str:
     return word[:-1] if len(word) > SHORTEST and word.endswith("s") and not word.endswith("ss") else word
 
 
+PARTS = frozenset().union(*ROLES.values())
+
+
+def axis_of(name: str) -> str:
+    """ "id" of i_d, Id, IdFbk, i_sd and the like; "iq", "ialpha", "ibeta"; "" for what is no component of a current."""
+    pointed = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+    return f"i{match[1] or match[2]}" if (match := AXIS.search(pointed)) else ""
+
+
 def quantities_of(name: str) -> list[str]:
-    """Quantities whose words stand in a name; single letters count only in front."""
-    words = tokens(name)
-    return [
-        q for q, terms in QUANTITY.items() if any(w in terms and (len(w) > 1 or i == 0) for i, w in enumerate(words))
-    ]
+    """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
+    paths = [tokens(part) for part in re.split(r"[/\\.:|]", name)]  # Model Root/i_phase, Motor.T_winding
+    words = [word for path in paths for word in path]
+    spoken = {
+        w for path in paths for i, w in enumerate(path) if len(w) > 1 or (i == 0 and path in (paths[0], paths[-1]))
+    }
+    quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
+    if quantities == ["power"] and re.match(r"p(?![a-z])", name):
+        return []
+    long = {q: [k for k in terms if len(k) > SHORTEST or k[0] >= IDEOGRAPHS] for q, terms in QUANTITY.items()}
+    inside = {q: max((len(k) for k in terms for w in words if k in w), default=0) for q, terms in long.items()}
+    inside |= {
+        q: SHORTEST for q, terms in QUANTITY.items() if not inside[q] and any(w[-SHORTEST:] in terms for w in words)
+    }
+    quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
+    return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
 
 
 def roles_of(name: str) -> list[Role]:
@@ -77,8 +84,17 @@ def roles_of(name: str) -> list[Role]:
         at = [(w not in terms, i) for i, w in enumerate(words) if w in terms or _inside(w, terms)]
         if at:
             hits[role] = min(at)
+    if not hits and OUTSIDE.search(name):
+        return [Role.AMBIENT]
     return sorted(hits, key=lambda role: hits[role])
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:
-    return any(len(k) >= SHORTEST and k in word for k in words)
+    return any((len(k) >= SHORTEST or k[0] >= IDEOGRAPHS) and k in word for k in words)
+
+
+def is_time(label: str) -> bool:
+    """Is it a name for time?  A small t is one, a large T a temperature."""
+    words = re.split(r"[^a-zäöüé\u3040-\u9fff]+", label.lower().strip())
+    starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
+    return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or starts

@@ -33,7 +33,7 @@ def read_csv(file: Path) -> DataTable:
         raise InputError("the file is empty", str(file), "a header line and rows of numbers")
     try:
         header, start = _header(file, content)
-        columns = _Body(file, header).columns(content, start)
+        columns = Body(file, header).columns(content, start)
     except (csv.Error, UnicodeError) as fault:
         right = "commas between columns, one header line, quotation marks in pairs"
         raise InputError(f"not readable as CSV: {fault}", str(file), right) from None
@@ -41,8 +41,10 @@ def read_csv(file: Path) -> DataTable:
 
 
 @dataclass
-class _Body:
+class Body:
     """The rows under a header, read block by block; words : columns that hold words;  gaps : there are empty cells
+
+    strict : a row that is cut off is refused, else its end is empty
 
     Both are learnt from the block that NumPy's reader cannot take as it is, so that it takes those that follow.
     """
@@ -51,6 +53,7 @@ class _Body:
     header: list[str]
     words: set[int] = field(default_factory=set)
     gaps: bool = False
+    strict: bool = True
 
     def columns(self, content: bytes, start: int) -> list[Any]:
         """The cells from a byte on, column by column: numbers, or all cells of a column that has a word in it."""
@@ -79,7 +82,7 @@ class _Body:
 
     def _slow(self, block: bytes, content: bytes, at: int) -> Sequence[Any] | None:
         """With its rows looked at one by one; None where quotation marks hold commas or line ends."""
-        if b'"' not in block:
+        if self.strict and b'"' not in block:
             _complete(self.file, block, self.header, content.count(b"\n", 0, at) + 1)
         if (plain := _plain(block)) is None:
             return None

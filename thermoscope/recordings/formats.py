@@ -186,6 +186,13 @@ def _tdms(file: Path, group: str) -> Columns:
             raise InputError("holds no channels", str(file), "a TDMS file with readings")
         channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
         names = [c.name for _, c in channels]
+        for _, channel in channels:
+            if (step := channel.properties.get("wf_increment", 0.0)) < 0:
+                raise InputError(
+                    f"its wf_increment is {step:g} s",
+                    f"{file} channel '{channel.name}'",
+                    "a time from row to row above 0",
+                )
         return joined((c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels)
 
 
@@ -215,6 +222,8 @@ def joined(signals: Iterable[Signal]) -> Columns:
     columns: dict[str, Array] = {TIME: instants * GRAIN}
     for name, time, values in whole:
         at = np.searchsorted(instants, np.round(time / GRAIN))
+        if values.dtype.kind == "M":  # times of their own
+            values = values.astype("datetime64[us]").astype(float) * 1e-6  # s since 1970
         if np.issubdtype(values.dtype, np.number):
             column = np.full(instants.size, np.nan)
             column[at] = values

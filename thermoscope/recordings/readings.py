@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.description.roles import Role as BodyRole
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Row, Source
 from lumped.schemas.reader import suggestion
@@ -23,6 +24,7 @@ from validation.measurement.sampling import SampleStep, sample_step
 Array = NDArray[np.float64]
 NONE = np.empty(0)
 ALTERNATING = 0.25  # share of the samples at which the sign changes: no machine is reversed that often
+COOL = (BodyRole.BEARING, BodyRole.SHAFT, BodyRole.FOOT, BodyRole.BASE, BodyRole.TEST_BED)  # little heat arises there
 START_S = 10.0  # the first readings are the mean over this time
 
 
@@ -50,6 +52,7 @@ def read_test(
         raise InputError(
             "no measured temperature of the machine", sheet.where, "a temperature column with a place on it"
         )
+    notes += _far_from_heat(name, sensors, network)
     step = _step(network, samples, fine, sheet.boundaries, air, sensors, wished)
     grid, _ = grid_of(samples, step.step_s, sheet.where)
     inputs, boundaries, doubts = _on_grid(sheet, samples, network, grid, fine)
@@ -57,6 +60,16 @@ def read_test(
     start = _initial(sheet, channels, samples, network)
     test = Test(name, role, grid, inputs, boundaries, channels, start, (), _finer(sheet, samples, grid, fine, inputs))
     return Reading(test, [*notes, *doubts], step)
+
+
+def _far_from_heat(name: str, sensors: Sequence[Sensor], network: Network) -> list[str]:
+    """A note where a machine would be judged by what hardly feels its heat."""
+    places, identities = network.places, network.identities
+    kinds = [identities.get(s.channel.place) or identities.get(places[s.channel.place].part) for s in sensors]
+    if any(kind is None or kind.role not in COOL for kind in kinds):
+        return []
+    of = ", ".join(dict.fromkeys(s.channel.place for s in sensors))
+    return [f"{name} is measured at {of} alone: no reading says how warm the winding is, where most of the heat is"]
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
-        if (codes := coded(raw)).any():
+        if column.is_temperature and column.electrical is None and (codes := coded(raw)).any():
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:

@@ -18,9 +18,8 @@ from thermoscope.importing.aligned import Recording
 from thermoscope.importing.cells import number
 from thermoscope.importing.dialogue import Dialogue
 from thermoscope.importing.draft import Draft, missing_boundaries, missing_inputs, squares_of, test_name
-from thermoscope.importing.guess import Guess, guesses
+from thermoscope.importing.guess import assigned, guesses
 from thermoscope.importing.target import Target, target_of
-from thermoscope.recordings.units import QUANTITIES
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
@@ -48,15 +47,13 @@ class Dropped:
         i, column = _at(key)
         if i >= len(self.records) or all(g.column != column for g in self.records[i].guesses):
             raise InputError(f"no column '{column}'", "recordings", "one of those that were dropped")
-        single = to in self.target.inputs or to in self.target.boundaries
-        records = []
+        records = list(self.records)
+        records[i] = replace(
+            records[i], guesses=assigned(records[i].guesses, records[i].source, column, to, self.target)
+        )
         for j, r in enumerate(self.records):
-            new_guesses = [
-                dragged(g, r, to, self.target) if (j, g.column) == (i, column)
-                else g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g
-                for g in r.guesses
-            ]  # fmt: skip
-            records.append(replace(r, guesses=new_guesses))
+            if j != i:
+                records[j] = replace(r, guesses=assigned(r.guesses, r.source, "", to, self.target))
         return replace(self, records=tuple(records))
 
     def constant(self, name: str, text: str) -> Dropped:
@@ -102,25 +99,6 @@ def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
     target = target_of(network)
     recordings = [read_recording(file, None, tell) for file in files]
     return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
-
-
-def dragged(g: Guess, record: Recording, to: str, target: Target) -> Guess:
-    """A column where the user puts it; "" leaves it out. Raises InputError where it cannot be what is wanted there."""
-    if not to:
-        return g.without("left out by hand")
-    if not record.source.is_numeric(g.column):
-        raise InputError("holds words, not numbers", g.column, "a column of readings")
-    if to in target.places or to in target.boundaries:
-        quantity = "temperature"
-    elif to in target.inputs:
-        quantity = target.inputs[to] or g.quantity
-    else:
-        raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
-    if g.quantity and quantity != g.quantity:
-        raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
-    unit = g.unit or ("degC" if quantity == "temperature" else next(iter(QUANTITIES[quantity].units), ""))
-    place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
-    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
 
 
 def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:

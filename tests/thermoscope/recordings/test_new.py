@@ -213,7 +213,7 @@ def test_the_columns_of_a_published_test_bench(root):
     target = target_of(load_network(root / "cases/hust-ipmsm/network.toml"))
     clock = clock_of(source)
     assert clock.columns == ()
-    assert not clock.sure
+    assert "rows 1 s apart are assumed" in clock.doubt
     found = {g.column: g.place or g.feeds for g in guesses(source, (), target)}
     hand = {"water_outlet": "coolant", "ambient": "ambient", "rotor": "rotor", "activewind_1": "winding",
             "activewind_2": "winding", "outer_yoke": "stator", "IdFbk": "id_A", "IqFbk": "iq_A",
@@ -399,11 +399,11 @@ def test_a_header_that_is_a_unit_of_time_is_the_clock(tmp_path, header, unit_s):
 
 def test_what_may_be_a_clock_and_units_that_are_none_are_said(tmp_path, capsys):
     """Without a time column rows are a second apart: a counter that rises must not go unsaid."""
-    made(tmp_path, text(tmp_path, record(100, "Takt,T_winding,speed [krpm],current_A", "{0},{1:.2f},{2},5")))
+    made(tmp_path, text(tmp_path, record(100, "Takt,T_winding,speed [Digits],current_A", "{0},{1:.2f},{2},5")))
     (test,) = json.loads((tmp_path / "new.json").read_text())["tests"]
     doubts = {c["column"]: c["doubt"] for c in test["columns"]}
     assert doubts["Takt"] == "a clock? say so: time [s]"
-    assert doubts["speed [krpm]"] == "unit 'krpm' unknown: rpm assumed"
+    assert doubts["speed [Digits]"] == "unit 'Digits' unknown: rpm assumed"
 
 
 @pytest.mark.parametrize("word", ["OVLD", "Err", "over range", "N/A"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.machine.losses import ASSUMED
+from lumped.schemas.reader import suggestion
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.escapes import toml_value
@@ -24,9 +26,9 @@ from thermoscope.importing.cells import number
 from thermoscope.importing.clock import Clock, clock_of
 from thermoscope.importing.dialogue import Dialogue
 from thermoscope.importing.draft import Draft, test_name
-from thermoscope.importing.guess import Guess, guesses
+from thermoscope.importing.guess import Guess, assigned, guesses
 from thermoscope.importing.source import Source, read_source, signature
-from thermoscope.importing.starter import place_of, starter
+from thermoscope.importing.starter import place_of, starter, unplaced
 from thermoscope.importing.target import Target, target_of
 from thermoscope.recordings.grid import LONGEST_S
 
@@ -42,7 +44,7 @@ PICTURE = "columns.png"
 class Wishes:
     """The options of the command.  constants : NAME=VALUE of what was not recorded;  period_s : between rows
 
-    window_s : the part of each recording that is the test
+    window_s : the part of each recording that is the test;  places : COLUMN=PLACE of what is not to be guessed
     """
 
     machine: str | None = None
@@ -52,6 +54,7 @@ class Wishes:
     constants: Mapping[str, float] | None = None
     period_s: float | None = None
     window_s: tuple[float, float | None] = (0.0, None)
+    places: Mapping[str, str] | None = None
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,16 @@ def _window(wishes: Wishes) -> None:
     start, end = wishes.window_s
     if end is not None and end <= start:
         raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
+
+
+def places(words: Sequence[str]) -> dict[str, str]:
+    """COLUMN=PLACE of --place; a place has no equals sign in it."""
+    for word in words:
+        if "=" not in word:
+            raise InputError(
+                f"'{word}' is no COLUMN=PLACE", "--place", "such as T_Wickl_U=winding; PLACE may be an input"
+            )
+    return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
 
 
 def settings(words: Sequence[str]) -> dict[str, float]:
@@ -127,7 +140,7 @@ def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress)
 
         network = load_network(wishes.network)
         return Model(network, target_of(network), _copied("network", wishes.network, "network.toml"))
-    return _machine(wishes.machine, tell) if wishes.machine else _started(read)
+    return _machine(wishes.machine, tell) if wishes.machine else first_model(read, wishes.places or {})
 
 
 def _machine(machine: str, tell: Progress) -> Model:
@@ -157,10 +170,14 @@ def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:
     return put
 
 
-def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
+def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str, str]) -> Model:
+    """A network made from the columns of recordings.  said : column -> place that is not to be guessed"""
     from lumped.declarations.network import read_network
 
-    columns = [(source, g) for source, clock in read for g in guesses(source, clock.columns, Target())]
+    columns = [
+        (source, g if (place := fixed_places.get(g.column)) is None else _at_place(source, g, place))
+        for source, clock in read for g in guesses(source, clock.columns, Target())
+    ]  # fmt: skip
     text = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
     network = read_network(tomllib.loads(text), "network.toml")
 
@@ -172,13 +189,27 @@ def _started(read: Sequence[tuple[Source, Clock]]) -> Model:
     return Model(network, replace(target_of(network), places_by_header=places), put, True)
 
 
+def _at_place(source: Source, g: Guess, place: str) -> Guess:
+    """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
+    if place == g.feeds or not source.is_numeric(g.column):
+        return g
+    free = replace(g, quantity="", feeds="")
+    return assigned([free], source, g.column, place, Target({place: None} if place else {}))[0]
+
+
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
     """Files into tests, columns into places; what is missing is asked for once."""
     dialogue = Dialogue(model.target, not wishes.yes, dict(wishes.constants or {}))
-    records = [
-        Recording(source, clock, dialogue.answered(source, guesses(source, clock.columns, model.target)))
-        for source, clock in read
-    ]
+    columns = {c for source, _ in read for c in source.cells}
+    for column in wishes.places or {}:
+        if column not in columns:
+            raise InputError(f"no column '{column}'", "--place", suggestion(column, sorted(columns)))
+    records = []
+    for source, clock in read:
+        guessed_columns = guesses(source, clock.columns, model.target)
+        for column, place in (wishes.places or {}).items():
+            guessed_columns = assigned(guessed_columns, source, column, place, model.target)
+        records.append(Recording(source, clock, dialogue.answered(source, guessed_columns)))
     return drafts_of(records, dialogue, wishes.window_s)
 
 
@@ -191,7 +222,8 @@ def drafts_of(
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
         part, note = common((first, *rest), window_s)
         name = test_name(first.source.file, [d.name for d in out])
-        draft = Draft(name, (first, *rest), window_s=part, notes=note)
+        clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]
+        draft = Draft(name, (first, *rest), window_s=part, notes=(*note, *clocks))
         out.append(dialogue.completed(draft))
     return out
 
@@ -216,7 +248,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         _draw(drafts[0], partial / "out" / PICTURE)
     return {
         "case": folder.name, "folder": str(folder), "invented_network": model.invented,
-        "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
+        "warnings": unplaced(drafts), "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
     }  # fmt: skip
 
@@ -276,8 +308,11 @@ def answer(document: Mapping[str, Any]) -> Answer:
     count = sum(bool(_goes(c)) for c in columns)
     sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
                 "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
+    sentence = " ".join([*(f"{w[0].upper()}{w[1:]}." for w in document["warnings"]), sentence])
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
-    table = Grid("", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"])
+    table = Grid(
+        "", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"], folded="doubt"
+    )
     parts: list[Grid | str] = [*_moved(tests), *_remarks(document), table, _files(tests)]
     return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
@@ -316,8 +351,10 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
         count = len(document["findings"])
         things = "thing looks" if count == 1 else "things look"
         remarks.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
+    files = [Path(f["file"]).name for t in tests for f in t["files"]]
     alike: dict[str, list[str]] = {}
-    for note in dict.fromkeys(remarks):
-        alike.setdefault(note.partition(":")[0], []).append(note)
+    for note in dict.fromkeys(n for n in remarks if not any(w in n for w in document["warnings"])):
+        of = next((file for file in files if note.startswith(f"{file}: ")), "")
+        alike.setdefault(re.sub(r"[\d.]+", "", note.removeprefix(f"{of}: ")), []).append(note)
     more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}
     return [f"Note: {notes[0]}{more[what]}." for what, notes in alike.items()]

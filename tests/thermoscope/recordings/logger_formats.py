@@ -1,0 +1,527 @@
+"""Recordings as other people's benches write them, each with its truth: what every column is, in units of memory.
+
+One invented test of a machine: at rest for 100 s, then 9 A and 1500 rpm. Letters stand for its signals:
+t time (s), I current (A), n speed (rpm), M torque (N m), P power of the losses (W), U voltage (V), q flow (l/min),
+W winding, H housing, B bearing, A room (degC); lower-case x, y, z are columns that no model reads; e is empty.
+"""
+
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+
+import numpy as np
+
+ROWS = 90
+BEGUN = datetime(2026, 3, 28, 12, 0, 10)
+GERMAN = ["Jan", "Feb", "Mrz", "Apr", "Mai", "Jun", "Jul", "Aug", "Sep", "Okt", "Nov", "Dez"]
+
+
+def signals(step_s: float, rows: int = ROWS) -> dict[str, np.ndarray]:
+    """Letter -> readings (rows,)"""
+    k = np.arange(float(rows))
+    on = (k >= 20).astype(float)
+    rise = 1.0 - np.exp(-np.maximum(k - 20.0, 0.0) / 30.0)
+    return {"t": step_s * k, "I": 9.0 * on, "n": 1500.0 * on, "M": 1.5 * on, "P": 120.0 * on, "U": 48.0 - on,
+            "q": 6.0 + 0.0 * k, "W": 24.0 + 60.0 * rise, "H": 23.5 + 30.0 * rise, "B": 23.0 + 20.0 * rise,
+            "A": 22.0 + 0.1 * np.sin(k / 9.0)}  # fmt: skip
+
+
+NAMES = {"I": "Current [A]", "n": "Speed [rpm]", "W": "T_winding [°C]", "H": "T_housing [°C]", "B": "T_bearing [°C]",
+         "A": "T_ambient [°C]", "P": "P_loss [W]", "M": "Torque [Nm]", "t": "Time [s]"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Format:
+    """A text format.  columns : letter of each column's signal;  names : header, "" for the usual names
+
+    stamp : row -> cell of the clock;  scale : letter -> (factor, offset) from the unit of memory into that of the file
+    cells : letter -> row -> cell of a column that is no number;  doubt : words that must be said
+    without : letters that are left out though they have a meaning
+    """
+
+    columns: str
+    names: list[str] | None = None
+    sep: str = ","
+    point: str = "."
+    step_s: float = 5.0
+    stamp: object = None
+    before: str = ""
+    units: list[str] | None = None
+    after: str = ""
+    encoding: str = "utf-8"
+    scale: dict = field(default_factory=dict)
+    cells: dict = field(default_factory=dict)
+    doubt: str = ""
+    ending: str = "\n"
+    quote: bool = False
+    name: str = "a.csv"
+    row: object = None
+    digits: int = 2
+
+    def header(self) -> list[str]:
+        return self.names if self.names is not None else [NAMES[c] for c in self.columns]
+
+    def truth(self) -> dict[str, np.ndarray]:
+        """Column -> readings in the unit of memory, of the columns that a model reads."""
+        values = signals(self.step_s)
+        pairs = zip(self.header(), self.columns, strict=False)
+        return {name: values[c] for name, c in pairs if c in values and c != "t"}
+
+    def content(self) -> bytes:
+        values = signals(self.step_s)
+        lines = []
+        for k in range(ROWS):
+            cells = [self._cell(c, k, values) for c in self.columns]
+            lines.append(self.row(cells) if self.row else self.sep.join(f'"{c}"' if self.quote else c for c in cells))
+        head = [self.sep.join(f'"{n}"' if self.quote else n for n in self.header())] if self.names != [] else []
+        units = [self.sep.join(self.units)] if self.units else []
+        text = self.before + "\n".join([*head, *units, *lines]) + "\n" + self.after
+        return text.replace("\n", self.ending).encode(self.encoding)
+
+    def _cell(self, c: str, k: int, values: dict) -> str:
+        if c in self.cells:
+            return str(self.cells[c](k))
+        if c == "t":
+            return self.stamp(k) if self.stamp else f"{values['t'][k]:g}".replace(".", self.point)
+        if c not in values:
+            return "" if c == "e" else str(k % 7)
+        factor, offset = self.scale.get(c, (1.0, 0.0))
+        return f"{values[c][k] * factor + offset:.{self.digits}f}".replace(".", self.point)
+
+
+def at(form: str, step_s: float = 5.0):
+    """A stamp by strftime."""
+    return lambda k: (BEGUN + timedelta(seconds=step_s * k)).strftime(form)
+
+
+def german(k: int) -> str:
+    now = BEGUN + timedelta(seconds=5 * k)
+    return f"{now.day}. {GERMAN[now.month - 1]} {now.year} {now:%H:%M:%S}"
+
+
+IWA, PWA = [NAMES[c] for c in "IWA"], [NAMES[c] for c in "PWA"]
+UNIX = 1774699210
+K, F, RADS = (1.0, 273.15), (1.8, 32.0), (np.pi / 30, 0.0)
+STEEL = {"W": K, "H": K, "A": K}
+FAHRENHEIT = {"W": F, "H": F, "A": F}
+LVM = """LabVIEW Measurement	
+Writer_Version	2
+Reader_Version	2
+Separator	Tab
+Decimal_Separator	.
+Multi_Headings	No
+X_Columns	One
+Time_Pref	Relative
+Operator	somebody
+Date	2026/03/28
+Time	12:00:10.5
+***End_of_Header***	
+	
+Channels	3			
+Samples	90	90	90	
+Date	2026/03/28	2026/03/28	2026/03/28	
+Time	12:00:10.5	12:00:10.5	12:00:10.5	
+Y_Unit_Label	A	°C	°C	
+X_Dimension	Time	Time	Time	
+X0	0.0	0.0	0.0	
+Delta_X	5.0	5.0	5.0	
+***End_of_Header***				
+"""
+CATMAN = """catman export
+Data from: bench 4;;
+Channels: 5;;
+
+"""
+INCA = "ETASAsciiItemFile\trecord,Group 1\tdecimalSeparator=.\ntabulator=\\t\nsampleCount\t90\n"
+YOKOGAWA = '"Model","GM10"\n"Serial No.","S5T1"\n"Start Time","2026/03/28 12:00:10"\n"Sampling Interval","5 s"\n\n'
+PICO = ",,,\n"
+KEYSIGHT = "Name:,bench\nOwner:,lab\nComments:,\n\nTotal Scans:,90\n\n"
+
+FORMATS: dict[str, Format] = {
+    "plain": Format("tInWHA"),
+    "german, semicolons and decimal commas": Format(
+        "tInWHA",
+        ["Zeit", "Strom", "Drehzahl", "T_Wicklung", "T_Gehäuse", "T_Umgebung"],
+        ";",
+        ",",
+        units=["s", "A", "1/min", "°C", "°C", "°C"],
+        encoding="cp1252",
+        ending="\r\n",
+    ),
+    "german, short names": Format(
+        "tIWBHA", ["Zeit [s]", "I_Ph [A]", "T_Wickl_V", "T_Lager_AS", "T_Geh", "T_Umg"], ";", ","
+    ),
+    "german, compounds": Format(
+        "tInWHA",
+        [
+            "Messzeit [s]",
+            "Phasenstrom [A]",
+            "Motordrehzahl [U/min]",
+            "Wicklungstemperatur [°C]",
+            "Gehäusetemperatur [°C]",
+            "Raumtemperatur [°C]",
+        ],
+        ";",
+        ",",
+    ),
+    "french": Format(
+        "tInWBA",
+        [
+            "Temps (s)",
+            "Courant (A)",
+            "Vitesse (tr/min)",
+            "Température bobinage (°C)",
+            "Température palier (°C)",
+            "Température ambiante (°C)",
+        ],
+        ";",
+        ",",
+        encoding="latin-1",
+    ),
+    "italian": Format(
+        "tIMWHA",
+        [
+            "Tempo [s]",
+            "Corrente [A]",
+            "Coppia [Nm]",
+            "Temperatura avvolgimento [°C]",
+            "Temperatura carcassa [°C]",
+            "Temperatura ambiente [°C]",
+        ],
+        ";",
+        ",",
+    ),
+    "spanish": Format(
+        "tInWBA",
+        [
+            "Tiempo (s)",
+            "Corriente (A)",
+            "Velocidad (rpm)",
+            "Temperatura devanado (°C)",
+            "Temperatura cojinete (°C)",
+            "Temperatura ambiente (°C)",
+        ],
+        "\t",
+        ",",
+    ),
+    "a row of units": Format(
+        "tInWA", ["time", "current", "speed", "T winding", "T ambient"], units=["s", "A", "rpm", "degC", "degC"]
+    ),
+    "units after slashes": Format("tIWA", ["t / s", "I / A", "T_winding / K", "T_amb / K"], "\t", scale=STEEL),
+    "units after underscores": Format(
+        "tInWA", ["time_s", "current_A", "speed_rpm", "T_winding_degC", "T_ambient_degC"]
+    ),
+    "units in angles and braces": Format("tIWA", ["t <s>", "I <A>", "winding {°C}", "ambient {°C}"], "|"),
+    "the ordinal sign": Format(
+        "tIWA", ["Time (s)", "Current (A)", "Motor winding (ºF)", "Room (ºF)"], scale=FAHRENHEIT
+    ),
+    "UTF-16": Format("tIWA", sep="\t", encoding="utf-16"),
+    "UTF-16 without a mark": Format("tIWA", sep="\t", encoding="utf-16-le"),
+    "UTF-8 with a mark": Format("tIWA", encoding="utf-8-sig"),
+    "DOS letters": Format(
+        "tIWHA", ["Zeit [s]", "I [A]", "Wicklung [°C]", "Gehäuse [°C]", "Raum [°C]"], ";", ",", encoding="cp850"
+    ),
+    "Macintosh letters": Format("tIWA", encoding="mac_roman"),
+    "japanese": Format("tIWA", ["時間 [s]", "電流 [A]", "巻線温度 [℃]", "周囲温度 [℃]"], encoding="cp932"),
+    "chinese": Format("tIWA", ["时间(s)", "电流(A)", "绕组温度(℃)", "环境温度(℃)"], encoding="gb18030"),
+    "ISO": Format("tIWA", ["timestamp", *IWA], stamp=at("%Y-%m-%dT%H:%M:%S")),
+    "ISO with a zone": Format("tIWA", ["timestamp", *IWA], stamp=at("%Y-%m-%dT%H:%M:%S.000+02:00")),
+    "compact ISO": Format("tIWA", ["stamp", *IWA], stamp=at("%Y%m%dT%H%M%S")),
+    "compact digits": Format("tIWA", ["Time", *IWA], stamp=at("%Y%m%d%H%M%S")),
+    "28-Mar-2026": Format("tIWA", ["Time", *IWA], stamp=at("%d-%b-%Y %H:%M:%S")),
+    "a weekday": Format("tIWA", ["Time", *IWA], stamp=at("%a %b %d %H:%M:%S %Y")),
+    "a german month": Format("tIWA", ["Zeit", *IWA], ";", stamp=german),
+    "german dates": Format("tIWA", ["Datum/Zeit", *IWA], ";", ",", stamp=at("%d.%m.%Y %H:%M:%S,50")),
+    "american dates": Format("tIWA", ["Date/Time", *IWA], stamp=at("%m/%d/%Y %I:%M:%S %p")),
+    "spanish halves of a day": Format(
+        "tIWA", ["Fecha", *IWA], ";", ",", stamp=lambda k: at("%d/%m/%Y %I:%M:%S")(k) + " p. m."
+    ),
+    "date and time apart": Format(
+        "xtIWA",
+        ["Datum", "Uhrzeit", "I [A]", "T_Wicklung [°C]", "T_Raum [°C]"],
+        ";",
+        ",",
+        cells={"x": at("%d.%m.%Y")},
+        stamp=at("%H:%M:%S"),
+    ),
+    "over midnight": Format(
+        "tIWA", ["Time", *IWA], stamp=lambda k: f"{datetime(2026, 1, 1, 23, 58) + timedelta(seconds=5 * k):%H:%M:%S}"
+    ),
+    "hours and minutes": Format("tIWA", ["Time", *IWA], stamp=at("%H:%M", 60), step_s=60, doubt="hours:minutes"),
+    "minutes and tenths": Format(
+        "tIWA",
+        ["Time", *IWA],
+        ";",
+        ",",
+        step_s=0.5,
+        stamp=lambda k: f"{k // 120}:{0.5 * (k % 120):04.1f}".replace(".", ","),
+    ),
+    "several rows a minute": Format(
+        "tIWA", ["Time", *IWA], stamp=lambda k: at("%H:%M")(k - 2), doubt="share each time"
+    ),
+    "spans": Format("tIWA", ["elapsed", *IWA], stamp=lambda k: f"PT{5 * k // 60}M{5 * k % 60}S"),
+    "days and hours": Format("tIWA", ["elapsed", *IWA], stamp=lambda k: f"0 days {timedelta(seconds=5 * k)!s:0>8}"),
+    "dates alone": Format("tPWA", ["date", *PWA], step_s=86400, stamp=at("%Y-%m-%d", 86400)),
+    "milliseconds": Format("tIWA", ["time_ms", *IWA], stamp=lambda k: str(5000 * k)),
+    "milliseconds unsaid": Format(
+        "tIWA", ["time", *IWA], stamp=lambda k: str(250 * k), step_s=0.25, doubt="ms are assumed"
+    ),
+    "nanoseconds since 1970": Format(
+        "tIWAx",
+        ["time", "I [A]", "T1 winding", "T2 room", "time_T1"],
+        stamp=lambda k: str((UNIX + 5 * k) * 10**9),
+        cells={"x": lambda k: (UNIX + 5 * k) * 10**9 + 1000},
+    ),
+    "ticks": Format(
+        "tIWA", ["Ticks time", *IWA], stamp=lambda k: str(639000000000000000 + k * 50000000), doubt="ticks"
+    ),
+    "days of a spreadsheet": Format("tIWA", ["Time", *IWA], stamp=lambda k: f"{46109.5 + k / 17280:.9f}"),
+    "parts of a day": Format("tIWA", ["Time", *IWA], stamp=lambda k: f"{0.5 + k / 17280:.9f}", doubt="parts of a day"),
+    "hours": Format("tPWA", ["Time (h)", *PWA], step_s=36, stamp=lambda k: f"{k / 100:.2f}"),
+    "a summer time that ends": Format(
+        "tIWA",
+        ["Time", *IWA],
+        step_s=60,
+        doubt="end of summer time",
+        stamp=lambda k: f"{datetime(2026, 10, 25, 2, 20) + timedelta(minutes=k - 60 * (k >= 40)):%d.%m.%Y %H:%M:%S}",
+    ),
+    "LabVIEW": Format(
+        "tIWAe", ["X_Value", "Current", "T winding", "T ambient", "Comment"], "\t", before=LVM, name="a.lvm"
+    ),
+    "no header": Format("tWH", [], "\t", doubt="no header", name="a.txt"),
+    "Catman": Format(
+        "tIWA",
+        ["Zeit  1 - Standard Messrate [s]", "MX840_CH 1 Strom [A]", "MX1609 Wicklung [°C]", "MX1609 Umgebung [°C]"],
+        "\t",
+        ",",
+        before=CATMAN,
+    ),
+    "Yokogawa": Format(
+        "xtIWH",
+        ["Date", "Time", "CH001", "CH002", "CH003"],
+        before=YOKOGAWA,
+        name="a.csv",
+        cells={"x": at("%Y/%m/%d")},
+        stamp=at("%H:%M:%S"),
+        units=["", "", "A", "C", "C"],
+    ),
+    "Graphtec": Format(
+        "xtyIWA",
+        ["Number", "Date&Time", "ms", "CH1 I", "CH2 winding", "CH3 room"],
+        stamp=at("%Y/%m/%d %H:%M:%S"),
+        units=["NO.", "Time", "ms", "A", "degC", "degC"],
+        cells={"x": lambda k: k + 1, "y": lambda k: 0},
+    ),
+    "Keysight": Format(
+        "xtWyAz",
+        ["Scan", "Time", "101 winding (C)", "Alarm 101", "102 ambient (C)", "Alarm 102"],
+        before=KEYSIGHT,
+        stamp=at("%m/%d/%Y %H:%M:%S:250"),
+        cells={"x": lambda k: k + 1, "y": lambda k: 0, "z": lambda k: 0},
+    ),
+    "Pico TC-08": Format(
+        "tWHA", ["", "winding Ave. (°C)", "housing Ave. (°C)", "ambient Ave. (°C)"], stamp=at("%Y-%m-%dT%H:%M:%S+00:00")
+    ),
+    "Fluke": Format(
+        "xtWA",
+        ["Reading", "Sample Time", "Motor winding °C", "Room °C"],
+        ",",
+        stamp=at("%m/%d/%Y %I:%M:%S %p"),
+        cells={"x": lambda k: k + 1},
+        row=lambda cells: ",".join([*cells[:2], f"{cells[2]} °C", f"{cells[3]} °C"]),
+    ),
+    "dSPACE": Format(
+        "tIxWA",
+        [
+            "time",
+            "Model Root/i_phase_A",
+            "Model Root/state",
+            "Model Root/theta_winding_degC",
+            "Model Root/theta_ambient_degC",
+        ],
+        cells={"x": lambda k: 3},
+    ),
+    "INCA": Format("tnWA", ["time", "nMot", "tWndg", "tAmb"], "\t", before=INCA, units=["s", "rpm", "degC", "degC"]),
+    "Arduino": Format("tWA", [], " ", name="serial.txt", row=lambda c: f"t: {c[0]}, T winding: {c[1]}, T room: {c[2]}"),
+    "a serial monitor": Format(
+        "tIWA",
+        [],
+        ",",
+        stamp=at("%H:%M:%S.000"),
+        name="serial.txt",
+        row=lambda c: f"{c[0]} -> I={c[1]} winding={c[2]} room={c[3]}",
+    ),
+    "a BMS": Format(
+        "tUIxyWA",
+        [
+            "Time [s]",
+            "Pack voltage [V]",
+            "Pack current [A]",
+            "SOC [%]",
+            "Fault",
+            "Cell temp max [°C]",
+            "Ambient temp [°C]",
+        ],
+    ),
+    "a cycler": Format(
+        "ztxIUyWAe",
+        [
+            "Exclude",
+            "Time(s)",
+            "Cycle",
+            "Current(A)",
+            "Voltage(V)",
+            "Capacity(Ah)",
+            "Temperature cell(C)",
+            "Temperature room(C)",
+            "Data",
+        ],
+        cells={"z": lambda k: "No", "x": lambda k: 1, "y": lambda k: -0.01 * k},
+        after="",
+        row=lambda c: ",".join(c) + " ,",
+    ),
+    "a robot": Format(
+        "txnIWHA",
+        [
+            "time [s]",
+            "a1 angle [rad]",
+            "a1 speed [rad/s]",
+            "a1 phase [A]",
+            "a1 winding temp [C]",
+            "housing temp [C]",
+            "room temp [C]",
+        ],
+        scale={"n": RADS},
+    ),
+    "an espresso machine": Format(
+        "txPWA", ["Elapsed (s)", "Pressure (bar)", "Heater power (W)", "Boiler temp (°C)", "Room temp (°C)"]
+    ),
+    "a building": Format(
+        "tPWHA",
+        ["", "P_heat", "Ti", "Th", "Te"],
+        step_s=3600,
+        stamp=at("%Y-%m-%d %H:%M:%S+00:00", 3600),
+        doubt="by its letters",
+    ),
+    "a counter called t": Format(
+        "zxPHA",
+        ["date", "t", "P_heat", "yTi1", "Ta"],
+        step_s=3600,
+        cells={"x": lambda k: 2750 + k, "z": at("%Y-%m-%d %H:%M:%S", 3600)},
+        doubt="by its letters",
+    ),
+    "an angle": Format("tIxWA", ["t", "i_q [A]", "theta_e", "theta_winding", "theta_amb"]),
+    "a robot's state": Format(
+        "tnMIWA",
+        ["stamp", "j1_vel [rad/s]", "j1_effort [Nm]", "j1_current [A]", "j1_winding_temp", "room_temp"],
+        ";",
+        scale={"n": RADS},
+        stamp=lambda k: f"{UNIX + 5 * k}.25",
+        digits=4,
+    ),
+    "one meter": Format(
+        "xtWy",
+        ["Index", "Timestamp", "Reading", "Units"],
+        stamp=at("%m/%d/%Y %H:%M:%S.000000"),
+        cells={"y": lambda k: "Celsius"},
+        before="Model,DMM\nSample Interval,5.000\n,,\n",
+    ),
+    "signs apart": Format(
+        "tWA", ["Time [s]", "CH1 winding [degC]", "CH2 room [degC]"], row=lambda c: f"{c[0]},+ {c[1]},+ {c[2]}"
+    ),
+    "three phases": Format(
+        "tWWWI", ["Zeit [s]", "T1_Wicklung_U", "T2_Wicklung_V", "T3_Wicklung_W", "I_eff [A]"], ";", ","
+    ),
+    "groups over names": Format("tWIA", ["s", "Temp [°C]", "Strom [A]", "Temp [°C]"], ";", before=";Motor;;Umwelt\n"),
+    "points in times": Format("tIWA", ["Data e ora", *IWA], ";", ",", stamp=at("%d/%m/%Y %H.%M.%S")),
+    "degrees that were lost": Format("tIWA", ["Time [s]", "I [A]", "winding [?C]", "room [\u00c2\u00b0C]"]),
+    "names over two lines": Format("tIWA", ["Time\n[s]", "I\n[A]", "winding\n[°C]", "room\n[°C]"], quote=True),
+    "a code among currents": Format(
+        "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"
+    ),
+    "LabVIEW without times": Format(
+        "eIWAe",
+        ["", "Current [A]", "Winding [°C]", "Room [°C]", "Comment"],
+        "\t",
+        step_s=0.5,
+        name="a.lvm",
+        before=LVM.replace("X_Columns\tOne", "X_Columns\tNo").replace("5.0", "0.5"),
+        doubt="as the lines before its header say",
+    ),
+    "hours, minutes and seconds": Format("tIWA", ["Elapsed", *IWA], stamp=lambda k: f"0h {5 * k // 60}m {5 * k % 60}s"),
+    "dutch": Format("tIWA", ["Tijd", "Stroom", "Temperatuur wikkeling", "Omgevingstemperatuur"], ";", ","),
+    "greek letters": Format(
+        "tMnWxA",
+        ["t [s]", "τ [Nm]", "ω [rad/s]", "ϑ winding [°C]", "Δϑ [K]", "ϑ room [°C]"],
+        scale={"n": RADS},
+        digits=3,
+    ),
+    "an object on every line": Format(
+        "tIWA", [], row=lambda c: f'{{"t": {c[0]}, "I": {c[1]}, "winding": {c[2]}, "room": {c[3]}}}'
+    ),
+    "channels with numbers": Format(
+        "tIWH", ["Channel 1", "Channel 2", "Channel 3", "Channel 4"], ";", ",", units=["s", "A", "°C", "°C"]
+    ),
+    "a cycler that counts": Format(
+        "xytIUWA",
+        ["Record ID", "Step", "Test Time", "Current/mA", "Voltage/V", "Aux Temp 1/C", "Amb Temp 2/C"],
+        cells={"x": lambda k: k + 1},
+        stamp=lambda k: f"00:{5 * k // 60:02d}:{5 * k % 60:02d}.000",
+        scale={"I": (1e3, 0)},
+    ),
+    "a cycler with a control": Format(
+        "txUIW",
+        ["time/s", "control/V/mA", "Ecell/V", "I/mA", "Temperature/°C"],
+        cells={"x": lambda k: 1},
+        scale={"I": (1e3, 0)},
+    ),
+    "an incubator": Format(
+        "tPWxA",
+        ["Date Time", "Heater [W]", "T_inside [°C]", "Humidity [%]", "T_room [°C]"],
+        stamp=at("%Y/%m/%d %H:%M:%S"),
+    ),
+    "a drive with axes": Format("tIInWA", ["time_s", "i_d", "i_q", "n_mot", "T_winding", "T_ambient"]),
+    "CAN": Format(
+        "tIxyWA",
+        [
+            "time [s]",
+            "Inverter.PhaseCurrent [A]",
+            "Inverter.Mode",
+            "Inverter.FaultCode",
+            "Motor.WindingTemp [degC]",
+            "Motor.AmbientTemp [degC]",
+        ],
+    ),
+    "text beside readings": Format(
+        "txIWA", ["Time [s]", "Operator", "I [A]", "T_winding [°C]", "T_room [°C]"], cells={"x": lambda k: "Müller"}
+    ),
+    "an almost empty column": Format(
+        "tIWAx",
+        ["Time [s]", "I [A]", "T_winding [°C]", "T_room [°C]", "Remarks"],
+        cells={"x": lambda k: "fan on" if k == 40 else ""},
+    ),
+    "quoted cells": Format("tIWA", quote=True, point=",", sep=","),
+    "blanks": Format("tIWA", ["t[s]", "I[A]", "T_winding[C]", "T_amb[C]"], " "),
+    "a comment sign before the names": Format("tIWA", ["# time_s", "current_A", "T_winding", "T_ambient"], "\t"),
+    "thousands": Format(
+        "tInWA",
+        ["Zeit [s]", "I [A]", "n [1/min]", "T_Wickl [°C]", "T_Raum [°C]"],
+        ";",
+        ",",
+        cells={"n": lambda k: f"{1.5 * (k >= 20):.3f}" if k >= 20 else "0"},
+    ),
+    "a code now and then": Format("tIWA", cells={"W": lambda k: "9999" if k == 50 else f"{signals(5.0)['W'][k]:.2f}"}),
+    "kelvin under degC": Format("tIWHA", scale=STEEL, doubt="K by its values"),
+    "Fahrenheit unsaid": Format(
+        "tIWA", ["time_s", "current_A", "T_winding", "T_room"], scale=FAHRENHEIT, doubt="degF by its values"
+    ),
+    "a rise beside the temperature": Format(
+        "tIxWA", ["Time [s]", "I [A]", "dT winding [K]", "T winding [°C]", "T room [°C]"]
+    ),
+    "words at the end": Format("tIWA", after="End of data\nOperator: somebody\n"),
+    "a second name over each": Format(
+        "tIWA", ["Time [s]", "I [A]", "Temp [°C]", "Temp [°C]"], before=",,winding,ambient\n"
+    ),
+    "names for statistics programs": Format(
+        "xtIWA", ["time_s", "I_A", "T_winding", "T_room"], " ", cells={"x": lambda k: k + 1}
+    ),
+}
