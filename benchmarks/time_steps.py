@@ -1,4 +1,4 @@
-"""Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the run itself says.
+"""Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the run says.
 
     python benchmarks/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE] [--references FOLDER]
 

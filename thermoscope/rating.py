@@ -81,7 +81,7 @@ def begun(model: Model, op: Operation, limits: Mapping[str, float], start: float
     """
     warm = start / abs(op.inputs[op.main])
     for (place, most), T in zip(limits.items(), model.rest(op, warm, None), strict=True):
-        if T >= most:
+        if most <= T:
             raise InputError(f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is "
                              f"{most:g} degC", "--start", "a lower load, or cold")  # fmt: skip
     return replace(op, warm=warm)

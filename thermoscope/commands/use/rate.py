@@ -66,7 +66,7 @@ def read_at(words: Sequence[str]) -> dict[str, float]:
 
 
 def read_start(word: str) -> float | None:
-    """"cold", or the load from whose rest S2 begins, in the unit of the input that carries it."""
+    """The load from whose rest S2 begins, in the unit of the input that carries it; None for "cold"."""
     if word == "cold":
         return None
     load = as_number(word)
@@ -116,7 +116,8 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     load, main = here["S1"].load, op.inputs[op.main]
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
-        "reference": {"start": "cold" if op.warm is None else op.warm * main, "input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
+        "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries),
+                      "start": "cold" if request.start is None else request.start},
         "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
         "envelope": [point(folder, op, r, old, posterior) for r in envelope],
         "derating": derated(folder, it, old, load, posterior),
@@ -200,7 +201,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
-    parts: list[Grid | str] = [Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"]), f"At {at}; S2 from {begin}."]
+    table = Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
+    parts: list[Grid | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
                      f"from rest at {over['warm_percent']:g} %.")  # fmt: skip
