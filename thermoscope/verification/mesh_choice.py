@@ -35,7 +35,7 @@ UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is as
 SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothing can be foretold
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 170_000  # of the mesh that is condensed: within 4 GB and 3 min on two cores
-MOST_LOOKED_AT = 250_000  # of one that is solved once, for its hot spots
+MOST_SOLVED = 250_000  # of one that is solved once, for its hot spots
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
 WAYS = ("size_m", "across", "axial_m")
 MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
@@ -114,7 +114,9 @@ class _Looks:
     def hot(self, how: Meshing) -> Kelvins:
         """Heated part -> its largest rise (K) at the rated point."""
         if how not in self.rises:
-            ready = meshed(self.machine, how, lambda said: self.progress(f"estimating the error of the mesh: {said}"))
+            ready = meshed(
+                self.machine, how, lambda message: self.progress(f"estimating the error of the mesh: {message}")
+            )
             self.point = self.point or _at_rated_point(ready)
             self.rises[how] = _hot_spots(self.point, ready)
         return self.rises[how]
@@ -130,21 +132,21 @@ class _Way:
     """Halvings of one way: what each moved the hot spots by, and how many of them the mesh at hand has."""
 
     moves: tuple[Kelvins, ...] = ()
-    taken: int = 0
+    level: int = 0
 
     @property
     def unsure(self) -> bool:
         """One more would tell more: two known halvings show the order."""
-        return len(self.moves) == self.taken < 2
+        return len(self.moves) == self.level < 2
 
     def left(self, part: str) -> float:
         """What the mesh at hand is off by (K), factor of safety included."""
         moves = [move[part] for move in self.moves]
-        if len(moves) == 1 and self.taken == 1:
+        if len(moves) == 1 and self.level == 1:
             return UNCONFIRMED * moves[0]
-        k = min(self.taken, len(moves) - 1)
+        k = min(self.level, len(moves) - 1)
         ratio = _ratio(moves[k - 1], moves[k]) if k else 0.5**ORDER
-        return SAFETY * moves[k] / (1.0 - ratio) * (ratio if self.taken == len(moves) else 1.0)
+        return SAFETY * moves[k] / (1.0 - ratio) * (ratio if self.level == len(moves) else 1.0)
 
 
 def _ratio(before: float, after: float) -> float:
@@ -155,15 +157,15 @@ def _ratio(before: float, after: float) -> float:
 def _looked_for(looks: _Looks, accuracy: float, first: Meshing, most: int) -> MeshChoice:
     how, ways = _acting(looks, first), dict.fromkeys(WAYS, _Way())
     while True:
-        ways = {way: _looked_further(looks, how, way, known) for way, known in ways.items()}
+        ways = {way: _looked_further(looks, how, way, halvings) for way, halvings in ways.items()}
         percent = _percent(looks.hot(how), ways)
         worst = max(percent, key=lambda p: percent[p])
-        way = _refined(looks, how, {way: known.left(worst) for way, known in ways.items()}, most)
+        way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)
         if way is None or percent[worst] <= SHARE * accuracy:
             return MeshChoice(how, percent, *looks.size(how), percent[worst] <= LARGEST_SHARE * accuracy)
-        there, known = how.along(way, 0.5), ways[way]
-        moves = known.moves if len(known.moves) > known.taken else (*known.moves, looks.moved(how, there))
-        how, ways[way] = there, _Way(moves, known.taken + 1)
+        there, halvings = how.along(way, 0.5), ways[way]
+        moves = halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
+        how, ways[way] = there, _Way(moves, halvings.level + 1)
 
 
 def _acting(looks: _Looks, how: Meshing) -> Meshing:
@@ -173,14 +175,14 @@ def _acting(looks: _Looks, how: Meshing) -> Meshing:
     return how
 
 
-def _looked_further(looks: _Looks, how: Meshing, way: str, known: _Way) -> _Way:
+def _looked_further(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> _Way:
     """With one more halving where that tells more and can be solved; where none can be, one coarser instead."""
-    if not known.unsure:
-        return known
+    if not halvings.unsure:
+        return halvings
     there = how.along(way, 0.5)
-    if looks.size(there)[1] <= MOST_LOOKED_AT:
-        return replace(known, moves=(*known.moves, looks.moved(how, there)))
-    return known if known.moves else _Way((looks.moved(how.along(way, 2.0), how),), 1)
+    if looks.size(there)[1] <= MOST_SOLVED:
+        return replace(halvings, moves=(*halvings.moves, looks.moved(how, there)))
+    return halvings if halvings.moves else _Way((looks.moved(how.along(way, 2.0), how),), 1)
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:
@@ -194,7 +196,7 @@ def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) 
 def _percent(hot: Kelvins, ways: Mapping[str, _Way]) -> dict[str, float]:
     """Of every part's own rise, of a share of the largest at least."""
     floor = FLOOR * max(hot.values())
-    return {p: 100.0 * sum(known.left(p) for known in ways.values()) / max(hot[p], floor) for p in hot}
+    return {p: 100.0 * sum(halvings.left(p) for halvings in ways.values()) / max(hot[p], floor) for p in hot}
 
 
 def size_of(machine: Machine, how: Meshing) -> tuple[int, int]:

@@ -78,7 +78,7 @@ def built_from(
 
     if accuracy is None:
         return usual(on_all(source), size_m, progress=tell), None
-    size = accurate_network(source, accuracy, size_m, tell, lambda said: notes([said]))
+    size = accurate_network(source, accuracy, size_m, tell, lambda message: notes([message]))
     return size.built, size
 
 

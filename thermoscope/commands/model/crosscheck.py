@@ -32,7 +32,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     source = load_machine_file(Path(machine))
     folder = out or Path("out") / source.name
     with progress() as tell:
-        size = accurate_network(source, accuracy, progress=tell, say=lambda said: notes([said]))
+        size = accurate_network(source, accuracy, progress=tell, say=lambda message: notes([message]))
         document = {"machine": source.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
