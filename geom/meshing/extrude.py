@@ -29,7 +29,7 @@ def extrude(
     axial_size: float,
     face_name: FaceName,
 ) -> NamedMesh:
-    """The named tetrahedral mesh over a triangulation; layers are axial_size (m) thick at most on the average."""
+    """The named tetrahedral mesh over a triangulation; layers are at most axial_size (m) thick."""
     heights = [_heights(cut.levels[block.first], cut.levels[block.last + 1], axial_size) for block in blocks]
     z = np.unique(np.concatenate(heights))
     ranks = [np.searchsorted(z, height) * len(flat.points) for height in heights]
@@ -44,9 +44,8 @@ def extrude(
 
 
 def _heights(z0: float, z1: float, axial_size: float) -> Floats:
-    """Levels of a block (m), denser towards its ends: there heat goes in and out, and fields are steep."""
     pieces = max(1, int(np.ceil((z1 - z0) / axial_size - 1e-6)))
-    return np.round(z0 + (z1 - z0) * np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, pieces + 1)) ** 2, 9)
+    return np.round(np.linspace(z0, z1, pieces + 1), 9)
 
 
 def _base(index: int, columns: Sequence[Column], flat: Triangulation) -> tuple[Ints, Ints]:

@@ -37,7 +37,7 @@ def build_mesh(
     size_m : largest triangle in the plane (m)
     segments : chords per turn of an arc; 36 loses 0.5 % of a circle's area, 72 an eighth of a per cent
     across : elements over the width of a compact face, such as the winding in a slot
-    axial_m : element along the axis (m), 1.5 * size_m if None: the mean over a block, whose ends have finer ones
+    axial_m : largest element along the axis (m), 1.5 * size_m if None
     cache : folder of meshes by content; None for no cache
     `build_mesh(machine, **COARSE)` is quick, `**FINE` converged.
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
