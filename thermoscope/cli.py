@@ -406,6 +406,7 @@ def rate(
     load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
     mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
+    start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
     bands: Sure = None, json: Json = None,
 ) -> None:  # fmt: skip
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
@@ -413,7 +414,7 @@ def rate(
 
     options = tuple(limit or ()), tuple(at or ())
     loads = tuple(load or ())
-    raise typer.Exit(run(name, *options, losses, voltage, overload, top, loads, cycle, mapped, bands, json))
+    raise typer.Exit(run(name, *options, losses, voltage, overload, top, loads, cycle, mapped, start, bands, json))
 
 
 @app.command()

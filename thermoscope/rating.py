@@ -32,6 +32,7 @@ INLET_C = 20.0  # what [cooling] takes where it does not say
 class RatingRequest:
     """limits : place -> degC;  at : input or boundary -> value;  loads : inputs that carry the load, if not the usual
 
+    start : of the input that carries the load, from whose rest S2 begins; None: cold
     losses : a map, at a voltage;  overload : of S1;  cycle : a file or a name;  mapped : whether a map is wanted
     """
 
@@ -44,6 +45,7 @@ class RatingRequest:
     top_rpm: float | None = None
     cycle: str | None = None
     mapped: bool = False
+    start: float | None = None
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,20 @@ def rated_model(folder: Folder, request: RatingRequest) -> Rated:
     op = operation(network, tests, request.at, request.loads, usual)
     mine = {p.name for p in network.parameters}
     model = Model(network, {k: v for k, v in values.items() if k in mine}, hot_spots(network, rows, limits))
-    return Rated(model, op, limits)
+    return Rated(model, op if request.start is None else begun(model, op, limits, request.start), limits)
+
+
+def begun(model: Model, op: Operation, limits: Mapping[str, float], start: float) -> Operation:
+    """The operating point with short times from rest under a load `start`, in the unit of its main input.
+
+    Raises InputError where a limit is exceeded there already.
+    """
+    warm = start / abs(op.inputs[op.main])
+    for (place, most), T in zip(limits.items(), model.rest(op, warm, None), strict=True):
+        if most <= T:
+            raise InputError(f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is "
+                             f"{most:g} degC", "--start", "a lower load, or cold")  # fmt: skip
+    return replace(op, warm=warm)
 
 
 def places(

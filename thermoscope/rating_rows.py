@@ -93,6 +93,10 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
+    if r.form in TIMES and op.warm is not None:  # the run comes to rest there first
+        before = np.linspace(0.0, STEADY_TIME_CONSTANTS * network.settles_s, time.size)
+        inputs = {n: np.append(np.full(time.size, u), inputs[n]) for n, u in op.at(op.warm).items()}
+        time = np.append(before, before[-1] + time)
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     record = Record(time, inputs, air, float(np.mean(list(op.boundaries.values()))))
     end = np.asarray(simulate(bare, record, values, keep_states=True).z)[-1]

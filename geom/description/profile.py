@@ -97,23 +97,26 @@ class ArcGrid:
     On each radius the break points are the arc ends of all profiles; each piece between two neighbouring
     breaks is cut evenly into chords of at most 1 / `segments` turn. In a thin ring the circle
     with fewer breaks borrows the other's cuts: cut differently, the ring would gain or lose per cents of its area.
+    Chords over a hole that nearly reaches their circle leave it in the material.
     """
 
     def __init__(self, profiles: Iterable[Profile], segments: int = 72) -> None:
         self.step = 2 * math.pi / segments
         ends: dict[int, set[float]] = defaultdict(set)
         partners: dict[int, set[int]] = defaultdict(set)
+        steps: dict[int, float] = {}
         for profile in profiles:
             arcs = _arc_ends(profile)
             for radius, angles in arcs.items():
                 ends[radius] |= angles
                 if any(len(loop) > 2 for loop in profile.loops):  # a plain ring is cut alike anyway
+                    steps[radius] = min(steps.get(radius, self.step), _step_over(radius, profile))
                     partners[radius] |= {other for other in arcs if other != radius and abs(other / radius - 1) < _THIN}
         breaks = {radius: _distinct(angles) for radius, angles in ends.items()}
         self._cuts: dict[int, list[float]] = {}
         for radius in sorted(breaks, key=lambda r: (-len(breaks[r]), r)):
             neighbours = [cut for other in partners[radius] for cut in self._cuts.get(other, ())]
-            step = min([self.step, *(_fine_step(radius, other) for other in partners[radius])])
+            step = min([steps.get(radius, self.step), *(_fine_step(radius, other) for other in partners[radius])])
             self._cuts[radius] = _divided(self._merged(breaks[radius], neighbours), step)
 
     def _merged(self, first: Iterable[float], others: Iterable[float]) -> list[float]:
@@ -206,9 +209,16 @@ def _divided(breaks: list[float], step: float) -> list[float]:
     return cuts
 
 
-def _fine_step(radius: int, other: int) -> float:
-    """Step (rad) at which a chord's height over its arc is a tenth of the layer between two radii."""
-    return 2 * math.sqrt(2 * 0.1 * abs(other - radius) / radius)
+def _fine_step(radius: float, other: float, share: float = 0.1) -> float:
+    """Step (rad) at which a chord's height over its arc is a share of the layer between two radii."""
+    return 2 * math.sqrt(2 * share * abs(other - radius) / radius)
+
+
+def _step_over(radius: int, profile: Profile) -> float:
+    """Step (rad) that leaves three quarters of the bridges between a circle and the corners of the holes under it."""
+    corners = [max(math.hypot(x, y) for x, y, _ in hole) / _RADIUS_GRID for hole in profile.holes]
+    under = max((r for r in corners if r < radius - 1), default=0.0)
+    return _fine_step(radius, under, 0.25)
 
 
 def _turned(loop: Loop, angle: float) -> Loop:

@@ -67,7 +67,7 @@ def coupled(
 
 def _without(run: Run, first: int) -> Run:
     """The run without its first rows."""
-    return replace(run, y=run.y[:, first:], time_error_K=run.time_error_K[first:])
+    return replace(run, y=run.y[:, first:], finer=lambda: _without(run.finer(), first))
 
 
 def series_drive(

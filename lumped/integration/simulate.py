@@ -5,8 +5,9 @@ run = simulate(network, Record(time, inputs, boundaries, initial), values, rows,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
 from geom.text import counted
-from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
+from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, more_exact, reordered
 from lumped.integration.failure import failure
 from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
@@ -41,6 +42,7 @@ from lumped.numerics.terms import Forcing
 Array = NDArray[np.float64]
 PORTION = 4096  # steps whose states are kept for their tangents
 ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
+FINER = 100.0  # as exact: next to nothing is left of the error then, in 5 times the steps
 FACTORS = 2**18  # numbers of the LU of those steps, which their tangents take too: 2 MB, what a core has for itself
 
 
@@ -49,12 +51,11 @@ class Stand:
     """Where a run stands at its end, and another may begin: x (n_states,) degC, D (n_states + n_boundaries,
     n_tangents).
 
-    error : (n_states,) the estimated error of x;  step : the step wanted next (s);  coldest : of all so far (degC)
+    step : the step wanted next (s);  coldest : of all so far (degC)
     """
 
     x: Array
     D: Array
-    error: Array
     step: float
     coldest: float
 
@@ -64,8 +65,7 @@ class Run:
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
     end : for a run that goes on;  steps : those it took;  path : (n_steps, n_states) where each ended, if kept
-    time_error_K : (n_rows,) estimate of the largest error of every output that the time steps leave (K). It adds up the
-        errors of the steps as far as they last; those are estimated from above.
+    finer : the same run at a FINER-th of the tolerance
     """
 
     time: Array
@@ -73,9 +73,17 @@ class Run:
     y: Array
     dy: Array | None
     end: Stand
-    time_error_K: Array
     steps: Steps
+    finer: Callable[[], Run]
     path: Array | None = None
+
+    @cached_property
+    def time_error_K(self) -> Array:
+        """(n_rows,) the largest error of every output that the time steps leave (K), from the finer run.
+
+        It takes some three times as long as the run itself, and only when asked for.
+        """
+        return np.asarray(np.abs(self.y - self.finer().y).max(axis=0, initial=0.0))
 
     def __repr__(self) -> str:
         outputs, steps = counted(self.y.shape[1], "output"), counted(self.steps.knot.size, "step")
@@ -143,11 +151,12 @@ def march(
 
     portion : steps whose states are in memory at once for their tangents
     """
+    finer = partial(march, network, record, more_exact(core, FINER), begin=begin)
     course = _Course(network, record, core, keep_states, begin, steps, portion)
     course.path = [] if keep_path else None
     for part in _parts(core.forcing.time, core.C):
         course.over(part, part.start > 0 or begin is None)
-    return course.run()
+    return course.run(finer)
 
 
 class _Course:
@@ -167,7 +176,7 @@ class _Course:
         self.tangents = core.tangents.first.shape[1]
         p = self.tangents + -self.tangents % ABREAST
         self.z, self.y = np.empty((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
-        self.dy, self.late = np.zeros((nt, nr, p)), np.zeros(nr)
+        self.dy = np.zeros((nt, nr, p))
         self.order = np.concatenate([core.order, np.arange(n, n + nb)])
         self.place = np.argsort(self.order)
         x0, u0 = (begin.x if begin else initial_state(network, record.initial))[core.order], core.forcing.u[0]
@@ -181,8 +190,7 @@ class _Course:
         self.path: list[Array] | None = None
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
-            self.moved[1].D[:, : self.tangents] = begin.D[self.order]
-            self.scratch.error[1] = begin.error[core.order]
+            self.moved[1].D[:, : self.tangents] = begin.D[self.order, : self.tangents]
             self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
 
     def over(self, part: slice, rests: bool) -> None:
@@ -216,7 +224,7 @@ class _Course:
         core, at, sample = self.core, self.position.at, int(self.position.at[SAMPLE])
         control = core.control if self.given is None else self._follow(first)
         common = (core.rows, control, self.trace, self.position, self.both, self.scratch)
-        integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y, self.late)
+        integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y)
         if at[STATUS] not in (0, FULL):
             raise self._failed(forcing)
         count, X = int(at[COUNT]), self.trace
@@ -238,15 +246,11 @@ class _Course:
             getattr(self.trace, name)[: part.size] = part
         return self.core.control._replace(follow=np.ones(1, np.int64))
 
-    def run(self) -> Run:
+    def run(self, finer: Callable[[], Run]) -> Run:
         """What came of it."""
-        clock, states = self.position.clock, self.place[: self.core.C.size]
-        x, D, error = (
-            self.both.z[0, states],
-            self.moved[1].D[self.place, : self.tangents],
-            self.scratch.error[1, states],
-        )
-        end = Stand(x, D, error, float(clock[NEXT]), float(clock[LOW]))
+        clock = self.position.clock
+        x, D = self.both.z[0, self.place[: self.core.C.size]], self.moved[1].D[self.place, : self.tangents]
+        end = Stand(x, D, float(clock[NEXT]), float(clock[LOW]))
         steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
@@ -255,8 +259,8 @@ class _Course:
             self.y,
             dy,
             end,
-            self.late,
             steps,
+            finer,
             np.concatenate(self.path) if self.path else None,
         )
 

@@ -6,8 +6,7 @@ equations, leaves over (Hairer and Wanner 1996, sec. IV.8, filtered by the step'
 
     error = W^-1 gamma h (F(t1, x1) - C x'(t1)),   x'(t1) from the stages
 
-F(t1, x1) serves the next step. The error is of second order. What the step adds to the error of the run is that times
-W^-1 gamma h G, of third order; what was there decays by W^-1 C.
+F(t1, x1) serves the next step. The error is of second order.
 Where all coefficients are positive a step must also keep the maximum principle: no node colder than all that came
 before, none warmer without a source that heats it. What only some runs need is compiled when first asked for.
 """
@@ -52,7 +51,6 @@ KNOT, COUNT, STATUS, NODE, FRESH, SAMPLE = range(6)
 SHARE, FACTORED, NEXT, LOW = range(4)
 FULL, SINGULAR, OUTSIDE, HOT = range(1, 5)
 MOST_TRIES = 12  # from 0.9 of an interval to a millionth of it, and less where the estimate asks for it
-SAFETY = 2.5  # of the error of the run: on random networks it is 0.4 to 6 times the true one
 LARGEST = 5e-3  # K: what rounding and the estimate itself leave of the maximum principle
 
 
@@ -154,8 +152,8 @@ def _rosenbrock(T, K0, C, h, L, slot, a, q):
         a.z[2, i] = a.z[1, i] + w2[i]
     flow(T, K0, a.z[2], q.f[1], a.tau[2], a.v[2], q.F[2])
     for i in range(n):
-        q.error[0, i] = gh * q.F[2, i] - GAMMA * C[i] * (END1 * w0[i] + END2 * w1[i] + END3 * w2[i])
-    solve(L, slot, q.error[0])
+        q.error[i] = gh * q.F[2, i] - GAMMA * C[i] * (END1 * w0[i] + END2 * w1[i] + END3 * w2[i])
+    solve(L, slot, q.error)
 
 
 @inner
@@ -174,7 +172,7 @@ def _euler(T, K0, C, h, L, slot, a, q):
     solve(L, slot, a.w[0][:n])
     for i in range(n):
         a.z[2, i] = a.z[0, i] + a.w[0, i]
-        q.error[0, i] = 0.5 * a.w[0, i]
+        q.error[i] = 0.5 * a.w[0, i]
     flow(T, K0, a.z[2], q.f[1], a.tau[2], a.v[2], q.F[2])
     return True
 
@@ -260,7 +258,7 @@ def _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q):
     if not finite(a.z[2]):
         P.at[STATUS] = SINGULAR
         return 1e300
-    size = _size(L, a.z[2], q.error[0], C.size)
+    size = _size(L, a.z[2], q.error, C.size)
     if L.principle[0]:
         node = _outside(T, K0, C, h, P, a, q)
         if node >= 0:
@@ -270,9 +268,8 @@ def _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q):
 
 
 @inner
-def _accept(X, k, slot, P, L, kind, h, s1, a, q, C):
+def _accept(X, k, slot, P, L, kind, h, s1, a, q, n):
     """Write down the step and go to its end."""
-    n = C.size
     X.knot[k], X.start[k], X.share[k], X.kind[k], X.h[k] = P.at[KNOT], P.clock[SHARE], s1, kind, h
     X.slot[k] = slot
     for i in range(X.x[k].size):
@@ -281,11 +278,6 @@ def _accept(X, k, slot, P, L, kind, h, s1, a, q, C):
         for i in range(n):
             X.U[k, stage, i] = a.w[stage, i]
     for i in range(n):
-        q.error[1, i] = C[i] * (q.error[1, i] - q.error[0, i])
-    if kind == ROSENBROCK:
-        solve(X.L, slot, q.error[1])
-    for i in range(n):
-        q.error[1, i] += q.error[0, i]
         if L.node[i] and not abs(a.z[2, i]) < L.hottest[0]:
             P.at[STATUS], P.at[NODE] = HOT, i
         q.F[0, i] = q.F[2, i]
@@ -326,7 +318,7 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
         size = _attempt(T, K0, C, kind, h, build, L, X, slot, P, a, q)
         if size <= 1.0 or (P.at[STATUS] == 0 and (L.follow[0] or kind == EULER)) or (L.follow[0] and size < 1e300):
             P.at[STATUS] = 0
-            _accept(X, k, slot, P, L, kind, h, s1, a, q, C)
+            _accept(X, k, slot, P, L, kind, h, s1, a, q, C.size)
             P.clock[SHARE], P.clock[NEXT], P.at[FRESH] = s1, h * min(max(0.9 * size ** (-1 / 3), 0.2), 8.0), 1
             return P.at[STATUS] == 0
         if L.follow[0]:
@@ -336,20 +328,17 @@ def _step(Q, C, K0, T, L, X, k, P, a, q):
 
 
 @pasted
-def _outputs(R, z, y, error, n, late):
-    """The outputs at z, and the largest error of each so far."""
+def _outputs(R, z, y):
+    """The outputs at z."""
     for r in range(y.size):
-        acc, off = 0.0, 0.0
+        acc = 0.0
         for i in range(R.start[r], R.start[r + 1]):
             acc += R.weight[i] * z[R.at[i]]
-            if R.at[i] < n:
-                off += R.weight[i] * error[R.at[i]]
         y[r] = acc
-        late[r] = max(late[r], SAFETY * abs(off))
 
 
 @inner
-def _within(Q, R, X, k, P, a, q, z, y, late):
+def _within(Q, R, X, k, P, a, q, z, y):
     """The samples inside a step that is written down, by its own parabola of every state."""
     n, j, t, s0, s1, U = q.F[0].size, X.knot[k], P.at[SAMPLE], X.start[k], X.share[k], X.U[k]
     while t < Q.first[j + 1] and Q.share[t] < 1.0 and Q.share[t] <= s1:
@@ -359,27 +348,27 @@ def _within(Q, R, X, k, P, a, q, z, y, late):
             a.z[1, i] = a.z[0, i] + c0 * U[0, i] + c1 * U[1, i] + c2 * U[2, i]
         for b in range(q.du.size):
             a.z[1, n + b] = boundary(Q, j, Q.share[t], b)
-        _sampled(R, t, a.z[1], q.error, z, y, late)
+        _sampled(R, t, a.z[1], z, y)
         t += 1
     P.at[SAMPLE] = t
 
 
 @inner
-def _sampled(R, t, now, error, z, y, late):
+def _sampled(R, t, now, z, y):
     if len(z) > 0:
         for i in range(z[t].size):
             z[t, R.state[i]] = now[i]
     if y[t].size > 0:
-        _outputs(R, now, y[t], error[1], error[1].size, late)
+        _outputs(R, now, y[t])
 
 
 @entry
-def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
+def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y):
     """March over a record from where P is until its end, or until the trace is full or no step stands: see P.at.
 
     Q : what drives the network;  C (n,);  K0 (n, n + nb + 1) constant terms;  T, R, L as declared above
     X, P : the steps taken, where the run is;  a, q : from stages() and work(): states at a.z[0]
-    z (nt or 0, n + nb), y (nt, nr), late (nr,) : states, outputs, largest error of each output (K): filled here
+    z (nt or 0, n + nb), y (nt, nr) : states, outputs: filled here
     """
     n, nb = C.size, q.du.size
     P.at[COUNT], P.at[STATUS], P.clock[FACTORED] = 0, 0, -1.0
@@ -393,7 +382,7 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
                 return
             P.at[COUNT] += 1
             if P.at[SAMPLE] < Q.first[j + 1]:
-                _within(Q, R, X, P.at[COUNT] - 1, P, a, q, z, y, late)
+                _within(Q, R, X, P.at[COUNT] - 1, P, a, q, z, y)
             if P.clock[SHARE] < 1.0:
                 continue
         else:
@@ -404,5 +393,5 @@ def integrate(Q, C, K0, T, R, L, X, P, a, q, z, y, late):
         P.clock[SHARE] = 0.0
         P.at[KNOT] += 1
         while P.at[SAMPLE] < Q.first[j + 1]:
-            _sampled(R, P.at[SAMPLE], a.z[0], q.error, z, y, late)
+            _sampled(R, P.at[SAMPLE], a.z[0], z, y)
             P.at[SAMPLE] += 1

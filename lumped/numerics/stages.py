@@ -59,7 +59,7 @@ class Work(NamedTuple):
     """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
 
     F (3, n) right-hand side as z;  G, H (n, n + nb) by states and boundaries;  L : an LU for rest
-    error (2, n) of the step and of the run so far
+    error (n,) of the step
     heat (2, n) least and most of all sources
     D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more
     V (nv, p) what patterns and laws see of them
@@ -100,9 +100,9 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     ne = T.m.size
-    (G, H), twice = np.zeros((2, n, n + nb)), np.zeros((2, 2, n))
+    G, H = np.zeros((2, n, n + nb))
     return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
-                twice[0], twice[1], np.zeros((n + nb, p)), np.zeros((4, n, p)),
+                np.zeros(n), np.zeros((2, n)), np.zeros((n + nb, p)), np.zeros((4, n, p)),
                 np.zeros((T.begin.size - 1, p)))  # fmt: skip
 
 

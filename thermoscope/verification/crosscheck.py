@@ -28,7 +28,14 @@ class PartCheck:
     network_mean_C: float
     fem_max_C: float
     network_max_C: float
-    percent_of_rise: float
+    mean_percent: float
+    hot_percent: float
+    heated: bool
+
+    @property
+    def percent_of_rise(self) -> float:
+        """The larger of mean and hottest point."""
+        return max(self.mean_percent, self.hot_percent)
 
 
 @dataclass(frozen=True)
@@ -214,7 +221,7 @@ def through(
 
 
 def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambient: float) -> tuple[PartCheck, ...]:
-    """Part by part; the percentage is of the part's own rise, of at least a tenth of the machine's largest."""
+    """Part by part; percentages are of the part's own rise, of at least a tenth of the machine's largest."""
     assert network.recovery is not None
     T = network.recovery.field(x)
     largest = float(full.T.max()) - ambient
@@ -222,9 +229,8 @@ def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambien
     for part, block in field.blocks.items():
         mean, hot = float(field.mean(part) @ full.T), float(full.T[block.dofs].max())
         network_mean, peak = float(x[network.states.index(part)]), float(T[block.dofs].max())
-        off = max(
-            abs(network_mean - mean) / max(abs(mean - ambient), FLOOR * largest),
-            abs(peak - hot) / max(hot - ambient, FLOOR * largest),
-        )
-        out.append(PartCheck(part, mean, network_mean, hot, peak, 100.0 * off))
+        mean_off = abs(network_mean - mean) / max(abs(mean - ambient), FLOOR * largest)
+        hot_off = abs(peak - hot) / max(hot - ambient, FLOOR * largest)
+        heated = part in network.heated
+        out.append(PartCheck(part, mean, network_mean, hot, peak, 100.0 * mean_off, 100.0 * hot_off, heated))
     return tuple(out)

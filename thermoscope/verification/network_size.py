@@ -15,7 +15,7 @@ from lumped.machine.motor import motor_network
 from lumped.machine.zones import motor_zones
 from thermoscope.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepared, reduced, silent
 from thermoscope.verification.load_cases import load_cases
-from thermoscope.verification.mesh_choice import MeshChoice, chosen_mesh
+from thermoscope.verification.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
 
 # Finer than a case's own: every accuracy that may be asked is cut out of it.
 FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
@@ -23,6 +23,8 @@ ROUNDS = 3  # of learning: each solves the field at new points
 POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
 CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables
 SEGMENTS = 48  # chords per turn
+BYTES = 16_000  # per unknown: snapshots, factor and the points that are learned from; 1.5 GB at 96,000
+SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
 LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
 
 
@@ -63,15 +65,28 @@ def accuracy_of(accuracy: float) -> Accuracy:
 
 
 def accurate_network(
-    machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent
+    machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
 ) -> NetworkSize:
     """Mesh and condensation together within `accuracy` percent of a part's own rise: what the mesh leaves of it, the
-    condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)"""
-    mesh = chosen_mesh(on_all(machine), accuracy, Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m), progress)
+    condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)
+
+    say : how large the meshes are and what they need, before they are solved
+    """
+    first = Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m)
+    points, unknowns = size_of(on_all(machine), first)
+    say(f"first mesh: {points:,} points, {needs(unknowns)}; the finest that is condensed: {needs(MOST_UNKNOWNS)}")
+    mesh = chosen_mesh(on_all(machine), accuracy, first, progress)
+    say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}")
     how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
     size = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
                              axial_m=how.axial_m)  # fmt: skip
     return replace(size, mesh=mesh)
+
+
+def needs(unknowns: int) -> str:
+    """What a build on so many unknowns takes."""
+    gigabytes, minutes = BYTES * unknowns / 1e9, SECONDS / 60.0 * (unknowns / 1e5) ** FACTOR_ORDER
+    return f"{unknowns:,} unknowns, about {gigabytes:.1f} GB and {max(minutes, 0.1):.1f} min of a core"
 
 
 def smallest_network(

@@ -39,7 +39,7 @@ class Rating:
 
 
 def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
-    """The load of a form at a speed (1/min; the reference where None); short times begin cold.
+    """The load of a form at a speed (1/min; the reference where None); short times begin where `op` says.
 
     Raises InputError where a limit is exceeded without any load.
     """
@@ -87,7 +87,7 @@ def excess(model: Model, op: Operation, form: str, speed: float | None) -> Calla
     if form == "S1":
         return lambda load: model.rest(op, load, speed)
     if form in TIMES:
-        begin = model.start(op, None, speed)
+        begin = model.start(op, op.warm, None)
         return lambda load: model.course(op, load, speed, begin, TIMES[form])[1].max(axis=0)
     duty = S3 if form == "S3 40 %" else S6
     return lambda load: model.repeated(op, load, speed, duty)

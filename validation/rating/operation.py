@@ -27,13 +27,14 @@ class Operation:
     """The point at which load counts as 1.
 
     inputs : all that the laws read;  loads : those of them that the load multiplies;  speed : its input, if any
-    boundaries : degC
+    boundaries : degC;  warm : the load from whose rest short times begin; None: cold, at the mean of what is around
     """
 
     inputs: Mapping[str, float]
     loads: tuple[str, ...]
     speed: str | None
     boundaries: Mapping[str, float]
+    warm: float | None = None
 
     @property
     def main(self) -> str:

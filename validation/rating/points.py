@@ -64,7 +64,7 @@ class Model:
         """A stand at a state x (n_states,)."""
         means = x[["#" not in s for s in self.network.states]]
         none = np.zeros((x.size + len(self.network.boundaries), 0))  # no tangents
-        return Stand(x, none, np.zeros(x.size), 1.0, float(min(means.min(), *op.boundaries.values())))
+        return Stand(x, none, 1.0, float(min(means.min(), *op.boundaries.values())))
 
     def course(
         self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float

@@ -8,6 +8,8 @@ from inside_parts import point_in
 from measures import area, facets_of_tets, keys, tet_volumes
 
 from geom import build_mesh
+from geom.description.profile import ArcGrid, Profile
+from geom.description.shapes import circle_loop
 
 
 def test_every_tetrahedron_is_positive(motor_mesh):
@@ -151,3 +153,20 @@ def test_library_machine_fits_its_published_envelope(motor, motor_mesh):
     assert x <= width
     assert y <= height
     assert z <= length + 1e-9
+
+
+@pytest.mark.parametrize("segments", [12, 36, 48])
+def test_chords_leave_the_bridge_over_a_magnet_in_the_iron(segments):
+    """A chord of 36 a turn lies 0.4 mm under a circle of 100 mm: deeper than a bridge of 0.2 mm."""
+    x = math.sqrt(99.8e-3**2 - 20e-3**2)
+    magnet = ((x - 2e-3, -20e-3, 0.0), (x, -20e-3, 0.0), (x, 20e-3, 0.0), (x - 2e-3, 20e-3, 0.0))
+    core = Profile(circle_loop(100e-3), (magnet,))
+    polygon = core.to_polygon(ArcGrid([core, Profile(magnet)], segments))
+    corners = np.array(magnet)[1:3, :2]
+    assert polygon.is_valid
+    outer = np.array(polygon.exterior.coords)
+    for corner in corners:
+        a, b = outer[:-1], outer[1:]
+        n = np.column_stack([(b - a)[:, 1], (a - b)[:, 0]])
+        distance = np.abs(((corner - a) * n).sum(axis=1) / np.linalg.norm(n, axis=1)).min()
+        assert distance > 0.1e-3

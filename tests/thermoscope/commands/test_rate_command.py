@@ -48,6 +48,24 @@ cage = "winding"
 HOLES = "torque_Nm,speed_rpm,copper_W\n0,0,0\n50,0,20\n0,1000,0\n"
 
 
+def test_s2_begins_where_it_is_told(thermoscope, tmp_path):
+    """The nearer to the limit it begins, the less is left; beyond it nothing is, and a word is no load."""
+    common = ("use", "rate", small_case(tmp_path), "--limit", "winding=120", "--at", "ambient=20")
+    cold, warm = (thermoscope(*common, "--start", s, "--json", "-").document for s in ("cold", "50"))
+    of = [{r["form"]: r for r in d["ratings"]} for d in (cold, warm)]
+    assert of[0]["S1"]["value"] == pytest.approx(of[1]["S1"]["value"])
+    for form in ("S2 60 min", "S2 60 s", "S2 10 s"):
+        assert of[1]["S1"]["value"] < of[1][form]["value"] < of[0][form]["value"]
+        low, high = of[1][form]["ci95"]
+        assert low < of[1][form]["value"] < high
+    hot = thermoscope(*common, "--start", "400")
+    assert hot.code == 2
+    assert "at rest under current_A = 400 'winding' is" in hot.err
+    word = thermoscope(*common, "--start", "warm")
+    assert word.code == 2
+    assert "'warm' is no start" in word.err
+
+
 def test_the_continuous_rating_is_the_rest_of_the_network(thermoscope, tmp_path):
     """G from winding to air: 8 in series with (3 + (6 in series with 1.5)); R grows with the winding's temperature."""
     said = thermoscope(

@@ -82,6 +82,14 @@ def test_short_time_ratings_follow_the_exponential(form, seconds):
     assert_allclose(rated(model(), OP, LIMIT, form, None).load, REST / np.sqrt(1.0 - np.exp(-seconds / TAU)), rtol=3e-3)
 
 
+@pytest.mark.parametrize(("form", "seconds"), [("S2 60 s", 60.0), ("S2 60 min", 3600.0)])
+def test_short_times_begin_at_the_rest_of_a_load(form, seconds):
+    """load^2 = warm^2 + (rest^2 - warm^2) / (1 - e^(-t / tau)): a line through the squares."""
+    warm = 0.6 * REST
+    expected = np.sqrt(warm**2 + (REST**2 - warm**2) / (1.0 - np.exp(-seconds / TAU)))
+    assert_allclose(rated(model(), replace(OP, warm=warm), LIMIT, form, None).load, expected, rtol=3e-3)
+
+
 def test_a_duty_repeats_itself():
     """Load for 240 s of 600 s, then none: T_max = rise (1 - e^(-on/tau)) / (1 - e^(-period/tau))."""
     share = (1.0 - np.exp(-240.0 / TAU)) / (1.0 - np.exp(-600.0 / TAU))

@@ -78,7 +78,7 @@ def built_from(
 
     if accuracy is None:
         return usual(on_all(source), size_m, progress=tell), None
-    size = accurate_network(source, accuracy, size_m, tell)
+    size = accurate_network(source, accuracy, size_m, tell, lambda message: notes([message]))
     return size.built, size
 
 
@@ -115,10 +115,8 @@ def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
 def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     """How well the network agrees with the field, part by part, and where the files are."""
     mesh, network = document["mesh"], document["network"]
-    worst = crosscheck.worst(document)
-    off = abs(worst["percent_of_rise"])
     sentence = (f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
-                f"means within {off:.2g} % of the rise (worst: {worst['place']}).")  # fmt: skip
+                f"of the rise it has {crosscheck.agreement(document)}.")  # fmt: skip
     headers = ["part", "material", "volume (l)", "in the mesh (l)", "mass (kg)", "to fluids (m2)", "to parts (m2)",
                "watertight"]  # fmt: skip
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])

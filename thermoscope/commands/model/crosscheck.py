@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from geom.errors import ThermoscopeError
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.answer import Answer, Grid
-from thermoscope.console.terminal import give, plain, progress
+from thermoscope.console.terminal import give, notes, plain, progress
 from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 
@@ -31,7 +31,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
     source = load_machine_file(Path(machine))
     folder = out or Path("out") / source.name
     with progress() as tell:
-        size = accurate_network(source, accuracy, progress=tell)
+        size = accurate_network(source, accuracy, progress=tell, say=lambda message: notes([message]))
         document = {"machine": source.name, **checked(size.built, size, tell)}
         save(document, folder)
     give(document, target, lambda: answer(document, folder))
@@ -108,27 +108,35 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     """Parts, the links that differ most, and the hand formulas furthest off."""
-    off = worst(document)
-    sentence = (f"Steady at the rated point, network and field differ by {abs(off['percent_of_rise']):.2g} % of "
-                f"the rise at most ({off['place']}); its energy balance {document['energy_balance']:.1e}.")  # fmt: skip
+    sentence = (f"Steady at the rated point the network has {agreement(document)}; the field's energy balance "
+                f"{document['energy_balance']:.1e}.")  # fmt: skip
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
     tables = [parts(document), links(document), analytical_table(document)]
     return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
 
 
-def worst(document: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The part that is furthest off."""
+def agreement(document: Mapping[str, Any]) -> str:
+    """How far means, and hottest points of heated and of other parts, are off; and the part that is furthest."""
     rows: Sequence[Mapping[str, Any]] = document["crosscheck"]
-    return max(rows, key=lambda part: abs(part["percent_of_rise"]))
+    hot = {heats: [row for row in rows if row["heated"] is heats] for heats in (True, False)}
+    kinds = [("means", "mean_percent", rows), ("hottest points of heated parts", "hot_percent", hot[True]),
+             ("of others", "hot_percent", hot[False])]  # fmt: skip
+    return ", ".join(f"{kind} within {_furthest(some, key)}" for kind, key, some in kinds if some)
+
+
+def _furthest(rows: Sequence[Mapping[str, Any]], key: str) -> str:
+    worst = max(rows, key=lambda row: float(row[key]))
+    return f"{worst[key]:.2g} % ({worst['place']})"
 
 
 def parts(document: Mapping[str, Any]) -> Grid:
     """Temperatures by field and network, the largest difference first."""
-    headers = ["part", "field mean", "network mean", "field max", "network max", "off (% of rise)",
-               "field max, laws local", "link that differs most"]  # fmt: skip
-    rows = sorted(document["crosscheck"], key=lambda part: -abs(part["percent_of_rise"]))
-    title, keep = "Temperatures (degC), 20 degC around", ["off (% of rise)", "field mean", "network mean"]
-    return Grid(title, headers, [list(part.values()) for part in rows], keep=keep)
+    headers = ["part", "field mean", "network mean", "field max", "network max", "mean off (%)", "max off (%)",
+               "heated", "field max, laws local", "link that differs most"]  # fmt: skip
+    rows = sorted(document["crosscheck"], key=lambda part: -max(part["mean_percent"], part["hot_percent"]))
+    title, keep = "Temperatures (degC), 20 degC around; % of the rise", ["mean off (%)", "max off (%)", "field max"]
+    body = [["yes" if key == "heated" and x else "no" if key == "heated" else x for key, x in r.items()] for r in rows]
+    return Grid(title, headers, body, keep=keep)
 
 
 def links(document: Mapping[str, Any]) -> Grid:

@@ -27,6 +27,7 @@ from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.escapes import toml_value
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
+from thermoscope.recordings.data_table import as_number
 from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
@@ -34,16 +35,18 @@ from validation.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
+LARGEST_START = 1e7  # in amperes or newton metres: beyond any machine
 WARM = 0.75  # load at rest from which an overload begins warm
 
 
 def rate(
     name: str, limits: Sequence[str], at: Sequence[str], losses: Path | None, voltage: float | None, overload: float,
-    top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, sure: bool | None, target: str | None,
+    top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, start: str,
+    sure: bool | None, target: str | None,
 ) -> int:  # fmt: skip
     """Ratings of a case, or of a machine with nothing measured."""
     options = read_limits(limits), read_at(at), tuple(loads)
-    request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped)
+    request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped, read_start(start))
     if voltage is not None and losses is None:
         raise InputError(
             "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
@@ -62,6 +65,16 @@ def rate(
 def read_at(words: Sequence[str]) -> dict[str, float]:
     """NAME=VALUE, ..."""
     return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
+
+
+def read_start(word: str) -> float | None:
+    """The load from whose rest S2 begins, in the unit of the input that carries it; None for "cold"."""
+    if word == "cold":
+        return None
+    load = as_number(word)
+    if load is None or not 0.0 <= load <= LARGEST_START:
+        raise InputError(f"'{word}' is no start", "--start", f"cold, or a load from 0 to {LARGEST_START:g}, e.g. 120")
+    return load
 
 
 def case_or_machine(name: str, tell: Progress, check: Callable[[Settings], None] = lambda settings: None) -> Folder:
@@ -107,7 +120,8 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     load, main = here["S1"].load, op.inputs[op.main]
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
-        "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries)},
+        "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries),
+                      "start": "cold" if request.start is None else request.start},
         "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
         "envelope": [point(folder, op, r, old, posterior) for r in envelope],
         "derating": derated(folder, it, old, load, posterior),
@@ -194,9 +208,11 @@ def answer(document: Mapping[str, Any]) -> Answer:
     rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
             for r in document["ratings"]]  # fmt: skip
     headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
+    begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
-    parts: list[Grid | str] = [Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"]), f"At {at}."]
+    table = Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
+    parts: list[Grid | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
                      f"from rest at {over['warm_percent']:g} %.")  # fmt: skip
