@@ -19,7 +19,7 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import as_number
 from thermoscope.verification.error_budget import model_of
-from validation.parameters.reference import standing_reference
+from validation.parameters.unknowns import standing_reference
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
 from validation.rating.points import Model

@@ -24,8 +24,7 @@ from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
 from validation.case import Case, LowFidelity, Reference, Test
 from validation.measurement.sampling import SampleStep
-from validation.parameters.reference import case_reference
-from validation.parameters.unknowns import matching, standing, working
+from validation.parameters.unknowns import case_reference, matching, standing, working
 
 if TYPE_CHECKING:
     from geom import Machine

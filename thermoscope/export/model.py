@@ -23,7 +23,7 @@ from thermoscope.recordings.units import QUANTITIES
 from thermoscope.verification.error_budget import model_of
 from validation.case import RUNNING, Reference
 from validation.comparison.compare import errors
-from validation.parameters.reference import standing_reference
+from validation.parameters.unknowns import standing_reference
 
 Array = NDArray[np.float64]
 USUAL_C = 20.0  # where a run starts unless it is told

@@ -19,8 +19,7 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import minimise
 from validation.case import Case, Test
-from validation.parameters.reference import standing_reference
-from validation.parameters.unknowns import to_coordinate, working
+from validation.parameters.unknowns import standing_reference, to_coordinate, working
 
 Array = NDArray[np.float64]
 CAPACITY_YEAR, LOSS_YEAR = 0.005, 0.03  # masses stay, magnets and sheets age by per cents (of the logarithm)

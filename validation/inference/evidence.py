@@ -29,8 +29,8 @@ from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, grams, score, total
 from validation.measurement.noise import Noise, fit_noise
-from validation.parameters.reference import case_reference, effect_sizes
-from validation.parameters.unknowns import Unknowns, at_level, scene_of, widened, working
+from validation.parameters.reference import effect_sizes
+from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, widened, working
 
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect

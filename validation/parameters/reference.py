@@ -7,7 +7,6 @@ another model wherever another test is recorded. So it is determined when the mo
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
 from lumped.transfer.laws import CLOCK, Law
-from validation.case import Case, Reference, SignalReference, Test
-from validation.effects import effect, extended
+from validation.case import Reference, SignalReference, Test
 
 Array = NDArray[np.float64]
 LOADS = ("current", "torque")  # quantities that grow with the load
@@ -24,22 +22,6 @@ DIGITS = 9  # of what is stored: memory and file hold the same number
 STILL = 0.1  # of its mean: an input that changes by less is one value
 THIRD = 0.1  # of the distance of two values: farther from both is a third
 RARE = 0.02  # of all samples: so many lie between two values where one switches to the other
-
-
-def case_reference(case: Case) -> Reference:
-    """What the model has stored, and of what it has not yet met what the tests that a fit may use say."""
-    stored = case.model.reference or Reference()
-    effects = [e.name for e in case.model.effects]
-    new = reference_of(extended(case.model.network, map(effect, effects)), case.usable, effects)
-    levels = stored.levels
-    signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
-    return replace(new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes},
-                   errors=stored.errors)  # fmt: skip
-
-
-def standing_reference(case: Case) -> Reference:
-    """What the model has stored; before the first fit, and where an old file lacks it, what a fit would store."""
-    return case.model.reference or case_reference(case)
 
 
 def reference_of(network: Network, tests: Sequence[Test], effects: Collection[str] = ()) -> Reference:

@@ -18,7 +18,7 @@ from validation.effects import Effect, Scene, effect, extended
 from validation.effects.sensors.input_offset import Shift
 from validation.measurement.operators import of_measurement
 from validation.parameters.model_form import with_model_form
-from validation.parameters.reference import case_reference, effect_sizes, standing_reference, value_counts
+from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
@@ -117,6 +117,22 @@ def scene_of(case: Case) -> Scene:
 
 def effects_of(case: Case) -> tuple[Effect, ...]:
     return tuple(effect(e.name) for e in case.model.effects)
+
+
+def case_reference(case: Case) -> Reference:
+    """What the model has stored, and of what it has not yet met what the tests that a fit may use say."""
+    stored = case.model.reference or Reference()
+    names = [e.name for e in case.model.effects]
+    new = reference_of(extended(case.model.network, effects_of(case)), case.usable, names)
+    levels = stored.levels
+    signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
+    return replace(new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes},
+                   errors=stored.errors)  # fmt: skip
+
+
+def standing_reference(case: Case) -> Reference:
+    """What the model has stored; before the first fit, and where an old file lacks it, what a fit would store."""
+    return case.model.reference or case_reference(case)
 
 
 def at_level(network: Network, names: Collection[str], reference: Reference) -> Network:

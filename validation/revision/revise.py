@@ -22,8 +22,7 @@ from validation.effects.during import During
 from validation.effects.time_window import checked, lasts
 from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
-from validation.parameters.reference import case_reference
-from validation.parameters.unknowns import FREE, scene_of, working
+from validation.parameters.unknowns import FREE, case_reference, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
 

@@ -92,7 +92,7 @@ def _observer(
     from thermoscope.export.observer_code import observer_files, observer_model
     from thermoscope.monitoring.observing import chosen, designed
     from thermoscope.verification.error_budget import model_of
-    from validation.parameters.reference import standing_reference
+    from validation.parameters.unknowns import standing_reference
 
     with progress() as tell:
         folder = open_case(case, tell).small  # a controller's memory is short

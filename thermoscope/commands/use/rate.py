@@ -25,7 +25,7 @@ from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
-from validation.parameters.reference import standing_reference
+from validation.parameters.unknowns import standing_reference
 from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
