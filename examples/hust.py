@@ -6,7 +6,8 @@ What `thermoscope explain improve` does, the best-fitting of a group taken unask
 what case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever
 predicted, and nothing here looks at them before the end. With --ablation every effect that was added is deleted in
 turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
-cases/hust-ipmsm/README.md and writes them to --out, with the model.
+cases/hust-ipmsm/README.md and writes them to --out, with that of the front page and the model; scripts/published.py
+puts them there.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ from thermoscope.commands.model.revise import recorded
 from thermoscope.files import write_whole
 from thermoscope.validation import diagnose
 from thermoscope.validation.case import Case
-from thermoscope.validation.comparison.compare import Comparison
+from thermoscope.validation.comparison.compare import Comparison, pooled
 from thermoscope.validation.parameters.unknowns import with_model
 from thermoscope.validation.revision import revise
 from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
@@ -105,31 +106,60 @@ def ablation(found: Sequence[Found]) -> str:
     return "\n".join([*head, *(f.row() for f in found)])
 
 
-def errors(comparison: Comparison, role: str) -> dict[str, float]:
-    """Channel -> error (K) over all tests of a role, all readings together."""
-    out = {}
+def role_errors(comparison: Comparison, role: str = "hold-out") -> tuple[dict[str, float], dict[str, float]]:
+    """Channel -> error (K) over all tests of a role, all readings together: as sensors read, and as fitted."""
+    rows = [c for t in comparison.tests if t.role == role for c in t.channels]
+    read, fitted = {}, {}
     for channel in CHANNELS:
-        rows = [c for t in comparison.tests if t.role == role for c in t.channels if c.channel == channel]
-        out[channel] = float(np.sqrt(np.average([r.rmse_K**2 for r in rows], weights=[r.n for r in rows])))
-    return out
+        mine = [c for c in rows if c.channel == channel]
+        read[channel] = pooled(mine)
+        fitted[channel] = pooled([replace(c, rmse_K=c.fitted_rmse_K) for c in mine if c.fitted_rmse_K is not None])
+    return read, fitted
+
+
+def together(errors: Mapping[str, float]) -> float:
+    """Root mean square of the sensors' errors."""
+    return float(np.sqrt(np.mean(np.square([*errors.values()]))))
+
+
+def number(error: float | None) -> str:
+    """An error (K) in a cell; empty where there is none."""
+    return "" if error is None or not np.isfinite(error) else f"{error:.2f}"
 
 
 def table(stairs: Sequence[Step]) -> str:
     """Markdown: error (K) of every held-out profile and sensor, published and at the end; then every step's errors."""
     first, last = stairs[0].comparison, stairs[-1].comparison
-    lines = ["| held-out profile | sensor | published (K) | end (K) |", "|---|---|---|---|"]
+    lines = [
+        "| held-out profile | sensor | published (K) | end (K) | end, sensors as fitted (K) |",
+        "|---|---|---|---|---|",
+    ]
     for a, b in zip(first.tests, last.tests, strict=True):
         if a.role == "hold-out":
-            ends = {c.channel: c.rmse_K for c in b.channels}
-            lines += [f"| {a.name} | {c.channel} | {c.rmse_K:.2f} | {ends[c.channel]:.2f} |" for c in a.channels]
-            lines.append(f"| **{a.name}** | **all** | **{a.rmse_K:.2f}** | **{b.rmse_K:.2f}** |")
-    lines += ["", "| model | role | winding (K) | stator (K) | rotor (K) | all (K) |", "|---|---|---|---|---|---|"]
+            ends = {c.channel: c for c in b.channels}
+            lines += [f"| {a.name} | {c.channel} | {number(c.rmse_K)} | {number(ends[c.channel].rmse_K)} | "
+                      f"{number(ends[c.channel].fitted_rmse_K)} |" for c in a.channels]  # fmt: skip
+            lines.append(f"| **{a.name}** | **all** | **{number(a.rmse_K)}** | **{number(b.rmse_K)}** | "
+                         f"**{number(b.fitted_rmse_K)}** |")  # fmt: skip
+    lines += ["", "| model | role | winding (K) | stator (K) | rotor (K) | all (K) | all, sensors as fitted (K) |",
+              "|---|---|---|---|---|---|---|"]  # fmt: skip
     for stair in stairs:
         for role in ("calibrate", "validate", "hold-out"):
-            e = errors(stair.comparison, role)
-            whole = np.sqrt(np.mean(np.square(list(e.values()))))
-            numbers = " | ".join(f"{x:.2f}" for x in (*e.values(), whole))
+            read, fitted = role_errors(stair.comparison, role)
+            numbers = " | ".join(map(number, (*read.values(), together(read), together(fitted))))
             lines.append(f"| {cell(name(stair))} | {role} | {numbers} |")
+    return "\n".join(lines)
+
+
+def front_page(stairs: Sequence[Step]) -> str:
+    """Markdown of the project's front page: the held-out profiles alone, from the same numbers."""
+    profiles = [t.name for t in stairs[0].comparison.tests if t.role == "hold-out"]
+    head = [*CHANNELS, "all", "all, sensors as fitted", *(p.replace("id_", "profile ") for p in profiles)]
+    lines = [f"| model | {' | '.join(head)} |", f"|{'---|' * (len(head) + 1)}"]
+    for stair in stairs:
+        (read, fitted), of = role_errors(stair.comparison), {t.name: t.rmse_K for t in stair.comparison.tests}
+        row = (*read.values(), together(read), together(fitted), *(of[p] for p in profiles))
+        lines.append(f"| {cell(name(stair))} | {' | '.join(map(number, row))} |")
     return "\n".join(lines)
 
 
@@ -151,6 +181,7 @@ def main() -> None:
     text = "\n".join([table(done.stairs), "", *EVIDENCE, *(evidence(s) for s in done.stairs if s.effect), ""])
     write_whole(options.out / "table.md", text + "\n")
     write_whole(options.out / "compare.json", json.dumps(done.stairs[-1].comparison.document(), indent=1))
+    write_whole(options.out / "front-page.md", front_page(done.stairs) + "\n")
     print(text)
     if options.ablation:
         rows = ablation(ablated(done.case, tell))

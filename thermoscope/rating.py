@@ -19,6 +19,7 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import as_number
 from thermoscope.verification.error_budget import model_of
+from validation.parameters.unknowns import standing_reference
 from validation.rating.hot_spots import MEAN, hot_spots
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from validation.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
@@ -62,14 +63,15 @@ def rated_model(folder: Folder, request: RatingRequest) -> Rated:
     network, values = model_of(folder)
     rows = named_rows(network, folder)
     limits = places(request.limits, rows, network.identities)
-    tests, usual = folder.case.tests, rated_point(folder, network)
+    point = usual_point(folder, network)
     if request.losses is not None:
         grid = loss_grid(columns_of(request.losses), str(request.losses), request.voltage)
         network = with_losses(network, grid, str(request.losses))
         network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
-        usual = {**usual, TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed)), **_air(folder)}
-        tests = ()
-    op = operation(network, tests, request.at, request.loads, usual)
+        around = {n: u for n, u in point.items() if n in network.boundaries}
+        point = {**rated_point(folder, network), **around}
+        point |= {TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed))}
+    op = operation(network, point, request.at, request.loads)
     mine = {p.name for p in network.parameters}
     model = Model(network, {k: v for k, v in values.items() if k in mine}, hot_spots(network, rows, limits))
     return Rated(model, op if request.start is None else begun(model, op, limits, request.start), limits)
@@ -107,6 +109,11 @@ def places(
     return out
 
 
+def usual_point(folder: Folder, network: Network) -> dict[str, float]:
+    """Where load counts as 1: where the largest load of the fitted tests was, and what they leave open as rated."""
+    return {**rated_point(folder, network), **standing_reference(folder.case).load_point}
+
+
 def rated_point(folder: Folder, network: Network) -> dict[str, float]:
     """Inputs and boundaries of a machine without tests: its ratings, 40 degC around it, its coolant's inlet."""
     if folder.built is None:
@@ -117,13 +124,6 @@ def rated_point(folder: Folder, network: Network) -> dict[str, float]:
     cooling = machine.sections.get("cooling", {})
     wet = dict.fromkeys(coolant_boundaries(network), float(cooling.get("inlet_C", INLET_C)))
     return {**rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}
-
-
-def _air(folder: Folder) -> dict[str, float]:
-    """Boundaries at the mean of the tests."""
-    tests = folder.case.tests
-    names = {b for t in tests for b in t.boundaries}
-    return {b: float(np.mean([np.mean(t.boundaries[b]) for t in tests if b in t.boundaries])) for b in names}
 
 
 def columns_of(file: Path) -> dict[str, np.ndarray]:

@@ -142,16 +142,61 @@ class AddedEffect:
 
 
 @dataclass(frozen=True)
+class SignalReference:
+    """An input or a boundary over the tests that a model was fitted to.
+
+    level : root mean square of an input, mean of a boundary (degC);  low, high : its range
+    at_load : its value at the instant of the largest load, mean of a boundary; None where that test does not record it
+    quantity : what it measures, "" where nothing says;  machine : of that quantity it is the machine's
+    """
+
+    level: float
+    low: float
+    high: float
+    at_load: float | None = None
+    quantity: str = ""
+    machine: bool = False
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a model took from the tests of its fits. It stands beside the fitted values, so that tests which come, go or
+    change places later change nothing in the model.
+
+    signals : by input or boundary;  sizes : effect -> mean of what its law multiplies an amplitude by
+    tests : that were fitted;  errors : sensor -> rms error (K) on the strictest role of test, and that role
+    start_C : where the first of these tests started (degC)
+    """
+
+    signals: Mapping[str, SignalReference] = field(default_factory=dict)
+    sizes: Mapping[str, float] = field(default_factory=dict)
+    tests: tuple[str, ...] = ()
+    errors: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    start_C: float | None = None
+
+    @property
+    def levels(self) -> dict[str, float]:
+        """Input -> where a fitted exponent leaves its law as declared; an input that was never used has none."""
+        return {name: one.level for name, one in self.signals.items() if one.level > 0}
+
+    @property
+    def load_point(self) -> dict[str, float]:
+        """Input or boundary -> value at which load counts as 1: of the largest load that the tests reached."""
+        return {name: one.at_load for name, one in self.signals.items() if one.at_load is not None}
+
+
+@dataclass(frozen=True)
 class Model:
     """The model as it stands: network, effects added, parameter values (those not listed are at their declared value).
 
-    scale : factor on the covariance of the fitted values (from the residual's own correlation)
+    reference : what exponents and effects refer to; None before the first fit
     """
 
     network: Network
     effects: tuple[AddedEffect, ...] = ()
     values: Mapping[str, float] = field(default_factory=dict)
     revision: int = 0
+    reference: Reference | None = None
 
 
 @dataclass(frozen=True)
@@ -198,7 +243,22 @@ class Case:
 
     def training(self) -> Case:
         """The case without its held-out tests: all that may be fitted, chosen or accepted with. InputError if none."""
-        tests = tuple(t for t in self.tests if t.role != "hold-out")
-        if not tests:
+        if not self.usable:
             raise InputError("has only held-out tests", f"case {self.name!r}", 'role = "calibrate" for at least one')
-        return replace(self, tests=tests)
+        return replace(self, tests=self.usable)
+
+    @property
+    def usable(self) -> tuple[Test, ...]:
+        """The tests that a fit may use: all but the held-out ones."""
+        return tuple(t for t in self.tests if t.role != "hold-out")
+
+    @property
+    def fitted(self) -> tuple[Test, ...]:
+        """The tests that the model was fitted to, as far as they are still there, in the order of then.
+
+        Where nothing says which: those to calibrate with, and with effects in the model those to choose them with.
+        """
+        if self.model.reference is None:
+            return tuple(t for t in self.usable if self.model.effects or t.role == "calibrate")
+        by_name = {t.name: t for t in self.usable}
+        return tuple(by_name[name] for name in self.model.reference.tests if name in by_name)

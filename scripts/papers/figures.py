@@ -10,7 +10,7 @@ from scripts.papers.machines import m1
 from scripts.papers.page import Row, Section
 from validation.comparison.compare import physical
 from validation.comparison.predict import record, thermal
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.procedure.measuring.protocol import STEPS
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ def figure_1() -> Section:
 def slots() -> tuple[float, float, float]:
     """Spread in one slot's winding, between slots' means, and between the winding's ends and middle (K), at 8 A."""
     case = m1().case
-    network, test = thermal(working(case)[0]), next(t for t in case.tests if t.name == "bench")
+    network, test = thermal(standing(case)), next(t for t in case.tests if t.name == "bench")
     known = {p.name for p in network.parameters}
     values = {k: v for k, v in physical(case).items() if k in known}
     run = simulate(network, record(test, {}), values, keep_states=True)

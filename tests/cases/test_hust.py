@@ -110,9 +110,9 @@ def test_the_start_is_the_published_model(root, start, profile):
 
 def test_what_is_found_halves_every_error_of_the_published_model_on_profiles_never_used(folder, start, example):
     """What the case's README says is named, as `thermoscope model add` adds it."""
-    before = example.errors(start, "hold-out")
+    before = example.role_errors(start)[0]
     case = with_model(folder.case, calibrate(folder.case).model)
     for name in NAMED:
         case = with_model(case, add(case, name).model)
-    after = example.errors(compare(case), "hold-out")
+    after = example.role_errors(compare(case))[0]
     assert {c: after[c] <= 0.5 * before[c] for c in before} == dict.fromkeys(before, True)

@@ -16,6 +16,8 @@ from thermoscope.commands.use.export import export
 from thermoscope.export.c_code import c_files
 from thermoscope.export.drive import AGREES_K, Compiled, difference
 from thermoscope.export.model import Output, packed
+from validation.case import Reference
+from validation.parameters.reference import reference_of
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -31,7 +33,7 @@ def test_stiff_random_networks_agree(seed):
     Both integrators allow 0.01 K and 1e-4 of the range a step: they may differ by a few of these.
     """
     network, given = built(machine(seed, 25))
-    model = packed(network, {}, [Recorded(given)], states(network))
+    model = packed(network, {}, reference_of(network, [Recorded(given)]), states(network))
     reach = np.ptp(simulate(network, given, rows=[o.row for o in model.outputs]).y)
     assert difference(Compiled(model), network, given, {}) < AGREES_K + 5e-4 * reach
 
@@ -64,18 +66,18 @@ def test_a_table_that_begins_below_zero_minds_the_sign():
     signed = Fixed(0.4, Table((-40.0, -10.0, 0.0, 40.0), (5.0, 3.0, 1.0, 0.2)))
     network = net.extended([node_link(net, "s", "film", "body", "air", signed)], [])
     given = Record(given.time, {}, {"air": np.array([60.0, 60.0, 5.0, 5.0, 25.0])}, 20.0)
-    assert difference(Compiled(packed(network, {}, [], states(network))), network, given, {}) < 0.02
+    assert difference(Compiled(packed(network, {}, Reference(), states(network))), network, given, {}) < 0.02
 
 
 @pytest.mark.parametrize(("flags", "within"), [((), 0.02), (("-DTHERMAL_REAL=float",), 0.05)], ids=["double", "float"])
 def test_temperature_laws_jumps_and_single_precision(flags, within):
     network, given = curved()
-    assert difference(Compiled(packed(network, {}, [], states(network)), flags), network, given, {}) < within
+    assert difference(Compiled(packed(network, {}, Reference(), states(network)), flags), network, given, {}) < within
 
 
 def test_the_code_is_clean_c99_without_allocation(tmp_path):
     network, _ = curved()
-    for name, text in c_files(packed(network, {}, [], states(network))).items():
+    for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
         (tmp_path / name).write_text(text)
     warned = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-c", "thermal_network.c"]
     done = subprocess.run(["gcc", *warned], cwd=tmp_path, capture_output=True, text=True)
@@ -92,7 +94,7 @@ def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
     """Objects only: linking would first build each platform's C library, which takes minutes once."""
     pytest.importorskip("ziglang")
     network, _ = curved()
-    for name, text in c_files(packed(network, {}, [], states(network))).items():
+    for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
         (tmp_path / name).write_text(text)
     zig = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-std=c99", "-c", "thermal_network.c", "-o", "o"]
     done = subprocess.run(zig, cwd=tmp_path, capture_output=True, text=True)

@@ -22,6 +22,7 @@ from thermoscope.export.drive import AGREES_K, sampled, signals_of
 from thermoscope.export.fmu import fmu
 from thermoscope.export.model import exported, packed
 from thermoscope.verification.error_budget import model_of
+from validation.case import Reference
 from validation.comparison.predict import record
 
 fmpy = pytest.importorskip("fmpy")
@@ -99,7 +100,7 @@ class Slave:
 def test_stiff_steps_run_in_fmpy(tmp_path):
     """A node of a millionth of the other's capacity under 40 W, every temperature law, air that jumps by 15 K."""
     network, given = curved()
-    model = packed(network, {}, [], states(network))
+    model = packed(network, {}, Reference(), states(network))
     run, u = simulate(network, given, {}, [o.row for o in model.outputs]), signals_of(model, given)
     own = Slave(model, tmp_path, initial_state(network, given.initial), u[0]).over(given.time, u)
     assert np.abs(own - run.y).max() < AGREES_K
@@ -151,7 +152,7 @@ def test_the_reference_solver_runs_the_json(three):
 def test_json_says_the_same_flow_as_the_network():
     """All temperature laws: heat into every node at one state, against the terms' own formulas at 80 and 20 degC."""
     network, _ = curved()
-    said = json.loads(json.dumps(plain(document(packed(network, {}, [], states(network))))))
+    said = json.loads(json.dumps(plain(document(packed(network, {}, Reference(), states(network))))))
     F = solver().flow(said, np.array([80.0, 82.0]), {"air": 20.0})
     table = 0.2 * np.interp(60.0, [0, 1, 10, 100], [1, 2, 4, 6]) * 60.0
     film = 0.1 * np.interp(60.0, [0, 1, 10, 100], [1, 2, 4, 6]) * (1.0 + 0.05 * (50.0 + 60.0) / 20.0) * 60.0

@@ -18,9 +18,11 @@ from thermoscope.export.model import Output
 from thermoscope.export.observer_code import MOST_BYTES, observer_files, observer_model
 from thermoscope.verification.error_budget import model_of
 from validation.bands import parameter_posterior
+from validation.case import Reference
 from validation.observer import ProcessNoise, observer
 from validation.observer.process import Process, bodies_of
 from validation.observer.process_noise import of_doubt
+from validation.parameters.reference import reference_of
 
 pytestmark = pytest.mark.heavy
 
@@ -40,7 +42,8 @@ def made(tmp_path_factory):
     process, noise = Process(network, values, bodies_of(network)), ProcessNoise(table, 1200.0)
     looks = [Output(n, r) for n, r in mean_rows(network).items()]
     given = tests[0].channels
-    return observer_model(process, noise, np.sqrt(np.diag(table)), 20.0, given, tests, looks, np.array(BIAS_K))
+    ranges = reference_of(network, tests)
+    return observer_model(process, noise, np.sqrt(np.diag(table)), 20.0, given, ranges, looks, np.array(BIAS_K))
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +99,7 @@ def test_it_fits_on_a_controller(made, code):
 def test_an_observer_too_large_is_refused(made):
     sensors = [replace(made.sensors[0], name=f"T{i}") for i in range(60)]
     with pytest.raises(InputError, match="fewer sensors"):
-        observer_model(made.process, made.noise, made.table_sd, 20.0, sensors, (), made.model.outputs)
+        observer_model(made.process, made.noise, made.table_sd, 20.0, sensors, Reference(), made.model.outputs)
 
 
 def test_the_code_is_clean_c99_without_allocation(made, tmp_path):

@@ -25,7 +25,9 @@ ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_ai
 def case_key(folder: Folder) -> str:
     """Of everything that decides: the case's files, its recordings, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
-    content = hashlib.sha256(repr((model.effects, sorted(model.values.items()), model.revision)).encode())
+    content = hashlib.sha256(
+        repr((model.effects, sorted(model.values.items()), model.revision, model.reference)).encode()
+    )
     files = [settings.path / "case.toml", settings.network, *(f for e in settings.tests for f in (e.file, e.sheet))]
     for file in files:
         if file is not None and Path(file).is_file():

@@ -17,7 +17,7 @@ from validation.calibration.model_error import with_doubts
 from validation.case import Channel, Test
 from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import heat_model, record
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
@@ -40,7 +40,7 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     prior, as if apart from the others; and the model error of validation.calibration.model_error.
     """
     case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
-    network, values = heat_model(working(case)[0], case.model.values)
+    network, values = heat_model(standing(case), case.model.values)
     larger = with_doubts(network, case.doubt)[0]
     doubted = [p for p in larger.parameters if p.prior_sd > 0]
     end = simulate(larger, record(test, {}), values, tangents=doubted).end

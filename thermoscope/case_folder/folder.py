@@ -22,10 +22,10 @@ from thermoscope.recordings.formats import recording
 from thermoscope.recordings.readings import read_test, rows_of
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.recordings.tables import Samples, load_table
-from validation.case import AddedEffect, Case, LowFidelity, Model, Test
+from validation.case import Case, LowFidelity, Reference, Test
 from validation.counting import counted
 from validation.measurement.sampling import SampleStep
-from validation.parameters.unknowns import matching, working
+from validation.parameters.unknowns import case_reference, matching, standing, working
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -103,7 +103,7 @@ class Folder:
 
         case = self.case
         budget = self.budgets if "budgets" in vars(self) else budgets_of(self, [test])
-        judged = judged_error(working(case)[0], test, physical(case), case.doubt, dict(budget[test.name].total_K))
+        judged = judged_error(standing(case), test, physical(case), case.doubt, dict(budget[test.name].total_K))
         return {c.channel: c.limit_K for c in judged.channels if c.limit_K is not None}
 
 
@@ -141,13 +141,14 @@ def load_case(
     frees = {e.name: e.frees for e in settings.tests}
     tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
-    network = with_quantities(network, sheets, tests)
+    network = with_quantities(network, sheets, tests, history.reference)
     low = None
     if built and built.small:
-        low = _low_fidelity(network, with_quantities(built.small, sheets, tests), patients.values())
-    case = Case(settings.name, _model(network, history), tests, _free(network, settings), settings.doubt,
+        low = _low_fidelity(network, with_quantities(built.small, sheets, tests, history.reference), patients.values())
+    case = Case(settings.name, history.model(network, history.last), tests, _free(network, settings), settings.doubt,
                 history.last.answers, low)  # fmt: skip
     steps = {r.test.name: r.step for r in read}
+    notes = (*notes, *_assumed_reference(case, settings))
     return Folder(
         settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
     )
@@ -191,6 +192,17 @@ def _assumed(network: Network, settings: Settings) -> list[str]:
         where = str(settings.machine)
         raise InputError(f"{what}: nothing says what heated it in the tests", where, right)
     return [f"{what}: {ASSUMED_W:g} W in its windings are assumed; {right}"]
+
+
+def _assumed_reference(case: Case, settings: Settings) -> list[str]:
+    """A note on a file that does not say what its exponents refer to."""
+    if not case.model.values or case.model.reference is not None:
+        return []
+    levels = case_reference(case).levels
+    words = ", ".join(f"{n} {u:.4g}" for n, u in levels.items() if any(v.endswith(f"^{n}") for v in case.model.values))
+    return [f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
+            f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
+            ]  # fmt: skip
 
 
 def _allowing(test: Test, model_K: float) -> Test:
@@ -266,28 +278,27 @@ def load_machine_file(path: Path) -> Machine:
     )
 
 
-def _model(network: Network, history: History) -> Model:
-    last = history.last
-    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in last.effects)
-    return Model(network, effects, dict(last.values), last.number)
-
-
 def _checked(case: Case, history: History, settings: Settings) -> Case:
     """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
     from validation.calibration.staged_fit import fit_stages
     from validation.effects import effect
-    from validation.parameters.unknowns import scene_of, working
+    from validation.parameters.unknowns import scene_of
 
     where = f"{settings.model_file} revision {history.last.number}"
     try:
+        scene = scene_of(case)
+        reference = case.model.reference or Reference()
+        tests = (*scene.tests, *history.last.rmse_K, *reference.tests)
+        channels = (*scene.channels, *reference.errors)  # a model may speak of sensors and tests that have gone since
+        scene = replace(scene, inputs=scene.inputs.union(reference.signals), channels=channels, tests=tests)
         for one in case.model.effects:
-            effect(one.name, scene_of(case))
-        network, unknowns = working(case)
+            effect(one.name, scene)
+        network = standing(case)
     except InputError as fault:
         raise (
             fault if not case.model.effects else InputError(fault.what, f"{where}, {fault.where}", fault.right)
         ) from None
     checked_values(history.last, network.parameters, where)
     if any(test.frees for test in case.tests):
-        fit_stages(case, case.tests, unknowns)
+        fit_stages(case, case.tests, working(case)[1])
     return case

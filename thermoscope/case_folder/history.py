@@ -11,9 +11,11 @@ import tomlkit
 
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.model.network import Parameter
+from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import Table, suggestion
 from thermoscope.files import locked, write_whole
+from validation.case import AddedEffect, Model, Reference, SignalReference
+from validation.parameters.unknowns import measured
 
 ACTIONS = ("calibrate", "add", "remove", "answer", "step back")
 HEADER = "Written by thermoscope: one [[revision]] per step, the last one counts. Delete this file to start again."
@@ -28,6 +30,7 @@ class Revision:
     effects : in the model after this step;  values : parameter -> value;  intervals : parameter -> (low, high) 95 %
     rmse_K : test -> (before, after);  evidence : what spoke for the step
     answers : what the user was asked and said so far
+    reference : what exponents and effects refer to; None in files of before it was kept, and where nothing was fitted
     """
 
     number: int
@@ -40,6 +43,7 @@ class Revision:
     why: str = ""
     evidence: Mapping[str, float | str] = field(default_factory=dict)
     answers: Mapping[str, bool] = field(default_factory=dict)
+    reference: Reference | None = None
 
     def document(self) -> dict[str, Any]:
         """As model.toml holds it."""
@@ -51,6 +55,7 @@ class Revision:
         out["intervals"] = {k: [float(f"{x:.5g}") for x in pair] for k, pair in self.intervals.items()}
         out["rmse_K"] = {t: {"before": round(a, 4), "after": round(b, 4)} for t, (a, b) in self.rmse_K.items()}
         more = {"evidence": dict(self.evidence), "answers": dict(self.answers)}
+        more |= {"reference": _reference_document(self.reference)} if self.reference else {}
         return {**out, **{key: table for key, table in more.items() if table}}
 
 
@@ -63,6 +68,16 @@ class History:
     @property
     def last(self) -> Revision:
         return self.revisions[-1] if self.revisions else Revision(0, "calibrate")
+
+    @property
+    def reference(self) -> Reference | None:
+        """The newest that was kept: a model that went back to its beginning refers to the same."""
+        return next((r.reference for r in reversed(self.revisions) if r.reference is not None), None)
+
+    def model(self, network: Network, revision: Revision) -> Model:
+        """The model after one of the revisions."""
+        effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
+        return Model(network, effects, dict(revision.values), revision.number, revision.reference or self.reference)
 
     def and_then(self, revision: Revision) -> History:
         """One revision more; what the user answered stays."""
@@ -134,6 +149,8 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
         if name not in revision.values:
             raise InputError(f"intervals: '{name}' has no value", place, suggestion(name, revision.values))
     for name, value in revision.values.items():
+        if measured(name):
+            continue  # of a sensor or test that may have gone since; its bounds are those of the tests
         if name not in have:
             raise InputError(f"unknown parameter '{name}'", place, suggestion(name, have))
         low, high = have[name].low, have[name].high
@@ -147,8 +164,49 @@ def _revision(table: Table) -> Revision:
         int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
         table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
         _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
-        _answers(_inner(table, "answers")),
+        _answers(_inner(table, "answers")), _reference(_inner(table, "reference")),
     )  # fmt: skip
+    table.close()
+    return out
+
+
+def _reference_document(of: Reference) -> dict[str, Any]:
+    """As model.toml holds it: what is not known is left out."""
+    signals = {name: {k: v for k, v in vars(one).items() if v is not None and v is not False and v != ""}
+               for name, one in of.signals.items()}  # fmt: skip
+    errors = {n: {"rmse_K": float(f"{error:.4g}"), "role": role} for n, (error, role) in of.errors.items()}
+    start = {} if of.start_C is None else {"start_C": of.start_C}
+    tables = {"sizes": dict(of.sizes), "signals": signals, "errors": errors}
+    return {"tests": list(of.tests), **start, **{key: table for key, table in tables.items() if table}}
+
+
+def _reference(table: Table) -> Reference | None:
+    if not table.data:
+        return None
+    signals, errors, sizes = (_inner(table, key) for key in ("signals", "errors", "sizes"))
+    out = Reference(
+        {name: _signal(_inner(signals, name)) for name in signals.data}, sizes.constants("sizes"),
+        table.words("tests", []), {name: _error(_inner(errors, name)) for name in errors.data},
+        _optional(table, "start_C"),
+    )  # fmt: skip
+    table.close()
+    return out
+
+
+def _signal(table: Table) -> SignalReference:
+    low, high = table.number("low"), table.number("high")
+    out = SignalReference(table.number("level"), low, high, _optional(table, "at_load"), table.word("quantity", ""),
+                          table.flag("machine", False))  # fmt: skip
+    table.close()
+    return out
+
+
+def _optional(table: Table, key: str) -> float | None:
+    return table.number(key) if key in table.data else None
+
+
+def _error(table: Table) -> tuple[float, str]:
+    out = table.number("rmse_K"), table.word("role")
     table.close()
     return out
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lumped.integration.balance import balance
 from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from viz.viewer.network import NetworkRun
@@ -21,7 +21,7 @@ def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRu
     from viz.figures.flows import heat_flows, last_running_step
     from viz.viewer.network import NetworkRun
 
-    (network, values), run = heat_model(working(case)[0], case.model.values), record(test, {})
+    (network, values), run = heat_model(standing(case), case.model.values), record(test, {})
     heat = balance(network, run, values)
     at = np.searchsorted(heat.time, times).clip(1, heat.time.size - 1)
     mean = {n: heat.z[at, i] for i, n in enumerate([*network.states, *network.boundaries])}

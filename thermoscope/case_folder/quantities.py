@@ -10,21 +10,28 @@ import numpy as np
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
 from thermoscope.recordings.sheet import Sheet
-from validation.case import Test
+from validation.case import Reference, Test
 
 
-def with_quantities(network: Network, sheets: Iterable[Sheet], tests: Sequence[Test]) -> Network:
-    """The network with what its sheets say of the inputs; what network.toml says of them stands."""
+def with_quantities(
+    network: Network, sheets: Iterable[Sheet], tests: Sequence[Test], reference: Reference | None = None
+) -> Network:
+    """The network with what its sheets say of the inputs; what network.toml says of them stands.
+
+    reference : what the model said when it was fitted goes before what the tests say now
+    """
     by_name: dict[str, str] = {}
     for sheet in sheets:
         columns = {c.name: c.quantity for c in sheet.columns}
         by_name |= {c.feeds: c.quantity for c in sheet.columns if c.feeds}
         by_name |= {name: columns[of[0]] for name, of in sheet.squares.items() if of}
+    signals_then = reference.signals if reference else {}
+    by_name |= {name: one.quantity for name, one in signals_then.items() if one.quantity}
     network = replace(network, quantities={**by_name, **network.quantities})
     training = [t for t in tests if t.role != "hold-out"] or list(tests)
-    return replace(
-        network, signals={q: name for q in INPUTS if (name := _largest_of(network, training, q)) is not None}
-    )
+    signals = {q: name for q in INPUTS if (name := _largest_of(network, training, q)) is not None}
+    signals |= {one.quantity: name for name, one in signals_then.items() if one.machine}
+    return replace(network, signals=signals)
 
 
 def _largest_of(network: Network, tests: Sequence[Test], quantity: str) -> str | None:

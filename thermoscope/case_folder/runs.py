@@ -21,11 +21,11 @@ from thermoscope.caches import cache_folder, recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
-from validation.case import AddedEffect, Case, Channel, Test
+from validation.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
-from validation.parameters.unknowns import effects_of, to_value, working
+from validation.parameters.unknowns import effects_of, standing, to_value, working
 from validation.threads import side_by_side
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ def _of_revisions(folder: Folder) -> list[tuple[Revision, Case]]:
 
 
 def _at_revision(folder: Folder, revision: Revision) -> Case:
-    effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
-    model = replace(folder.case.model, effects=effects, values=dict(revision.values), revision=revision.number)
+    model = folder.history.model(folder.case.model.network, revision)
     return replace(folder.case, model=model, answers=revision.answers)
 
 
@@ -72,13 +71,13 @@ def before_last(folder: Folder) -> Case | None:
 
 def readings(case: Case, test: Test) -> dict[str, Array]:
     """Channel -> (n_time,) degC, what its sensor would read; sensors' fitted biases are left out."""
-    y = predict(working(case)[0], test, physical(case)).y
+    y = predict(standing(case), test, physical(case)).y
     return {channel.name: y[:, j] for j, channel in enumerate(test.channels)}
 
 
 def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     """Mean temperatures (degC) of places at the end of a test, by the model of a case."""
-    network, values = heat_model(working(case)[0], case.model.values)
+    network, values = heat_model(standing(case), case.model.values)
     rows = mean_rows(network)
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
@@ -179,7 +178,7 @@ def _range_in(file: Path) -> tuple[float, float]:
 
 def _run(case: Case, test: Test) -> tuple[Network, Run]:
     """A run of a case's model with all its states; the last two of a test are remembered: now, and a step before."""
-    network, values = heat_model(working(case)[0], case.model.values)
+    network, values = heat_model(standing(case), case.model.values)
     for of, at, run in tuple(_last_runs(test)):
         if of is network and at == values:
             return network, run

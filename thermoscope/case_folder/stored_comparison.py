@@ -18,7 +18,7 @@ from thermoscope.case_folder.content import result_key
 from validation.comparison.compare import ChannelError, Comparison, TestError, compare, physical
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -53,7 +53,7 @@ def _file(folder: Folder) -> Path:
 
 
 def _archive(folder: Folder, result: Comparison) -> bytes:
-    network, values = working(folder.case)[0], physical(folder.case)
+    network, values = standing(folder.case), physical(folder.case)
     readings = [predict(network, test, values).y for test in folder.case.tests]  # the runs are remembered
     document = {
         "tests": [asdict(test) for test in result.tests],

@@ -22,7 +22,7 @@ from thermoscope.case_folder.runs import named_rows
 from thermoscope.case_folder.settings import Settings
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.machine_keys import FLOWS, MachineFile
-from thermoscope.rating import places, rated_point
+from thermoscope.rating import places, usual_point
 from thermoscope.recordings.sheet import Sheet, load_sheet
 from thermoscope.verification.error_budget import model_of
 from validation.bands.at_rest import AtRest
@@ -63,7 +63,7 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     """
     network, values = model_of(folder)
     file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
-    op = operation(network, folder.case.tests, request.at or {}, (), rated_point(folder, network))
+    op = operation(network, usual_point(folder, network), request.at or {})
     sections = {} if file is None else file.sections
     series = file is not None and file.machine.features.series is not None
     electrics = electrics_of(series, sections.get("ratings", {}), sections.get("losses", {}))

@@ -16,22 +16,23 @@ from lumped.model.network import Network, Row
 from lumped.numerics.terms import Terms
 from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import named_rows
+from thermoscope.case_folder.runs import mean_rows, sensors
 from thermoscope.export.products import Product, Sum
 from thermoscope.export.tables import Ranges, factors
 from thermoscope.recordings.units import QUANTITIES
 from thermoscope.verification.error_budget import model_of
-from validation.case import RUNNING, Test
+from validation.case import RUNNING, Reference
 from validation.comparison.compare import errors
+from validation.parameters.unknowns import standing_reference
 
 Array = NDArray[np.float64]
 USUAL_C = 20.0  # where a run starts unless it is told
-WIDER = 1.5  # tables of unknown laws reach that much beyond what the tests recorded
+WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded
 
 
 @dataclass(frozen=True)
 class Signal:
-    """An input of a law, or a boundary temperature.  low, high : over all tests; None where no test records it"""
+    """An input of a law, or a boundary temperature.  low, high : over the fitted tests; None where none records it"""
 
     name: str
     unit: str
@@ -43,7 +44,8 @@ class Signal:
 class Output:
     """A temperature (degC).  row : over z = [x; u];  limit : degC, if one was given
 
-    error_K, role : root mean square against the readings of the tests of that role, where a sensor sits
+    error_K, role : root mean square against the readings of the tests of that role, where a sensor sits, when the
+    model was fitted
     low, high : reached by the model in the tests
     """
 
@@ -88,28 +90,29 @@ class Model:
 def exported(folder: Folder, limits: Mapping[str, float]) -> Model:
     """The model of a case as it stands. Raises InputError for a law that has no form outside this tool."""
     network, values = model_of(folder)
-    model = packed(network, values, folder.case.tests, outputs(network, folder, limits))
+    model = packed(network, values, standing_reference(folder.case), outputs(network, folder, limits))
     effects = tuple(e.name for e in folder.case.model.effects)
     return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects)
 
 
-def packed(network: Network, values: Mapping[str, float], tests: Sequence[Test], looks: Sequence[Output]) -> Model:
-    """A network at some values of its parameters; tests: which ranges of inputs it was held against."""
+def packed(network: Network, values: Mapping[str, float], reference: Reference, looks: Sequence[Output]) -> Model:
+    """A network at some values of its parameters; reference: which ranges of inputs it was fitted over."""
     every, m = assembly(network), multipliers(network, values)
     acting = np.array([m.get(name, 1.0) for name in every.names])
     steady = np.array([not p.bends and not p.law.reads for p in every.patterns], bool)
     live = ~steady & (acting != 0.0)
     constant = [float(p.law.factor({})) if s else 0.0 for p, s in zip(every.patterns, steady, strict=True)]
-    names = _read(every, live)
+    inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in _read(every, live))
     hidden = np.array(["#" in s for s in network.states], bool)
     return Model(
         network.name, 0, (), network.states, network.C * capacity_multipliers(network, m),
         every.matrix(acting * np.array(constant)), every.packed(live, steady),
         tuple(n for n, on in zip(every.names, live, strict=True) if on),
-        tuple(_factors(every, live, acting, _reaches(tests, names))),
-        tuple(Signal(n, unit_of(network, n), *_range(tests, n)) for n in names),
-        tuple(Signal(b, "degC", *_range(tests, b)) for b in network.boundaries),
-        tuple(looks), state_units(network), (~hidden).astype(np.int64), initial_degC=_initial(tests),
+        tuple(_factors(every, live, acting, _reaches(inputs))),
+        inputs,
+        tuple(Signal(b, "degC", *_range(reference, b)) for b in network.boundaries),
+        tuple(looks), state_units(network), (~hidden).astype(np.int64),
+        initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
     )  # fmt: skip
 
 
@@ -117,14 +120,15 @@ def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:
     return sorted({name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads})
 
 
-def _reaches(tests: Sequence[Test], names: Sequence[str]) -> Ranges:
+def reach_of(signal: Signal) -> float:
+    """How far tables of an input reach, either way of zero."""
+    return WIDER * max(abs(signal.low or 0.0), abs(signal.high or 0.0))
+
+
+def _reaches(signals: Sequence[Signal]) -> Ranges:
     """Input -> how far tables have to reach; what marks a single test is no input."""
-    out = {}
-    for name in names:
-        low, high = _range(tests, name)
-        if name not in {f"{RUNNING}{t.name}" for t in tests}:
-            out[name] = (WIDER * min(low or 0.0, 0.0), WIDER * max(high or 0.0, 0.0))
-    return out
+    reach = {s.name: (s, reach_of(s)) for s in signals if not s.name.startswith(RUNNING)}
+    return {name: (-end if s.low and s.low < 0.0 else 0.0, end) for name, (s, end) in reach.items()}
 
 
 def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
@@ -136,11 +140,9 @@ def _times(one: Product, by: float) -> Product:
     return replace(one, coefficient=by * one.coefficient)
 
 
-def _range(tests: Sequence[Test], name: str) -> tuple[float | None, float | None]:
-    series = [np.asarray(u, float) for t in tests for n, u in {**t.inputs, **t.boundaries}.items() if n == name]
-    if not series:
-        return None, None
-    return min(float(u.min()) for u in series), max(float(u.max()) for u in series)
+def _range(reference: Reference, name: str) -> tuple[float | None, float | None]:
+    one = reference.signals.get(name)
+    return (None, None) if one is None else (one.low, one.high)
 
 
 def unit_of(network: Network, name: str) -> str:
@@ -150,30 +152,15 @@ def unit_of(network: Network, name: str) -> str:
     return next(iter(units), "1")
 
 
-def _initial(tests: Sequence[Test]) -> float:
-    """Where the first test starts."""
-    first = tests[0].initial if tests else USUAL_C
-    return float(np.mean(list(first.values()))) if isinstance(first, Mapping) else float(first)
-
-
 def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
-    """All named temperatures with their limits and, where a sensor sits, their proven error."""
-    rows, errors = named_rows(network, folder), _errors(folder)
+    """All named temperatures with their limits and, where a sensor sits, its error when the model was fitted."""
+    case = folder.case
+    of_sensors = (
+        errors(case).sensor_errors if case.model.reference is None and case.tests else standing_reference(case).errors
+    )
+    error_of = {f"sensor {name}": error for name, error in of_sensors.items()}
+    rows = mean_rows(network) | {f"sensor {n}": c.row for n, c in sorted(sensors(folder).items())}
     for place in limits:
         if place not in rows:
             raise InputError(f"no temperature '{place}' to limit", "--limit", suggestion(place, rows))
-    return tuple(Output(n, row, limits.get(n), *errors.get(n, (None, ""))) for n, row in rows.items())
-
-
-def _errors(folder: Folder) -> dict[str, tuple[float | None, str]]:
-    """Sensor -> rms error (K) over the tests of the strictest role that has any, and that role."""
-    if not folder.case.tests:
-        return {}
-    rows = [(t.role, c) for t in errors(folder.case).tests for c in t.channels]
-    out: dict[str, tuple[float | None, str]] = {}
-    for role in ("calibrate", "validate", "hold-out"):
-        for name in dict.fromkeys(c.channel for r, c in rows if r == role):
-            channels = [c for r, c in rows if r == role and c.channel == name]
-            square = np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])
-            out[f"sensor {name}"] = float(np.sqrt(square)), role
-    return out
+    return tuple(Output(n, row, limits.get(n), *error_of.get(n, (None, ""))) for n, row in rows.items())

@@ -15,7 +15,7 @@ from lumped.sources.loss_measured import MeasuredLoss
 from thermoscope.escapes import c_comment
 from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
 from thermoscope.export.model import Model, Output, packed
-from validation.case import Channel, Test
+from validation.case import Channel, Reference
 from validation.doubt import TEMPER, USUAL
 from validation.effects.build import heat
 from validation.observer import hypotheses as tests_of
@@ -63,11 +63,11 @@ class ObserverModel:
 
 def observer_model(
     process: Process, noise: ProcessNoise, table_sd: Array, rise_K: float, sensors: Sequence[Channel],
-    tests: Sequence[Test], looks: Sequence[Output], bias: Array | None = None,
+    reference: Reference, looks: Sequence[Output], bias: Array | None = None,
 ) -> ObserverModel:  # fmt: skip
     """Raises InputError where it would not fit on a controller."""
     network, names = with_missing_heat(process.network, process.bodies)
-    model = packed(network, process.values, tests, looks)
+    model = packed(network, process.values, reference, looks)
     off = np.zeros(len(sensors)) if bias is None else bias
     result = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
     if result.bytes > MOST_BYTES:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.transfer.laws import Inputs, Law
+from lumped.transfer.ranges import within_silence
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import Mapped, Product, Sum, Tabulated
 from validation.parameters.model_form import FARTHEST, ExponentError
@@ -22,6 +23,7 @@ Ranges = Mapping[str, tuple[float, float]]
 TOLERANCE = 2e-4  # of the largest factor: a table adds as little as the parabolas of a simulation miss
 FIRST, FINEST = 17, 4097  # points of a table
 GRID = 65  # points from 0 along each input of a table of two
+DOUBLINGS = 10  # a thousand times the level: a root of the third order has grown tenfold there
 CHECKED = np.array([0.25, 0.5, 0.75])  # of every cell
 
 
@@ -36,10 +38,24 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
         if one not in ranges:
             raise _refused(f"'{name}' follows '{one}', which belongs to one test and not to the machine")
     if isinstance(law, ExponentError):
-        turn = _line(name, ExponentRatio(law), law.input, ranges)
+        turn = _line(name, ExponentRatio(law), law.input, {law.input: saturated(law, *ranges[law.input])})
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
     expansion = expanded(law)
     return _table(name, law, ranges) if isinstance(expansion, Unknown) else expansion
+
+
+def saturated(law: ExponentError, low: float, high: float) -> tuple[float, float]:
+    """The range of an input wide enough that beyond it the ratio of an exponent does not change, as far as it ever is.
+
+    A table that ended with the tests' range would be another model beyond it.
+    """
+    ratio, end = ExponentRatio(law), max(abs(low), abs(high), law.reference[law.input])
+    with within_silence():  # a table reaches beyond what correlations know; whoever runs there is told
+        for _ in range(DOUBLINGS):
+            if float(np.abs(ratio.factor({law.input: np.array([end])}))[0]) >= FARTHEST:
+                break
+            end *= 2.0
+    return (-end if low < 0.0 else 0.0), end
 
 
 def _refused(what: str) -> InputError:

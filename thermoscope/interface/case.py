@@ -63,9 +63,9 @@ class Case:
     @property
     def network(self) -> Network:
         """The network with the effects that were added."""
-        from validation.parameters.unknowns import working
+        from validation.parameters.unknowns import standing
 
-        return working(self.folder.case)[0]
+        return standing(self.folder.case)
 
     @property
     def effects(self) -> tuple[str, ...]:

@@ -34,7 +34,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     """What the calibration tests taught; from the cache where this very case was looked at before."""
     network, values = model_of(folder)
     network = narrowed(network, values, folder.case)
-    tests = [t for t in folder.case.tests if t.role == "calibrate"]
+    tests = [t for t in folder.case.fitted if t.role == "calibrate"]
     file = cache_folder() / f"observer-{LAYOUT}-{case_key(folder)}.npz"
     cached = recalled_result(file, _from_cache)
     if cached is not None:

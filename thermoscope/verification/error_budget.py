@@ -18,7 +18,7 @@ from lumped.model.network import Array, Network, Row
 from validation.case import Channel, Test
 from validation.comparison.predict import heat_model, record
 from validation.counting import counted
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder, Progress
@@ -66,7 +66,7 @@ def _record(test: Test) -> Record:
 
 def model_of(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    return heat_model(working(folder.case)[0], folder.case.model.values)
+    return heat_model(standing(folder.case), folder.case.model.values)
 
 
 def _of_run(

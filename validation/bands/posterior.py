@@ -16,7 +16,7 @@ offset, which no reading shows where there is no sensor. Source: Laplace's appro
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ from validation.comparison.linearisation import Segment, segments
 from validation.comparison.moved_inputs import FLOWS, moved_inputs
 from validation.doubt import Doubt
 from validation.measurement.operators import of_measurement
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import nuisances, working
 from validation.threads import one_blas_thread
 
 Array = NDArray[np.float64]
@@ -89,10 +89,9 @@ def silent(message: str) -> None:
 @one_blas_thread
 def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
     """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
-    network, unknowns = working(case)
+    tests = case.fitted if case.model.revision else ()
+    network, unknowns = working(replace(case, tests=tests or case.tests))
     values = parameter_values(network, case.model.values)
-    roles = ("calibrate", "validate") if case.model.effects else ("calibrate",)
-    tests = [t for t in case.tests if t.role in roles] if case.model.revision else []
     larger, doubts = with_doubts(network, case.doubt, tests or case.tests)
     of_network = tuple(p.name for p in doubts)
     if not tests:
@@ -106,8 +105,10 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(larger, doubts, tests[0], values, fit, case.doubt), *inputs)
     covariance, offset = joint(fit, inputs)
+    have = {p.name for p in larger.parameters}
+    others = [p for p in nuisances(network, case.tests, case.doubt) if p.name not in have]  # starts of other tests
     return ParameterPosterior(
-        larger,
+        replace(larger, parameters=(*larger.parameters, *others)),
         values,
         names,
         covariance,
@@ -176,8 +177,9 @@ def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter
     cores = {p.name for p in with_core.parameters[len(of.network.parameters) :]}
     doubts = cores | set(of.doubts)
     free = tuple(
-        p for p in with_core.parameters if p.name in doubts or (p.name in of.names and not _of_sensor(p, test))
-    )
+        p for p in with_core.parameters
+        if p.name in doubts or ((p.name in of.names or of_measurement(p)) and not _of_sensor(p, test))
+    )  # fmt: skip
     return with_core, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
 
 

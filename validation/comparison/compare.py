@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.counting import counted
 from validation.doubt import USUAL, Doubt
-from validation.parameters.unknowns import nuisances, working
+from validation.parameters.unknowns import measured, standing
 
 Budget = Mapping[str, float]
 
@@ -27,6 +27,7 @@ class ChannelError:
     """Error of one sensor in one test, measured - model (K).
 
     percent_of_rise : rmse over the largest rise measured in the test;  u_input_K, u_numeric_K : standard uncertainties
+    fitted_rmse_K : the same with the biases, slopes, lags, starts and clocks of the fit; None before a fit
     limit_K : expanded uncertainty, see validation.comparison.uncertainty; None where only the errors were asked for
     verdict : "within" when rmse is no more than limit_K, "over" when it is, "unknown" without a limit
     """
@@ -42,6 +43,7 @@ class ChannelError:
     limit_K: float | None = None
     u_input_K: float | None = None
     u_numeric_K: float | None = None
+    fitted_rmse_K: float | None = None
 
     @property
     def verdict(self) -> str:
@@ -68,13 +70,19 @@ class TestError:
         return pooled(self.channels)
 
     @property
+    def fitted_rmse_K(self) -> float | None:
+        """The error with sensors as the fit has them; None before a fit."""
+        return _fitted(self.channels)
+
+    @property
     def over(self) -> int:
         """How many sensors are off by more than is uncertain."""
         return sum(c.verdict == "over" for c in self.channels)
 
     def document(self) -> dict:
         rows = [c.document() for c in self.channels]
-        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "channels": rows}
+        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "fitted_rmse_K": self.fitted_rmse_K,
+                "channels": rows}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -111,6 +119,21 @@ class Comparison:
         return pooled([c for t in self.tests for c in t.channels])
 
     @property
+    def fitted_rmse_K(self) -> float | None:
+        """The same with sensors as the fit has them; None before a fit."""
+        return _fitted([c for t in self.tests for c in t.channels])
+
+    @property
+    def sensor_errors(self) -> dict[str, tuple[float, str]]:
+        """Sensor -> rms error (K) over the tests of the strictest role that has any, and that role."""
+        rows = [(t.role, c) for t in self.tests for c in t.channels]
+        return {
+            name: (pooled([c for r, c in rows if (r, c.channel) == (role, name)]), role)
+            for role in ("calibrate", "validate", "hold-out")
+            for name in sorted({c.channel for r, c in rows if r == role})
+        }
+
+    @property
     def floor_K(self) -> float:
         channels = [c for t in self.tests for c in t.channels]
         return float(np.sqrt(np.average([c.sigma_K**2 for c in channels], weights=[c.n for c in channels])))
@@ -131,6 +154,7 @@ class Comparison:
             "model": {"revision": self.revision, "effects": list(self.effects)},
             "tests": [t.document() for t in self.tests],
             "rmse_K": self.rmse_K,
+            "fitted_rmse_K": self.fitted_rmse_K,
             "floor_K": self.floor_K,
             "words": self.words,
             "roles": [
@@ -146,17 +170,22 @@ class Comparison:
         }
 
 
-def pooled(channels: list[ChannelError] | tuple[ChannelError, ...]) -> float:
+def pooled(channels: Sequence[ChannelError]) -> float:
     """Root mean square error (K) over all readings of several channels."""
     if not channels:
         return float("nan")
     return float(np.sqrt(np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])))
 
 
+def _fitted(channels: Sequence[ChannelError]) -> float | None:
+    rows = [replace(c, rmse_K=c.fitted_rmse_K) for c in channels if c.fitted_rmse_K is not None]
+    return pooled(rows) if rows else None
+
+
 def compare(
     case: Case, values: Mapping[str, float] | None = None, budgets: Mapping[str, Budget] | None = None
 ) -> Comparison:
-    """Run the model as it stands on every test. Fitted sensor biases are not used: the raw reading counts.
+    """Run the model as it stands on every test. The raw reading counts; what sensors as fitted leave stands beside it.
 
     budgets : test -> channel -> what the model's own numbers may be wrong by (K), see `uncertainties`
     """
@@ -183,16 +212,17 @@ def errors(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
 def _of_every_test(
     case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError], tests: Iterable[Test]
 ) -> Comparison:
-    network, _ = working(case)
-    now = physical(case, values)
+    network, now = standing(case), physical(case, values)
     effects, rows = tuple(e.name for e in case.model.effects), list[TestError]()
+    sensors_fitted = values is None and len(now) < len(case.model.values)
 
     def comparison() -> Comparison:
         return Comparison(case.name, case.model.revision, effects, tuple(rows), case.model.network.identities)
 
     try:
         for test in tests:
-            rows.append(error_of(network, test, now))
+            error = error_of(network, test, now)
+            rows.append(_with_sensors(network, test, error, case.model.values) if sensors_fitted else error)
     except KeyboardInterrupt:
         if rows:
             raise StoppedComparisonError(comparison()) from None
@@ -202,8 +232,13 @@ def _of_every_test(
 
 def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:
     """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start."""
-    measured = {p.name for p in nuisances(case.model.network, case.tests)}
-    return {k: v for k, v in (case.model.values if values is None else values).items() if k not in measured}
+    return {k: v for k, v in (case.model.values if values is None else values).items() if not measured(k)}
+
+
+def _with_sensors(network: Network, test: Test, error: TestError, values: Mapping[str, float]) -> TestError:
+    """The errors beside what is left of them with sensors, boundaries, start and clock as the fit has them."""
+    fitted = {row.channel: row.rmse_K for row in _rows(test, _checked(network, test, values))}
+    return replace(error, channels=tuple(replace(c, fitted_rmse_K=fitted[c.channel]) for c in error.channels))
 
 
 def judged_error(

@@ -13,10 +13,10 @@ from validation.comparison.residuals import Pattern, patterns
 from validation.conditions.contradiction import Contradiction, contradiction
 from validation.conditions.robust import quiet_fit
 from validation.conditions.windows import pulses
-from validation.inference.evidence import calibrated_case, diagnosing
+from validation.inference.evidence import calibrated_case
 from validation.inference.missing_heat import MissingHeat, missing_heat
 from validation.inference.multifidelity import at_low_fidelity
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.threads import one_blas_thread
 
 
@@ -42,11 +42,11 @@ class Discrepancy:
 @one_blas_thread
 def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> Discrepancy:
     """The model as it stands; the scan for heat is made after calibration, or it would find what calibration mends."""
-    network, _ = working(case)
+    network = standing(case)
     now = physical(case)
     left = patterns(segments(network, case.tests, now), case.tests)
     case = at_low_fidelity(case, progress)
-    tests = diagnosing(case)
+    tests = case.usable
     fit = quiet_fit(calibrated_case(case, progress), tests)
     progress("looking for where heat is missing")
     return Discrepancy(tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))

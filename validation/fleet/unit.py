@@ -19,7 +19,7 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from validation.calibration.calibrate import minimise
 from validation.case import Case, Test
-from validation.parameters.unknowns import to_coordinate, working
+from validation.parameters.unknowns import standing_reference, to_coordinate, working
 
 Array = NDArray[np.float64]
 CAPACITY_YEAR, LOSS_YEAR = 0.005, 0.03  # masses stay, magnets and sheets age by per cents (of the logarithm)
@@ -62,7 +62,8 @@ class UnitHistory:
 
 def statistics(case: Case, test: Test) -> Statistics:
     """Of a recording, for the parameters that the case leaves free, and its effects, from the model as it stands."""
-    one = replace(case, tests=(replace(test, role="calibrate"),))
+    model = replace(case.model, reference=standing_reference(case))  # one for all recordings of a fleet
+    one = replace(case, model=model, tests=(replace(test, role="calibrate"),))
     network, unknowns = working(one)
     free = {p.name for p in (case.nuisances or case.model.network.parameters)} | {e.name for e in case.model.effects}
     values = parameter_values(network, case.model.values)

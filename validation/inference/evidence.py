@@ -29,7 +29,8 @@ from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, grams, score, total
 from validation.measurement.noise import Noise, fit_noise
-from validation.parameters.unknowns import Unknowns, at_level, scene_of, widened, working
+from validation.parameters.reference import effect_sizes
+from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, widened, working
 
 Array = NDArray[np.float64]
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
@@ -98,11 +99,6 @@ class Evidence:
         return tuple(replace(s, J=s.J[:, columns]) for s in self.parts)
 
 
-def diagnosing(case: Case) -> tuple[Test, ...]:
-    """The tests an effect may be chosen on: all but the held-out ones."""
-    return tuple(t for t in case.tests if t.role != "hold-out")
-
-
 def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
     """The catalogue on this case, less what the model has already."""
     inside = {e.name for e in case.model.effects}
@@ -118,7 +114,7 @@ def calibrated_case(
 ) -> Fit:
     """The model calibrated on every test but the held-out ones, model error in account."""
     network, unknowns = working(case)
-    values, tests = {**case.model.values, **(start or {})}, diagnosing(case)
+    values, tests = {**case.model.values, **(start or {})}, case.usable
     fixed = parameter_values(network, values)
     plain = calibrated(network, tests, unknowns, values, 1, progress, rough=True)
     return with_model_error(plain, tests, fixed, case.doubt, ROUNDS)
@@ -126,10 +122,12 @@ def calibrated_case(
 
 def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     """One run of every test with all candidates' tangents at a calibrated state."""
-    network = at_level(extended(fit.network, effects), {e.name for e in effects}, case.tests)
+    network, names = extended(fit.network, effects), {e.name for e in effects}
+    sizes = effect_sizes(network, names, case.usable)
+    network = at_level(network, names, replace(case_reference(case), sizes=sizes))
     by_name = {p.name: p for p in network.parameters}
     parameters = tuple(by_name[e.name] for e in effects)
-    tests, p = diagnosing(case), len(fit.unknowns.parameters)
+    tests, p = case.usable, len(fit.unknowns.parameters)
     values = {**parameter_values(network, case.model.values), **fit.values}
     parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
     exchange(parts, effects, p)

@@ -45,14 +45,11 @@ def at_low_fidelity(case: Case, progress: Callable[[str], None] = no_progress) -
 
 
 def corrected(case: Case, values: Mapping[str, float]) -> Case:
-    """The case on its small network, its readings corrected at some values; as it is where there is none.
-
-    Values are those of the training's networks: where an exponent acts about depends on the tests that are there.
-    """
+    """The case on its small network, its readings corrected at some values; as it is where there is none."""
     small = case.small
     if small is case:
         return case
-    large, less = (working(each.training())[0] for each in (case, small))
+    large, less = (working(each)[0] for each in (case, small))
     gaps = _gaps(large, case.tests, less, small.tests, values)
     return replace(small, tests=tuple(_less(test, gap) for test, gap in zip(small.tests, gaps, strict=True)))
 
@@ -67,7 +64,7 @@ def fidelity_error(case: Case, small: Case, posterior: Posterior) -> dict[str, f
     e, h = posterior.evidence, posterior.best
     network, _, fixed = with_members(e, h.members)
     values = {**fixed, **(h.fit.values if h.fit else e.fit.values)}
-    large = extended(working(case.training())[0], [e.effects[k] for k in h.members])
+    large = extended(working(case)[0], [e.effects[k] for k in h.members])
     by_name = {t.name: t for t in case.tests}
     tests = [by_name[t.name] for t in e.tests]
     out: dict[str, float] = {}

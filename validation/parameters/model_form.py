@@ -19,6 +19,7 @@ from lumped.transfer.laws import (
     CONSTANT,
     FilmTable,
     Inputs,
+    Law,
     Linear,
     Power,
     Table,
@@ -26,7 +27,7 @@ from lumped.transfer.laws import (
     WithTemperature,
     Wrapped,
 )
-from validation.case import Test
+from lumped.transfer.ranges import within_silence
 from validation.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
@@ -79,43 +80,57 @@ def _turn(difference: Array) -> Array:
     return np.log(np.clip(difference / REFERENCE_RISE_K, 0.1, 10.0))
 
 
-def levels(tests: Sequence[Test]) -> dict[str, float]:
-    """Root mean square of every input over all tests that record it; inputs that are zero throughout are left out."""
-    names = dict.fromkeys(name for t in tests for name in t.inputs)
-    values = {n: np.concatenate([t.inputs[n] for t in tests if n in t.inputs]) for n in names}
-    level = {n: float(np.sqrt(np.nanmean(np.square(v)))) for n, v in values.items()}
-    return {n: v for n, v in level.items() if v > 0}
-
-
-def varied(tests: Sequence[Test], name: str) -> bool:
-    """Does an input change within or between tests by more than a tenth of its level?"""
-    v = np.abs(np.concatenate([t.inputs[name] for t in tests if name in t.inputs]))
-    return bool(np.ptp(v) > 0.1 * np.mean(v))
-
-
 def with_model_form(
-    network: Network, tests: Sequence[Test], added: Collection[str] = (), doubt: Doubt = USUAL
+    network: Network,
+    level: Mapping[str, float],
+    values: Mapping[str, int],
+    parameters: Collection[str] = (),
+    added: Collection[str] = (),
+    doubt: Doubt = USUAL,
 ) -> tuple[Network, tuple[str, ...]]:
     """The network with its form nuisances, and their names.
 
+    level : input -> where the laws are right;  values : input -> how many values it takes, see `value_counts`
+    parameters : names of those of the model: an exponent that was fitted stays, whatever is recorded now
     added : effects that are in the model: their laws are no truer than the model's own
     """
-    level, before = levels(tests), {p.name for p in network.parameters}
-    moving = {n for n in level if varied(tests, n)}
-    first = first_of(network)
+    before, first = {p.name for p in network.parameters}, first_of(network)
     for p in network.parameters:
         if p.mapping == "log" or p.name in added:
             links = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in links if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
             laws = [x.law for x in films] + [x.law for x in losses]
-            for name in dict.fromkeys(r for law in laws for r in law.reads if r in moving):
-                network = _with_input(network, p.name, name, films, losses, level, doubt)
+            for name in dict.fromkeys(r for law in laws for r in law.reads if r in level):
+                if f"{p.name}^{name}" in parameters or tells_exponent(laws, name, values, level):
+                    network = _with_input(network, p.name, name, films, losses, level, doubt)
             network = _with_difference(network, p.name, films, doubt)
             network = _with_warming(network, p.name, losses, doubt)
             if p.name not in added:
                 network = replace(network, parameters=(*network.parameters, *shares(p.name, films, doubt)))
     return network, tuple(p.name for p in network.parameters if p.name not in before)
+
+
+def tells_exponent(laws: Sequence[Law], name: str, values: Mapping[str, int], level: Mapping[str, float]) -> bool:
+    """Does an input take more than two values, and no other that multiplies it in one of the laws just two?"""
+    switches = {n for n, count in values.items() if count == 2 and n != name}
+    pairs = [(law, other) for law in laws if name in law.reads for other in switches.intersection(law.reads)]
+    return values.get(name, 0) > 2 and not any(is_product(law, name, other, level) for law, other in pairs)
+
+
+def is_product(law: Law, one: str, other: str, level: Mapping[str, float]) -> bool:
+    """Is a law a function of one input times a function of another: f(a, b) f(c, d) = f(a, d) f(c, b)?"""
+    if not set(law.reads) <= set(level):
+        return False
+
+    def at(share: float, other_share: float) -> float:
+        now = {n: np.array([level[n]]) for n in law.reads}
+        now |= {one: share * now[one], other: other_share * now[other]}
+        return float(np.asarray(law.factor(now)).flat[0])
+
+    with within_silence():  # half of a level may lie outside what a correlation knows
+        straight, across = at(1.0, 1.0) * at(0.5, 0.5), at(1.0, 0.5) * at(0.5, 1.0)
+    return bool(np.isclose(straight, across, rtol=1e-6))
 
 
 def first_of(network: Network) -> dict[str, str]:

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from lumped.transfer.laws import Law
-from validation.case import Case, Channel, Model, Test
+from validation.case import Case, Channel, Model, Reference, Test
 from validation.doubt import USUAL, Doubt
 from validation.effects import Effect, Scene, effect, extended
 from validation.effects.sensors.input_offset import Shift
-from validation.parameters.model_form import levels, with_model_form
+from validation.measurement.operators import of_measurement
+from validation.parameters.model_form import with_model_form
+from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
@@ -73,6 +75,15 @@ def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> 
     return [*sensors, *air, *start, *clocks]
 
 
+OF_MEASUREMENT = ("bias", "slope", "lag", "start", "clock")  # first words of the names that `nuisances` gives
+
+
+def measured(name: str) -> bool:
+    """Is it the name of a parameter of a sensor, boundary, start or clock, whether or not its test is there?"""
+    kind, separator, _ = name.partition(" of ")
+    return bool(separator) and kind in OF_MEASUREMENT
+
+
 def clock(test: Test, doubt: Doubt) -> float:
     """Standard deviation (s) of a test's clock: the recorder's, and of steps that lie anywhere between two samples."""
     return float(np.hypot(doubt["clock"], doubt["step in sample"] * test.step_s))
@@ -98,7 +109,7 @@ def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> 
 
 def scene_of(case: Case) -> Scene:
     """What the case's tests record; an input counts when every test that is fitted or chosen with has it."""
-    tests = [t for t in case.tests if t.role != "hold-out"] or list(case.tests)
+    tests = case.usable or case.tests
     inputs = frozenset.union(*(frozenset(t.inputs) for t in tests)) | {"time_s"}
     channels = tuple(dict.fromkeys(c.name for t in tests for c in t.channels))
     return Scene(case.model.network, inputs, channels, tuple(t.name for t in tests))
@@ -108,34 +119,41 @@ def effects_of(case: Case) -> tuple[Effect, ...]:
     return tuple(effect(e.name) for e in case.model.effects)
 
 
-def at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
-    """The network with the priors and upper bounds of losses that effects bring in for the heat in these tests.
+def case_reference(case: Case) -> Reference:
+    """What the model has stored, and of what it has not yet met what the tests that a fit may use say."""
+    stored = case.model.reference or Reference()
+    names = [e.name for e in case.model.effects]
+    new = reference_of(extended(case.model.network, effects_of(case)), case.usable, names)
+    levels = stored.levels
+    signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
+    return replace(new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes},
+                   errors=stored.errors)  # fmt: skip
 
-    Declared for the loss's reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
+
+def standing_reference(case: Case) -> Reference:
+    """What the model has stored; before the first fit, and where an old file lacks it, what a fit would store."""
+    return case.model.reference or case_reference(case)
+
+
+def at_level(network: Network, names: Collection[str], reference: Reference) -> Network:
+    """The network with the priors and bounds of effects for the size that they have at a reference.
+
+    Declared for a loss's own reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
     Those of an input's offset are shares of its level. What is no power, such as a temperature coefficient, has a prior
-    that no test changes.
+    that nothing changes.
     """
-    network = _offsets_at_level(network, names, tests)
-    laws = {s.name: s.law for s in network.sources}
-    watts = [p for p in network.parameters if p.name in names and p.unit.split(" at ")[0] == "W"]
-    mean = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
-    return replace(network, parameters=tuple(
-        replace(p, prior_sd=p.prior_sd / f, high=p.high / f) if (f := mean.get(p.name, 0.0)) > 0 else p
-        for p in network.parameters
-    ))  # fmt: skip
-
-
-def _offsets_at_level(network: Network, names: Collection[str], tests: Sequence[Test]) -> Network:
     laws: dict[str, Law] = {x.name: x.law for x in network.links}
     laws |= {s.name: s.law for s in network.sources}
-    level = levels(tests)
 
     def scaled(p: Parameter) -> Parameter:
         law = laws.get(p.targets[0][0]) if p.name in names and p.targets else None
-        f = level.get(law.input, 1.0) if isinstance(law, Shift) else 1.0
-        return p if f == 1.0 else replace(p, prior_sd=f * p.prior_sd, low=f * p.low, high=f * p.high)
+        if isinstance(law, Shift):
+            f = reference.levels.get(law.input, 1.0)
+            return p if f == 1.0 else replace(p, prior_sd=f * p.prior_sd, low=f * p.low, high=f * p.high)
+        size = reference.sizes.get(p.name, 1.0) if p.name in names else 1.0
+        return p if size == 1.0 else replace(p, prior_sd=p.prior_sd / size, high=p.high / size)
 
-    return replace(network, parameters=tuple(scaled(p) for p in network.parameters))
+    return replace(network, parameters=tuple(map(scaled, network.parameters)))
 
 
 def freed(network: Network, names: Collection[str]) -> Network:
@@ -152,36 +170,51 @@ def widened(parameter: Parameter) -> Parameter:
     return replace(parameter, prior_sd=FREE * parameter.prior_sd)
 
 
-def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
-    """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
-    factors = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
-    return float(np.mean([np.mean(f) for f in factors])) if factors else 0.0
-
-
 def working(case: Case, more: Sequence[Effect] = ()) -> tuple[Network, Unknowns]:
-    """The network with the model's effects, `more` effects and measurement nuisances, and what is free in it.
+    """The network to fit with: the model's effects, `more` effects and measurement nuisances, and what is free in it.
 
     Free are the case's nuisances (all declared parameters when it names none), the effects and the measurement's.
+    Exponents are those that the model has and those that the tests tell of. What a model says is asked of `standing`.
     Of a case alone it is one network, so what is known of it and of its laws serves again.
     """
-    return _grown(case, more) if more else _as_it_stands(case)
+    return _to_fit(case, more) if more else _to_fit_alone(case)
 
 
 @once
-def _as_it_stands(case: Case) -> tuple[Network, Unknowns]:
-    return _grown(case, ())
+def _to_fit_alone(case: Case) -> tuple[Network, Unknowns]:
+    return _to_fit(case, ())
 
 
-def _grown(case: Case, more: Sequence[Effect]) -> tuple[Network, Unknowns]:
-    inside, extra = effects_of(case), nuisances(case.model.network, case.tests, case.doubt)
-    network = extended(case.model.network, (*inside, *more))
-    network = at_level(network, {e.name for e in (*inside, *more)}, case.tests)
-    network = freed(network, {e.name for e in inside})
-    network, forms = with_model_form(network, case.tests, {e.name for e in inside}, case.doubt)
-    network = replace(network, parameters=(*network.parameters, *extra))
-    names = {p.name for p in (case.nuisances or case.model.network.parameters)}
-    names |= {e.name for e in (*inside, *more)} | {p.name for p in extra} | set(forms)
-    return network, Unknowns(tuple(p for p in network.parameters if p.name in names))
+def _to_fit(case: Case, more: Sequence[Effect]) -> tuple[Network, Unknowns]:
+    reference = case_reference(case)
+    network, forms = _grown(case, reference, more, value_counts(case.usable))
+    free = {p.name for p in (case.nuisances or case.model.network.parameters)} | set(forms)
+    free |= {e.name for e in (*effects_of(case), *more)}
+    return network, Unknowns(tuple(p for p in network.parameters if p.name in free or of_measurement(p)))
+
+
+@once
+def standing(case: Case) -> Network:
+    """The network as the model stands, with the exponents that were fitted and at the reference stored with them.
+
+    No test has a say in it; only sensors and clocks, which no temperature depends on, are those of the tests.
+    """
+    return _grown(case, standing_reference(case), (), {})[0]
+
+
+def _grown(
+    case: Case, reference: Reference, more: Sequence[Effect], counts: Mapping[str, int]
+) -> tuple[Network, tuple[str, ...]]:
+    """The network with effects, form and measurement nuisances; the names of what gives laws another form."""
+    inside = effects_of(case)
+    network, added = extended(case.model.network, (*inside, *more)), {e.name for e in inside}
+    sizes = effect_sizes(network, {e.name for e in more} - added, case.usable)
+    reference = replace(reference, sizes={**reference.sizes, **sizes})
+    network = at_level(network, added.union(e.name for e in more), reference)
+    network = freed(network, added)
+    network, forms = with_model_form(network, reference.levels, counts, case.model.values, added, case.doubt)
+    sensors = nuisances(case.model.network, case.tests, case.doubt)
+    return replace(network, parameters=(*network.parameters, *sensors)), forms
 
 
 def with_model(case: Case, model: Model) -> Case:

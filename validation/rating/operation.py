@@ -14,10 +14,9 @@ from lumped.model.network import Link, Network
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, Radiation, Scaled
-from validation.case import Test
+from validation.parameters.reference import LOADS
 
 Array = NDArray[np.float64]
-LOADS = ("current", "torque")  # quantities that grow with the load
 ISA = 2.25577e-5, 4.2559  # density over that at sea level: (1 - a h)^b, international standard atmosphere
 STILL, BLOWN = 0.5, 0.8  # h ~ density^n: Nu ~ Ra^(1/4) and Nu ~ Re^0.8
 
@@ -56,12 +55,11 @@ class Operation:
 
 
 def operation(
-    network: Network, tests: Sequence[Test], fixed: Mapping[str, float], carry: Sequence[str] = (),
-    usual: Mapping[str, float] | None = None,
-) -> Operation:  # fmt: skip
-    """From what the tests recorded: the sample of the largest load, boundaries at their means; `fixed` goes before.
+    network: Network, point: Mapping[str, float], fixed: Mapping[str, float], carry: Sequence[str] = ()
+) -> Operation:
+    """At a point, see `Reference.load_point`; `fixed` goes before.
 
-    usual : what an input or boundary is where neither says;
+    point : value of inputs and boundaries (degC)
     carry : inputs that the load multiplies; without any, those that measure one of LOADS
 
     Raises InputError where nothing says what an input is, or nothing carries a load.
@@ -75,7 +73,6 @@ def operation(
                 "--at",
                 suggestion(name, (*reads, *network.boundaries)),
             )
-    loaded = [t for t in tests if all(n in t.inputs for n in reads)]
     for name in carry:
         if name not in reads:
             raise InputError(f"'{name}' is no input of the model", "--load", suggestion(name, tuple(reads)))
@@ -86,36 +83,18 @@ def operation(
             f"network '{network.name}'",
             f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
         )
-    point = {**(usual or {}), **_largest(loaded, reads, loads), **fixed}
+    point = {**point, **fixed}
     inputs = {n: v for n, v in point.items() if n in reads}
     for name in reads:
         if name not in inputs:
             raise InputError(f"nothing says what '{name}' is", "--at", f"--at {name}=VALUE")
     if not any(inputs[n] for n in loads):
         raise InputError("the load is zero", "--at", f"--at {loads[0]}=VALUE")
-    around = {b: fixed.get(b, _mean(tests, b, (usual or {}).get(b))) for b in network.boundaries}
-    for name, T in around.items():
-        if T is None:
+    for name in network.boundaries:
+        if name not in point:
             raise InputError(f"nothing says how warm '{name}' is", "--at", f"--at {name}=DEGC")
     speed = network.signal("speed")
-    return Operation(
-        inputs, loads, speed if speed in reads else None, {b: float(T) for b, T in around.items() if T is not None}
-    )
-
-
-def _largest(tests: Sequence[Test], reads: Mapping[str, None], loads: Sequence[str]) -> dict[str, float]:
-    best: tuple[float, dict[str, float]] = (-1.0, {})
-    for t in tests:
-        size = np.max([np.abs(t.inputs[n]) for n in loads], axis=0)
-        k = int(np.argmax(size))
-        if size[k] > best[0]:
-            best = float(size[k]), {n: float(t.inputs[n][k]) for n in reads}
-    return best[1]
-
-
-def _mean(tests: Sequence[Test], boundary: str, usual: float | None) -> float | None:
-    means = [float(np.mean(t.boundaries[boundary])) for t in tests if boundary in t.boundaries]
-    return float(np.mean(means)) if means else usual
+    return Operation(inputs, loads, speed if speed in reads else None, {b: float(point[b]) for b in network.boundaries})
 
 
 def air_boundaries(network: Network) -> tuple[str, ...]:

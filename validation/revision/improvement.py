@@ -40,10 +40,12 @@ class Step:
         return self.revision.effect if self.revision else None
 
     def document(self) -> dict:
-        tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K} for t in self.comparison.tests]
+        tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
+                 for t in self.comparison.tests]  # fmt: skip
         return {
             "step": self.step, "effect": self.effect, "revision": self.comparison.revision, "tests": tests,
-            "rmse_K": self.comparison.rmse_K, "evidence": dict(self.evidence),
+            "rmse_K": self.comparison.rmse_K, "fitted_rmse_K": self.comparison.fitted_rmse_K,
+            "evidence": dict(self.evidence),
         }  # fmt: skip
 
 

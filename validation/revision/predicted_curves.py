@@ -15,7 +15,7 @@ from validation.calibration.calibrate import no_progress
 from validation.case import Case, Model, Test
 from validation.comparison.predict import predict
 from validation.inference.result import CurrentLevel
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.planning.candidate_tests import Experiment, candidate_tests
 from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
 from validation.revision.revise import add
@@ -73,7 +73,7 @@ def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | 
 
     Currents are those that every hypothesis permits: each is held against what it says of the tests at hand.
     """
-    before, network = case.tests[-1], working(case)[0]
+    before, network = case.tests[-1], standing(case)
     names = [e.name for e, _ in candidate_tests(before, network)]
     if experiment is not None and experiment not in names:
         raise InputError(f"unknown test '{experiment}'", case.name, f"one of: {'; '.join(names)}")
@@ -91,7 +91,7 @@ def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | 
 
 def _network(case: Case, model: Model) -> tuple[Network, dict[str, float]]:
     """The network of a hypothesis, and those of the model's values that it has."""
-    network = working(replace(case, model=model))[0]
+    network = standing(replace(case, model=model))
     names = {p.name for p in network.parameters}
     return network, {k: v for k, v in model.values.items() if k in names}
 

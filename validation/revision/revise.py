@@ -22,7 +22,7 @@ from validation.effects.during import During
 from validation.effects.time_window import checked, lasts
 from validation.measurement.faults import broken_channels, without
 from validation.measurement.operators import of_measurement
-from validation.parameters.unknowns import FREE, scene_of, working
+from validation.parameters.unknowns import FREE, case_reference, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread
 
@@ -33,15 +33,20 @@ TRAINING = ("calibrate", "validate")
 
 @dataclass(frozen=True)
 class Change:
-    """Error of one test (K) before and after."""
+    """Error of one test (K) before and after; `fitted` with sensors as the fit has them, None before a fit."""
 
     name: str
     role: str
     before: float
     after: float
+    fitted_before: float | None = None
+    fitted_after: float | None = None
 
     def document(self) -> dict:
-        return {"name": self.name, "role": self.role, "rmse_K": {"before": self.before, "after": self.after}}
+        return {
+            "name": self.name, "role": self.role, "rmse_K": {"before": self.before, "after": self.after},
+            "fitted_rmse_K": {"before": self.fitted_before, "after": self.fitted_after},
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -151,10 +156,17 @@ def _revised(
             f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
         )
     training = replace(case.training(), model=model)
+    sample = tests if action == "calibrate" else training.tests
+    reference = replace(case_reference(training), tests=tuple(t.name for t in sample))
+    training = replace(training, model=replace(model, reference=reference))
     fits = staged_fit(training, tests if action == "calibrate" else _plain(tests), start(training), search, progress)
-    new = replace(model, values=_values(model, fits), revision=case.model.revision + 1)
+    new = replace(training.model, values=_values(model, fits), revision=case.model.revision + 1)
     after = errors(replace(case, model=new))
-    changes = tuple(Change(b.name, b.role, b.rmse_K, a.rmse_K) for b, a in zip(before.tests, after.tests, strict=True))
+    new = replace(new, reference=replace(reference, errors=after.sensor_errors))
+    changes = tuple(
+        Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K)
+        for b, a in zip(before.tests, after.tests, strict=True)
+    )
     sure = [_sure(fit, tests, new, case) for fit in fits]
     acceptance = checks(sure[-1], name) if action == "add" and name else ()
     accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})

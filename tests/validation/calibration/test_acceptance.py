@@ -13,7 +13,6 @@ from validation.calibration.calibrate import minimise
 from validation.case import AddedEffect
 from validation.comparison.linearisation import segments
 from validation.effects import effect
-from validation.inference.evidence import diagnosing
 from validation.parameters.unknowns import Unknowns
 from validation.revision.acceptance import checks, predicted_without
 from validation.revision.revise import staged_fit, start
@@ -33,7 +32,7 @@ def checked(name):
     """Checks of one effect, by name."""
     one = effect(name)
     grown = replace(case(), model=replace(case().model, effects=(AddedEffect(one.kind, one.place),)))
-    (fit,) = staged_fit(grown, diagnosing(grown), start(grown))
+    (fit,) = staged_fit(grown, grown.usable, start(grown))
     return fit, {c.check: c for c in checks(fit, name)}
 
 

@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
-from lumped.transfer.laws import Fixed, InputPower, Power, WithTemperature
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, WithTemperature
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
-from validation.parameters.model_form import ExponentError, exponent_derivative, levels, shares, with_model_form
+from validation.parameters.model_form import ExponentError, exponent_derivative, shares, tells_exponent, with_model_form
+from validation.parameters.reference import reference_of, value_counts
+
+
+def formed(net, tests, added=()):
+    """With the exponents that these tests tell of."""
+    return with_model_form(net, reference_of(net, tests).levels, value_counts(tests), added=added)
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +24,7 @@ def case():
 
 
 def test_neutral_at_zero(case):
-    grown, names = with_model_form(network(), case.tests)
+    grown, names = formed(network(), case.tests)
     assert names
     for test in case.tests[1:3]:
         np.testing.assert_allclose(predict(grown, test, {}).y, predict(network(), test, {}).y, atol=1e-9)
@@ -54,11 +60,38 @@ def test_difference_is_right_where_it_settles():
     assert table[80.0] == pytest.approx(80.0**0.25 * np.log(2.0))
 
 
-def test_still_input_has_no_exponent(case):
-    tests = [replace(t, inputs={**t.inputs, "fan_flow_m3h": np.full_like(t.time, 138.0)}) for t in case.tests]
-    _, names = with_model_form(network(), tests)
-    assert "fan.flow^fan_flow_m3h" not in names
-    assert "fan.flow^fan_flow_m3h" in with_model_form(network(), case.tests)[1]
+@pytest.mark.parametrize(("kind", "counts"), [("still", 1), ("switched", 2), ("stepped", 3), ("ramped", 3)])
+def test_an_input_of_two_values_has_no_exponent(case, kind, counts):
+    """Nor has the speed of a law that a switch multiplies. A switch passes through what lies between in few samples."""
+    t = case.tests[0]
+    n = np.arange(t.time.size)
+    on = (n // 40) % 2
+    u = {"still": np.full(n.size, 100.0), "switched": 100.0 * on, "stepped": 50.0 * ((n // 40) % 3),
+         "ramped": np.linspace(0.0, 100.0, n.size)}[kind]  # fmt: skip
+    if kind == "switched":
+        u[np.flatnonzero(np.diff(on))[:1]] = 30.0
+    tests = [replace(t, inputs={**t.inputs, "fan_flow_m3h": u})]
+    assert value_counts(tests)["fan_flow_m3h"] == counts
+    assert ("fan.flow^fan_flow_m3h" in formed(network(), tests)[1]) == (counts == 3)
+
+
+def test_a_switch_takes_the_exponents_of_its_product_along():
+    level, counts = {"on": 0.7, "speed_rpm": 900.0}, {"on": 2, "speed_rpm": 3}
+    product = InputPower(2.0, (("on", 1.0, 1.0), ("speed_rpm", 1000.0, 0.8)))
+    alone = InputPower(2.0, (("speed_rpm", 1000.0, 0.8),))
+    assert not tells_exponent([product], "speed_rpm", counts, level)
+    assert tells_exponent([product], "speed_rpm", {**counts, "on": 1}, level)
+    assert tells_exponent([alone], "speed_rpm", counts, level)
+    assert tells_exponent([SumOfTwo()], "speed_rpm", counts, level)
+
+
+class SumOfTwo(Law):
+    """No product: a fan's share beside that of a switch."""
+
+    reads = ("on", "speed_rpm")
+
+    def factor(self, inputs):
+        return inputs["on"] + (inputs["speed_rpm"] / 1000.0) ** 0.8
 
 
 def test_shares_name_each_body_once():
@@ -68,16 +101,16 @@ def test_shares_name_each_body_once():
 
 def test_levels_pool_all_tests(case):
     every = np.concatenate([t.inputs["current_A"] for t in case.tests])
-    assert levels(case.tests)["current_A"] == pytest.approx(np.sqrt(np.mean(every**2)))
+    assert reference_of(network(), case.tests).levels["current_A"] == pytest.approx(np.sqrt(np.mean(every**2)))
 
 
 def test_an_added_effect_brings_its_own_exponent(case):
     """Wind to the 0.8 may be wind to another power; while there is none that changes nothing."""
     wind = effect("convection@flange.right")
-    grown, names = with_model_form(extended(network(), [wind]), case.tests, {wind.name})
+    grown, names = formed(extended(network(), [wind]), case.tests, {wind.name})
     own = f"{wind.name}^vehicle_speed_mps"
     assert own in names
-    assert own not in with_model_form(extended(network(), [wind]), case.tests)[1]
+    assert own not in formed(extended(network(), [wind]), case.tests)[1]
     road = next(t for t in case.tests if t.name == "road-1")
     still, bent = (predict(grown, road, {own: e}).y for e in (0.0, 0.2))
     np.testing.assert_allclose(still, bent, atol=1e-9)

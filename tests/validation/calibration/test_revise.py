@@ -10,7 +10,7 @@ from playground import Truth, wind
 from geom.errors import InputError
 from validation import add, calibrate, compare, remove
 from validation.comparison.linearisation import rmse, segments
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.revision.revise import Change, judge
 
 EFFECT = "convection@flange.right"
@@ -91,7 +91,7 @@ def test_what_the_data_cannot_tell_is_said():
 def test_calibration_leaves_less_than_the_sensors_are_sure_of():
     """Sensors with 0.4 K of bias (1 sigma, told as 0.5 K), noise of 0.05 K and 0.1 K steps: below half of 0.4 K."""
     case, first = stand()
-    network, _ = working(case)
+    network = standing(case)
     tests = [t for t in case.tests if t.role == "calibrate"]
     assert rmse(segments(network, tests, first.model.values)) < 0.2
 
@@ -113,7 +113,7 @@ def test_adding_twice_is_an_error():
 def test_comparison_document():
     case, first = stand()
     out = compare(replace(case, model=first.model)).document()
-    assert {"case", "model", "tests", "rmse_K", "floor_K", "words", "roles"} == set(out)
+    assert {"case", "model", "tests", "rmse_K", "fitted_rmse_K", "floor_K", "words", "roles"} == set(out)
     row = out["tests"][0]["channels"][0]
     assert {
         "channel",

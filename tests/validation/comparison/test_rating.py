@@ -40,7 +40,7 @@ def model(net=None):
     return Model(net or body(), {}, [Row(np.array([0]), np.ones(1))])
 
 
-OP = operation(body(), (), {"current_A": 50.0, "air": AIR})
+OP = operation(body(), {}, {"current_A": 50.0, "air": AIR})
 LIMIT = {"body": 120.0}
 REST = np.sqrt(G * 100.0 / R) / 50.0  # R I^2 = G (120 - 20)
 
@@ -148,7 +148,7 @@ def test_a_model_that_no_heat_leaves_is_refused_as_such():
 )  # fmt: skip
 def test_what_is_not_known_is_asked_for(given, message):
     with pytest.raises(InputError, match=message):
-        operation(body(), (), given)
+        operation(body(), {}, given)
 
 
 def grid(torques=(0.0, 50.0, 100.0), speeds=(0.0, 2000.0), T=(20.0,)):

@@ -11,7 +11,13 @@ from lumped.transfer.laws import InputPower
 from validation.comparison.predict import predict
 from validation.effects import effect
 from validation.effects.build import heat
+from validation.parameters.reference import reference_of
 from validation.parameters.unknowns import at_level
+
+
+def at_test(net, names, test):
+    """With priors for what a test records."""
+    return at_level(net, names, reference_of(net, [test], names))
 
 
 def with_loss(reference: float):
@@ -26,7 +32,7 @@ def with_loss(reference: float):
 def heat_of_prior(reference: float) -> tuple[float, float]:
     """Mean heat (W) in the test at one prior deviation and at the bound."""
     test = warm_test(machine())
-    p = at_level(with_loss(reference), {"extra"}, [test]).parameters[-1]
+    p = at_test(with_loss(reference), {"extra"}, test).parameters[-1]
     mean = float(np.mean(InputPower(1.0, (("speed_rpm", reference, 2.0),)).factor(test.inputs)))
     return p.prior_sd * mean, p.high * mean
 
@@ -38,13 +44,13 @@ def test_the_reference_does_not_matter(reference):
 
 def test_others_are_left_alone():
     net = with_loss(100.0)
-    assert at_level(net, set(), [warm_test(machine())]) == net
+    assert at_test(net, set(), warm_test(machine())) == net
 
 
 def test_a_temperature_coefficient_has_one_prior_whatever_the_current():
     """Copper's, 0.00393 1/K, at one deviation, in a winding of one watt as of a thousand."""
     net = effect("copper.feedback@copper.winding.field").extend(machine())
-    p = at_level(net, {net.parameters[-1].name}, [warm_test(machine())]).parameters[-1]
+    p = at_test(net, {net.parameters[-1].name}, warm_test(machine())).parameters[-1]
     assert (p.prior_sd, p.high) == pytest.approx((0.00393, 0.0125))
 
 
@@ -53,7 +59,7 @@ def test_an_input_offset_has_its_prior_on_the_level_of_the_input(scale):
     test = warm_test(machine())
     louder = replace(test, inputs={**test.inputs, "current_A": scale * test.inputs["current_A"]})
     net = effect("input.offset@current_A").extend(machine())
-    p = at_level(net, {net.parameters[-1].name}, [louder]).parameters[-1]
+    p = at_test(net, {net.parameters[-1].name}, louder).parameters[-1]
     level = scale * float(np.sqrt(np.mean(test.inputs["current_A"] ** 2)))
     assert (p.prior_sd, p.low, p.high) == pytest.approx((0.05 * level, -0.5 * level, 0.5 * level))
 
@@ -73,4 +79,4 @@ def test_an_effect_that_finds_nothing_left_to_act_on_is_left_alone():
     """Such as conduction to a bench beside the same for a while: every bed has its link."""
     net = machine()
     bare = replace(net, parameters=(*net.parameters, Parameter("extra", (), unit="W/K", prior_sd=1.0)))
-    assert at_level(bare, {"extra"}, [warm_test(net)]) == bare
+    assert at_test(bare, {"extra"}, warm_test(net)) == bare

@@ -78,17 +78,19 @@ def offer(c: Candidate) -> str:
 def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     """Why it ended, the error step by step, and what would decide if it stopped."""
     steps = document["stairs"]
-    headers = ["step", *(f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]), "all (K)", "probability"]
+    by_test = [f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]]
+    headers = ["step", *by_test, "all (K)", "sensors as fitted (K)", "probability"]
     rows = [
         [
             s["effect"] or s["step"],
             *(t["rmse_K"] for t in s["tests"]),
             s["rmse_K"],
+            s["fitted_rmse_K"],
             s["evidence"].get("probability", ""),
         ]
         for s in steps
     ]
-    errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "probability"])
+    errors = Grid("Error, step by step (rms)", headers, rows, keep=["all (K)", "sensors as fitted (K)", "probability"])
     destination = f"{document['written']} revisions written to {folder.settings.model_file}"
     outcome = destination if document["written"] else "nothing written"
     further = [] if document["adequate"] else next_tests(document["diagnosis"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import isfinite
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
@@ -117,7 +118,8 @@ def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Re
     return Revision(
         0, result.action, tuple(e.name for e in result.model.effects), result.effect or "",
         dict(result.model.values), {p.name: p.ci95 for p in result.parameters},
-        {t.name: (t.before, t.after) for t in result.tests}, result.why, dict(evidence),
+        {t.name: (t.before, t.after) for t in result.tests if isfinite(t.before)}, result.why, dict(evidence),
+        reference=result.model.reference,
     )  # fmt: skip
 
 
@@ -157,8 +159,10 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
     outcome = where if document["written"] else "nothing written (--anyway writes it)"
-    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"]] for t in document["tests"]]
-    errors = Grid("", ["test", "role", "error before (K)", "after (K)"], rows, ["hold-out"])
+    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"], t["fitted_rmse_K"]["after"]]
+            for t in document["tests"]]  # fmt: skip
+    headers = ["test", "role", "error before (K)", "after (K)", "sensors as fitted (K)"]
+    errors = Grid("", headers, rows, ["hold-out"], keep=headers[2:])
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"

@@ -34,7 +34,7 @@ from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from thermoscope.pipeline import Built
@@ -111,7 +111,7 @@ class Subject:
         from viz.figures.flows import heat_flows, last_running_step
 
         case, test = self.folder.case, record(self.test, {})
-        network, values = heat_model(working(case)[0], case.model.values)
+        network, values = heat_model(standing(case), case.model.values)
         heat = balance(network, test, values)
         step = last_running_step(network, heat)
         when = at_instant(self.test, heat.time[step + 1])
@@ -177,7 +177,7 @@ def _bands(s: Subject, png: Path) -> None:
     from thermoscope.bands import along, posterior_of
     from viz import Predicted, predicted
 
-    network, test = working(s.folder.case)[0], s.test
+    network, test = standing(s.folder.case), s.test
     bands = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
     read = {f"sensor {c.name}": c.y for c in test.channels}
     measured = {c.place for c in test.channels}

@@ -35,7 +35,7 @@ from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
 from thermoscope.extras import required
 from validation.case import Test
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.threads import side_by_side
 
 MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while the page is made
@@ -131,7 +131,7 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
 
     tell("running the model on a first test")
     order, cache = by_interest(folder), cache_folder()
-    working(folder.case)  # one network for both of the following
+    standing(folder.case)  # one network for both of the following
     with ThreadPoolExecutor() as pool:
         looks = cached_looks(machine, nodes, cache)  # to make them takes longer than all else of the first picture
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)

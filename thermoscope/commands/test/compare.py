@@ -100,18 +100,19 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
 
 def tests(records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per test, those with most sensors over first."""
-    rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"]]
-            for t in records]  # fmt: skip
+    rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"],
+             t["fitted_rmse_K"]] for t in records]  # fmt: skip
     rows.sort(key=lambda row: -row[3])
-    return Grid("", ["test", "role", "sensors", "over", "rms (K)"], rows, keep=["rms (K)", "over"])
+    headers = ["test", "role", "sensors", "over", "rms (K)", "sensors as fitted (K)"]
+    return Grid("", headers, rows, keep=["rms (K)", "sensors as fitted (K)", "over"])
 
 
 def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per sensor."""
-    headers = ["sensor", "test", "place", "n", "rms (K)", "bias (K)", "largest (K)", "limit (K)", "1 sigma (K)",
-               "% of rise", "verdict"]  # fmt: skip
-    keys = ["channel", "test", "place", "n", "rmse_K", "bias_K", "max_abs_K", "limit_K", "sigma_K", "percent_of_rise",
-            "verdict"]  # fmt: skip
+    headers = ["sensor", "test", "place", "n", "rms (K)", "fitted (K)", "bias (K)", "largest (K)", "limit (K)",
+               "1 sigma (K)", "% of rise", "verdict"]  # fmt: skip
+    keys = ["channel", "test", "place", "n", "rmse_K", "fitted_rmse_K", "bias_K", "max_abs_K", "limit_K", "sigma_K",
+            "percent_of_rise", "verdict"]  # fmt: skip
     keep = ["test", "rms (K)", "bias (K)", "limit (K)", "verdict"]
     return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
 

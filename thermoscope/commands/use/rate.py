@@ -28,6 +28,7 @@ from thermoscope.escapes import toml_value
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
 from thermoscope.recordings.data_table import as_number
+from validation.parameters.unknowns import standing_reference
 from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times
 from validation.rating.operation import Operation
@@ -180,10 +181,11 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
 
 
 def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:
-    """From rest to the largest speed that was recorded or asked for."""
+    """From rest to the largest speed that was fitted or asked for."""
     if op.speed is None:
         return []
-    peaks = [float(np.max(np.abs(t.inputs[op.speed]))) for t in folder.case.tests if op.speed in t.inputs]
+    fitted = standing_reference(folder.case).signals.get(op.speed)
+    peaks = [abs(fitted.low), abs(fitted.high)] if fitted else []
     top = request.top_rpm or max([abs(op.inputs[op.speed]), *peaks])
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
 

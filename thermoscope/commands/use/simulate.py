@@ -59,9 +59,9 @@ def _out(folder: Folder) -> Path:
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
     from validation.comparison.predict import thermal
-    from validation.parameters.unknowns import working
+    from validation.parameters.unknowns import standing
 
-    network = working(folder.case)[0]
+    network = standing(folder.case)
     mine = {p.name for p in thermal(network).parameters}
     return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
 

@@ -25,7 +25,7 @@ class Shift(Chord):
 class InputOffset(InputFault):
     """An input is in truth larger by a constant than what was written down: a zero that was never set.
 
-    Its prior and bounds are shares of the input's level (rms over all tests), see `at_level`.
+    Its prior and bounds are shares of the input's level (rms over the fitted tests), see `at_level`.
     """
 
     kind = "input.offset"

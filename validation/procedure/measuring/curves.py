@@ -14,7 +14,7 @@ from validation.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
 from validation.effects.sites import ambient
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 from validation.procedure.measuring.assemblies import Assembly, assemblies, worst
 from validation.procedure.measuring.repeats import Repeats, repeats
 from validation.procedure.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8
@@ -71,7 +71,7 @@ class Curves:
 
 def curves(case: Case, resolution_K: float = 0.5) -> Curves:
     """All of it for the tests of a case; resolution_K : of the thermocouples (electrical readings by their sigma)."""
-    network, _ = working(case)
+    network = standing(case)
     values, air = physical(case), ambient(network) or network.boundaries[0]
     rules = {t.name: _rules(t, predict(network, t, values).y, resolution_K) for t in case.tests}
     curves_of = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}

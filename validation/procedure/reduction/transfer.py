@@ -10,7 +10,7 @@ import numpy as np
 from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
-from validation.parameters.unknowns import with_model, working
+from validation.parameters.unknowns import standing, with_model
 
 COVERAGE = 2.0  # standard uncertainties: 95 %
 LIMITS = np.sqrt(6.0)  # of a sum of two even errors of one size, both at their limit, over its standard deviation
@@ -74,7 +74,7 @@ def transferred(source: Case, target: Case) -> Transfer:
 
 def end_errors(case: Case) -> list[Row]:
     """Every channel of every test at its end, against the model as it stands."""
-    network, _ = working(case)
+    network = standing(case)
     out = []
     for test in case.tests:
         y = predict(network, test, physical(case)).y

@@ -21,7 +21,7 @@ from lumped.transfer.terms_value import temperature_value
 from validation.case import Case, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model
-from validation.parameters.unknowns import working
+from validation.parameters.unknowns import standing
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def two_paths(
 
 def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:
     """The case's model at the mean load of one of its tests."""
-    network, values = heat_model(working(case)[0], physical(case))
+    network, values = heat_model(standing(case), physical(case))
     load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
     air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
     return two_paths(network, load, air, winding, machine, values=values)

@@ -1,0 +1,61 @@
+"""Put the tables of measured error into the pages that show them, between their markers.
+
+    thermoscope demo --json out/demo.json
+    python examples/hust.py --out out/hust
+    python -m scripts.published [--demo out/demo.json] [--hust out/hust]
+
+The front page and the page of hust-ipmsm take theirs from one run, so they cannot disagree.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+FRONT, HUST = ROOT / "README.md", ROOT / "cases" / "hust-ipmsm" / "README.md"
+
+
+def between(text: str, marker: str, new: str) -> str:
+    """The text with what stands between a marker's begin and end replaced."""
+    begin, end = f"<!-- {marker}:begin -->\n", f"\n<!-- {marker}:end -->"
+    before, _, rest = text.partition(begin)
+    after = rest.partition(end)[2]
+    if not rest or not after:
+        raise SystemExit(f"no pair of markers '{marker}'")
+    return f"{before}{begin}{new.strip()}{end}{after}"
+
+
+def demo_table(stages: Sequence[Mapping[str, Any]]) -> str:
+    """Rms error (K) of all sensors, a row per model; the held-out test in bold."""
+    tests = stages[0]["tests"]
+    bold = ["**" if t["role"] == "hold-out" else "" for t in tests]
+    names = [f"{b}{t['name']}{' (held out)' if b else ''}{b}" for b, t in zip(bold, tests, strict=True)]
+    lines = [f"| model | {' | '.join(names)} |", f"|{'---|' * (len(tests) + 1)}"]
+    for stage in stages:
+        cells = [f"{b}{t['rmse_K']:.2f}{b}" for b, t in zip(bold, stage["tests"], strict=True)]
+        lines.append(f"| {stage['stage']} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def publish(page: Path, marker: str, table: str) -> None:
+    page.write_text(between(page.read_text(encoding="utf-8"), marker, table), encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--demo", type=Path, help="what thermoscope demo --json wrote")
+    parser.add_argument("--hust", type=Path, help="folder that examples/hust.py wrote to")
+    options = parser.parse_args()
+    if options.demo:
+        publish(FRONT, "demo-rows", demo_table(json.loads(options.demo.read_text(encoding="utf-8"))["stages"]))
+    if options.hust:
+        publish(FRONT, "hust-rows", (options.hust / "front-page.md").read_text(encoding="utf-8"))
+        publish(HUST, "hust-tables", (options.hust / "table.md").read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main()
