@@ -16,6 +16,7 @@ from geom.errors import InputError, NoSolution
 from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
+from lumped.integration.reach import Reach
 from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.dense import factored
@@ -177,7 +178,7 @@ class _Course:
         self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
         self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
-        self.steps: list[Steps] = []
+        self.reach, self.steps = Reach(core.terms), list[Steps]()
         self.path: list[Array] | None = None
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
@@ -222,6 +223,8 @@ class _Course:
         count, X = int(at[COUNT]), self.trace
         self.steps_done += count
         self.steps.append(Steps(X.knot[:count] + first, X.share[:count].copy(), X.kind[:count].copy()))
+        if not self.tangents and count:
+            self.reach.see(X.x[:count])
         if self.path is not None:
             self.path.append(ends(X, count)[:, self.place[: core.C.size]])
         if self.tangents:
@@ -240,6 +243,9 @@ class _Course:
 
     def run(self) -> Run:
         """What came of it."""
+        if not self.tangents:  # of a fit, whose every run would say so
+            self.reach.see(self.both.z[:1, :-1])
+            self.reach.tell(self.named.names)
         clock, states = self.position.clock, self.place[: self.core.C.size]
         x, D, error = (
             self.both.z[0, states],
