@@ -23,9 +23,10 @@ from lumped.model.build import node_row
 from lumped.model.network import Link, Network, Row
 from lumped.transfer.coolant import Coolant
 from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow, Rate
-from lumped.transfer.laws import FULL_UNITS, Held, InputPower, Law, Streamed
+from lumped.transfer.laws import FULL_UNITS, AtUsualTemperature, InputPower, Law
 from lumped.transfer.properties import Fluid
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 
 PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
@@ -178,7 +179,7 @@ class Circuit:
         number, value = flows - math.log(self._unit), np.tile(each[branch], len(alike.total))
         table = replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist()))
         stream = InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), table)
-        return stream if self.follows else Held(stream)
+        return stream if self.follows else AtUsualTemperature(stream)
 
     def _streamed(self, part: Pass, branch: str, stretch: float) -> Streamed:
         """Film (W/m2/K) of a pass onto what leaves its cells, or onto the coolant beside it where nothing stretches."""
@@ -204,10 +205,10 @@ class Circuit:
             one = OneWay(law, self.of, f"[circuits.{self.name}]", right, self.flow / PER_M3S[self.unit])
             return [self._stream(network, suffix, edges, one)]
         back = [(b, a) for a, b in reversed(edges) if self.cooler is not None or a != self.inlet]
-        behind = [] if self.cooler is not None else [(self.upstream, self.outlet)]
+        entry = [] if self.cooler is not None else [(self.upstream, self.outlet)]
         return [
             self._stream(network, suffix, edges, Direction(law, self.of, 1)),
-            self._stream(network, f"{suffix}:back", [*behind, *back], Direction(law, self.of, -1)),
+            self._stream(network, f"{suffix}:back", [*entry, *back], Direction(law, self.of, -1)),
         ]
 
     def _stream(self, network: Network, suffix: str, edges: list[Edge], law: Law) -> Link:
@@ -228,7 +229,7 @@ class Circuit:
         middle, laws = _mean(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
         for wall, of in part.walls.items():
             law = replace(one, value=part.duct.wall / self.cells * of)
-            laws[wall] = law if self.follows else Held(law)
+            laws[wall] = law if self.follows else AtUsualTemperature(law)
         name = f"film:{self.name}.{branch}.{number + 1}"
         return [_comb(network, f"{name}:{wall}", wall, nodes, middle, law) for wall, law in laws.items()]
 

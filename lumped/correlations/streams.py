@@ -10,9 +10,10 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.correlations.info import Info
-from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, Array, Streamed, StreamTable
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, Array, StreamTable
 from lumped.transfer.properties import TABULATED_C, Fluid
 from lumped.transfer.ranges import within_silence
+from lumped.transfer.streamed import Streamed
 
 Moving = Callable[[float, Fluid], tuple[float, Info]]
 TOLERANCE = 4e-3  # of a film, between two points of its table
@@ -58,15 +59,15 @@ def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -
 def _top(film: Moving, fluid: Fluid, usual: float) -> float:
     """The largest |input| inside the correlation's range, up to MOST times the usual one."""
     low, high = 1.0, MOST
-    if not _beyond(film, fluid, high * usual):
+    if not _out_of_range(film, fluid, high * usual):
         return high * usual
     while high / low > 1.01:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if _beyond(film, fluid, middle * usual) else (middle, high)
+        low, high = (low, middle) if _out_of_range(film, fluid, middle * usual) else (middle, high)
     return low * usual
 
 
-def _beyond(film: Moving, fluid: Fluid, size: float) -> bool:
+def _out_of_range(film: Moving, fluid: Fluid, size: float) -> bool:
     """Whether a number that grows with the input has left its range."""
     info = film(size, fluid)[1]
     return any(info.numbers[k] > info.limits[k][1] for k in info.outside)
@@ -77,12 +78,12 @@ def _temperatures(
 ) -> list[float]:
     """The usual one, at which nothing is missed, and as many as viscosity and film ask for where the fluid is known."""
     wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
-    known = [T for T in (TABULATED_C if liquid else wide) if _known(fluid, T)]
-    some = sorted({T for T in (*wide, degC) if known[0] < T < known[-1]})
-    return list(_between(film, fluid, usual, [known[0], *some, known[-1]]))
+    span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
+    some = sorted({T for T in (*wide, degC) if span[0] < T < span[-1]})
+    return list(_between(film, fluid, usual, [span[0], *some, span[-1]]))
 
 
-def _known(fluid: Callable[[float], Fluid], T: float) -> bool:
+def _exists(fluid: Callable[[float], Fluid], T: float) -> bool:
     try:
         fluid(T)
     except InputError:
@@ -94,9 +95,9 @@ def _between(film: Moving, fluid: Callable[[float], Fluid], usual: float, degC: 
     """The temperatures, and those halfway as long as these are missed."""
     for a, b in pairwise(degC):
         cold, middle, warm = fluid(a), fluid(0.5 * (a + b)), fluid(b)
-        bent = abs(math.log(middle.nu**2 / (cold.nu * warm.nu))) > 2.0 * THIN
+        curved = abs(math.log(middle.nu**2 / (cold.nu * warm.nu))) > 2.0 * THIN
         h = [film(usual * x.nu / middle.nu, x)[0] for x in (cold, middle, warm)]
-        if b - a > 1.0 and (bent or abs(0.5 * (h[0] + h[2]) - h[1]) > TOLERANCE * h[1]):
+        if b - a > 1.0 and (curved or abs(0.5 * (h[0] + h[2]) - h[1]) > TOLERANCE * h[1]):
             yield from list(_between(film, fluid, usual, (a, 0.5 * (a + b), b)))[:-1]
         else:
             yield a

@@ -72,7 +72,7 @@ class Assembly:
         self._flat = ints(p.row[p.to] * (size + 1) + p.cols for p in self.patterns)
         self._vals = floats(p.vals for p in self.patterns)
         self._packed: dict[bytes, Terms] = {}
-        self._seen: dict[bytes, tuple[Seen, ...]] = {}
+        self._sizes: dict[bytes, tuple[InputSize, ...]] = {}
         self._eliminated: dict[bytes, tuple[NDArray[np.int64], Structure]] = {}
 
     def matrix(self, coefficient: Array) -> Array:
@@ -110,12 +110,12 @@ class Assembly:
             self._packed[key] = _pack(patterns, steady[live])
         return self._packed[key]
 
-    def seen(self, live: Mask) -> tuple[Seen, ...]:
+    def input_sizes(self, live: Mask) -> tuple[InputSize, ...]:
         """What the temperature laws of the live terms see of inputs."""
         key = live.tobytes()
-        if key not in self._seen:
-            self._seen[key] = seen([p for p, alive in zip(self.patterns, live, strict=True) if alive])[0]
-        return self._seen[key]
+        if key not in self._sizes:
+            self._sizes[key] = input_sizes([p for p, alive in zip(self.patterns, live, strict=True) if alive])[0]
+        return self._sizes[key]
 
 
 @lru_cache(maxsize=64)
@@ -189,23 +189,23 @@ def ints(parts: Iterable[Sequence | NDArray]) -> NDArray[np.int64]:
 
 
 @dataclass(frozen=True)
-class Seen:
+class InputSize:
     """An input as temperature laws see it: a column of its own after the factors of all terms."""
 
     name: str
     law: laws.Law
 
 
-def seen(patterns: Sequence[Pattern]) -> tuple[tuple[Seen, ...], NDArray[np.int64]]:
+def input_sizes(patterns: Sequence[Pattern]) -> tuple[tuple[InputSize, ...], NDArray[np.int64]]:
     """What temperature laws see of inputs; which column of all that is every pattern's, or 0."""
-    known: dict[tuple[str | None, float], int] = {}
+    columns: dict[tuple[str | None, float], int] = {}
     at = np.zeros(len(patterns), np.int64)
     for e, p in enumerate(patterns):
         if isinstance(law := p.law.temperature, laws.StreamTable):
             key = law.of, 0.0 if law.of else law.usual
-            at[e] = len(patterns) + known.setdefault(key, len(known))
-    out = (laws.InputPower(1.0, ((of, 1.0, 1.0),)) if of else laws.Fixed(usual) for of, usual in known)
-    return tuple(Seen("what a stream's film follows", law) for law in out), at
+            at[e] = len(patterns) + columns.setdefault(key, len(columns))
+    out = (laws.InputPower(1.0, ((of, 1.0, 1.0),)) if of else laws.Fixed(usual) for of, usual in columns)
+    return tuple(InputSize("what a stream's film follows", law) for law in out), at
 
 
 def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
@@ -231,7 +231,7 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
         weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in probed)]),
         row=ints(p.row for p in distinct),
         part=np.column_stack(
-            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points, seen(patterns)[1]]
+            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points, input_sizes(patterns)[1]]
         ),
         order=np.argsort(pattern_of, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),

@@ -156,15 +156,15 @@ def compiled(
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
     bends = bool(np.any(terms.kind[stiff, BENDS]))
-    seen = every.seen(live)
-    known, others = [curves[k] for k in alive], np.zeros(len(seen), bool)
-    known += [signals.curve(x.name, x.law) for x in seen]
+    sizes = every.input_sizes(live)
+    course, others = [curves[k] for k in alive], np.zeros(len(sizes), bool)
+    course += [signals.curve(x.name, x.law) for x in sizes]
     drive = forcing(
         time,
         u,
         signals,
-        [*patterns, *seen],
-        known,
+        [*patterns, *sizes],
+        course,
         np.append(moving, ~others),
         np.append(stiff, others),
         bends,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.integration.assembly import Pattern, Seen
+from lumped.integration.assembly import InputSize, Pattern
 from lumped.integration.curve import NONE, ROUNDING, SMALL, Curve, between, straight
 from lumped.integration.signals import Signals
 from lumped.model.network import Network
@@ -47,8 +47,8 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
 
 
 def forcing(
-    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern | Seen], curves: Sequence[Curve], acting: Mask,
-    stiff: Mask, bends: bool, every_sample: bool = False,
+    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern | InputSize], curves: Sequence[Curve],
+    acting: Mask, stiff: Mask, bends: bool, every_sample: bool = False,
 ) -> Forcing:  # fmt: skip
     """u (nt, nb) boundaries;  patterns, curves : the live terms and what they see; those `acting` set the knots
 

@@ -40,5 +40,5 @@ class Reach:
             times, of = (1.0, "its coolant") if T.begin[cold] == T.begin[cold + 1] else (0.5, "its film")
             low, high = T.point[first, 0], T.point[first + int(T.par[e, 0]) - 1, 0]
             span = f"outside {times * low:g} to {times * high:g}"
-            for reached in (x for x in (self.low[k], self.high[k]) if not low <= x <= high):
-                out_of_range(f"{names[e]}: {of} at {times * reached:.4g} degC {span}")
+            for extreme in (x for x in (self.low[k], self.high[k]) if not low <= x <= high):
+                out_of_range(f"{names[e]}: {of} at {times * extreme:.4g} degC {span}")

@@ -24,9 +24,10 @@ from lumped.machine.path import cells_of, stem
 from lumped.machine.shapes import radius
 from lumped.model.network import Link, Network, Place, Row
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import Held, InputPower, Law, Streamed
+from lumped.transfer.laws import AtUsualTemperature, InputPower, Law
 from lumped.transfer.properties import Fluid, ethylene_glycol, propylene_glycol, water
 from lumped.transfer.reversal import OneWay
+from lumped.transfer.streamed import Streamed
 
 INLET, FLOW = "coolant", "flow_l_min"
 LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
@@ -125,7 +126,7 @@ def channel_of(machine: Machine, jacket: str) -> Channel:
 
 def jacket_film(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     """W/m2/K over the inlet's flow (l/min), at the usual temperature of the coolant."""
-    return Held(_film(channel_of(machine, jacket), cooling, cooling.share(jacket), 0.0))
+    return AtUsualTemperature(_film(channel_of(machine, jacket), cooling, cooling.share(jacket), 0.0))
 
 
 def onto_outlet(machine: Machine, jacket: str, cooling: Cooling, wet: float) -> Streamed:

@@ -23,9 +23,10 @@ from lumped.correlations.tabulate import film_tabulated
 from lumped.machine.settings import Films
 from lumped.machine.shapes import Extent, Fins, extent, fins_of
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation, Streamed
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.shaft_fan import shaft_fan
+from lumped.transfer.streamed import Streamed
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
 # A fifth apart: straight between them to 0.1 %; no frame is hotter.
@@ -95,7 +96,7 @@ def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
         "radiation": Fixed(outer.emissivity * outer.view, Radiation()),
     }
     blown = _fan(outer.fan) if outer.fan is not None else None if cowl is None else _blown(machine, part, cowl)
-    return laws if blown is None else {**laws, "blown": _beyond_still(blown, outer)}
+    return laws if blown is None else {**laws, "blown": _excess(blown, outer)}
 
 
 def outer_of(machine: Machine, part: str, films: Films) -> Outer:
@@ -199,7 +200,7 @@ def _fan(law: InputPower) -> Streamed:
     return streamed(of, at, lambda n, _: (law.value * abs(n / at) ** exponent, info), air, BLOWN_C, liquid=False)
 
 
-def _beyond_still(blown: Streamed, outer: Outer) -> Streamed:
+def _excess(blown: Streamed, outer: Outer) -> Streamed:
     """What the fan's air adds to still air: both are one film, (h_blown^3 + h_still^3)^(1/3)."""
     still = still_air(outer)
     still = replace(still, value=tuple(outer.factor * h for h in still.value))

@@ -155,7 +155,7 @@ def streamed(T, e, size, hot, cold, out):
     by_T, by_u = inside * ((two - one) / wide - drift * by_y), by_y / u
     twice, cross = -2.0 * inside * drift * both, inside * both / u
     if nd > 0:
-        _beyond_still(points, T.part[e, LAST] - FILMS * nd, nd, hot, cold, h, by_T, by_u, twice, cross, out)
+        _excess(points, T.part[e, LAST] - FILMS * nd, nd, hot, cold, h, by_T, by_u, twice, cross, out)
         return
     if stretch > 0.0:
         N = h * stretch / u
@@ -173,7 +173,7 @@ def streamed(T, e, size, hot, cold, out):
 
 
 @pasted
-def _beyond_still(points, first, nd, hot, cold, h, by_T, by_u, twice, cross, out):
+def _excess(points, first, nd, hot, cold, h, by_T, by_u, twice, cross, out):
     """What blown air adds to a film of still air, from the film h of blown air alone and its derivatives."""
     for k in range(6):
         out[k] = 0.0
@@ -413,9 +413,9 @@ def conductance_derivative(T, f, df, late, tau, v, v_dot, scale, V, out):
 def _law_derivative(T, e, m, f, df, late, tau, v, v_dot, V, out):
     """The part of a law that follows temperature."""
     hot, cold = T.part[e, HOT], T.part[e, COLD]
-    slope, moved = late * df[e], late * df[T.part[e, PLACE]]
-    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold] + moved * tau[e, 7])
-    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold] + moved * tau[e, 8])
+    slope, step = late * df[e], late * df[T.part[e, PLACE]]
+    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold] + step * tau[e, 7])
+    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold] + step * tau[e, 8])
     for s in range(T.part[e, ROW], T.part[e, END]):
         axpy(-m * (by_hot * v[s] + f * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
         axpy(-m * (by_cold * v[s] + f * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])

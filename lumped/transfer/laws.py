@@ -14,8 +14,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.transfer.ranges import out_of_range
-
 Array = NDArray[np.float64]
 Inputs = Mapping[str, Array]
 
@@ -214,34 +212,7 @@ class Scaled(Wrapped):
 
 
 @dataclass(frozen=True)
-class Streamed(Law):
-    """A number times a StreamTable: the film or share of a stream, which warns where its correlation would.
-
-    top : |input| up to which the correlation holds at the table's usual temperature;  what : the correlation
-    """
-
-    value: float
-    table: StreamTable
-    top: float
-    what: str
-
-    @property
-    def temperature(self) -> StreamTable:  # type: ignore[override]
-        return self.table
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return () if self.table.of is None else (self.table.of,)
-
-    def factor(self, inputs: Inputs) -> float:
-        largest = float(np.max(self.table.size(inputs), initial=0.0))
-        if largest > self.top:
-            out_of_range(f"{self.what}: {self.table.of or 'flow'} = {largest:.4g} outside 0 to {self.top:.4g}")
-        return self.value
-
-
-@dataclass(frozen=True)
-class Held(Wrapped):
+class AtUsualTemperature(Wrapped):
     """Another law as it is at its usual temperatures, whatever the temperatures are."""
 
     temperature: TemperatureLaw = CONSTANT

@@ -6,8 +6,8 @@ import numpy as np
 
 from geom.constants import SIGMA, ZERO_C
 from lumped.transfer.laws import (
+    AtUsualTemperature,
     FilmTable,
-    Held,
     Inputs,
     Law,
     Linear,
@@ -21,14 +21,14 @@ from lumped.transfer.laws import (
 
 def coefficient(law: Law, inputs: Inputs, hot: float, cold: float) -> float:
     """A law at an instant's inputs and two temperatures (degC), in all."""
-    seen = law.temperature
-    size = float(np.mean(seen.size(inputs))) if isinstance(seen, StreamTable) else None
-    return float(np.mean(law.factor(inputs))) * temperature_value(seen, hot, cold, size)
+    follows = law.temperature
+    size = float(np.mean(follows.size(inputs))) if isinstance(follows, StreamTable) else None
+    return float(np.mean(law.factor(inputs))) * temperature_value(follows, hot, cold, size)
 
 
 def separated(law: Law) -> Law:
     """A law whose factor holds all that inputs do to it: for what is linear in these; `turned` goes with it."""
-    return Held(law) if isinstance(law.temperature, StreamTable) else law
+    return AtUsualTemperature(law) if isinstance(law.temperature, StreamTable) else law
 
 
 def turned(law: TemperatureLaw, hot: float, cold: float) -> float:

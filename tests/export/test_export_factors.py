@@ -19,7 +19,7 @@ from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.exchanger import Exchanger, Flow, Rate
-from lumped.transfer.laws import CONSTANT, Fixed, Held, InputPower, Law, Power, Scaled, WithTemperature
+from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
@@ -53,7 +53,7 @@ EXACT = [
     WithTemperature(Fixed(2.0), exponent_derivative(Power(0.25))), WithTemperature(COPPER),
 ]  # fmt: skip
 TABLES = [
-    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), COUNTER, Held(STREAM),
+    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), COUNTER, AtUsualTemperature(STREAM),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
     Shaped(Fixed(2.0), Ripple("chopper_Hz"), CONSTANT, ("chopper_Hz",)),

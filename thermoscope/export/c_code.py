@@ -34,7 +34,7 @@ def sizes(model: Model) -> str:
     counts = {
         "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
         "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
-        "FACTORS": len(model.factors) + len(model.seen),
+        "FACTORS": len(model.factors) + len(model.sizes),
         "ROWS": T.begin.size - 1,
     }  # fmt: skip
     numbers = {
@@ -66,8 +66,8 @@ def data(model: Model) -> str:
         ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
         ints("POINT_START", T.part[:, POINT]), ints("POINT_END", T.part[:, LAST]), reals("POINT_X", T.point[:, 0]),
         reals("POINT_Y", T.point[:, 1]), ints("PLACE", T.part[:, PLACE]),
-        ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.seen]),
-        reals("SEEN_SIZE", [usual for _, usual in model.seen]),
+        ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
+        reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
         *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
         f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",

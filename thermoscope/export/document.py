@@ -77,7 +77,7 @@ def _films(points: NDArray[np.float64]) -> dict[str, Any]:
 def _stream(model: Model, e: int, points: NDArray[np.float64]) -> dict[str, Any]:
     """u = |input|, or `size` without one: at ln(u) - shift over hot + cold; b: see StreamTable; or still air."""
     T = model.terms
-    of, size = model.seen[T.part[e, PLACE] - len(model.factors)]
+    of, size = model.sizes[T.part[e, PLACE] - len(model.factors)]
     nt, nd = int(T.par[e, 0]), int(max(-T.par[e, 1], 0.0))
     end = len(points) - FILMS * nd
     grid = points[nt : nt + (end - nt) // (1 + nt), 0]

@@ -16,8 +16,9 @@ from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, IronLoss, PowerLoss
 from lumped.transfer.exchanger import Rate
-from lumped.transfer.laws import Fixed, InputPower, Law, Scaled, Streamed, WithTemperature
+from lumped.transfer.laws import Fixed, InputPower, Law, Scaled, WithTemperature
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
 
 
@@ -94,8 +95,8 @@ def _(law: Rate) -> Sum | Unknown:
 
 @expanded.register
 def _(law: Stirred) -> Sum | Unknown:
-    moved = law.k1 * law.k2 * abs(law.per_rpm) ** law.k3
-    return Product(law.k1), Product(moved, (Powered("speed_rpm", 1.0, law.k3),))
+    stirring = law.k1 * law.k2 * abs(law.per_rpm) ** law.k3
+    return Product(law.k1), Product(stirring, (Powered("speed_rpm", 1.0, law.k3),))
 
 
 @expanded.register

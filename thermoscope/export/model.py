@@ -59,7 +59,7 @@ class Model:
     """A network as exported code has it.
 
     K0 (n, n + nb + 1) : constant terms;  terms : the others, with multipliers worked into `factors`
-    seen : inputs, by their sizes, that temperature laws see; or a size that never changes
+    sizes : inputs, by their sizes, that temperature laws see; or a size that never changes
     unit, node (n,) : K per unit of a state; 1 where it is a temperature
     """
 
@@ -77,7 +77,7 @@ class Model:
     outputs: tuple[Output, ...]
     unit: Array
     node: NDArray[np.int64]
-    seen: tuple[tuple[str | None, float], ...] = ()
+    sizes: tuple[tuple[str | None, float], ...] = ()
     tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
     initial_degC: float = USUAL_C
 
@@ -118,7 +118,7 @@ def packed(network: Network, values: Mapping[str, float], tests: Sequence[Test],
 
 def _sizes(every: Assembly, live: NDArray[np.bool_]) -> tuple[tuple[str | None, float], ...]:
     """What temperature laws see: (input, 0), or (None, a size)."""
-    laws = [x.law for x in every.seen(live)]
+    laws = [x.law for x in every.input_sizes(live)]
     return tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws)
 
 

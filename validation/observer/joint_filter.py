@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.integration.assembly import assembly, seen
+from lumped.integration.assembly import assembly, input_sizes
 from lumped.integration.compiled import capacity_multipliers, capacity_slopes
 from lumped.integration.record import Record
 from lumped.integration.signals import Signals
@@ -167,7 +167,7 @@ class _Terms:
         self._col = np.concatenate([p.cols for p in patterns]).astype(int)
         self._val = np.concatenate([p.vals for p in patterns])
         self._flat = owner * self.n + np.concatenate([p.row[p.to] for p in patterns]).astype(int)
-        self._seen, self._place = seen(patterns)
+        self._seen, self._place = input_sizes(patterns)
         self._bent = [(e, p.law.temperature, p.hot, p.cold) for e, p in enumerate(patterns) if p.bends]
         self._known, self._close = np.full(constants.sd.size, np.inf), close * constants.sd
 

@@ -23,21 +23,21 @@ from lumped.transfer.laws import (
     CLOCK,
     CONSTANT,
     FILMS,
+    AtUsualTemperature,
     Constant,
     FilmTable,
     Fixed,
-    Held,
     InputPower,
     Linear,
     Power,
     Radiation,
     Scaled,
-    Streamed,
     StreamTable,
     Table,
     WithTemperature,
 )
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 from thermoscope.export.tables import ExponentRatio
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
@@ -78,7 +78,7 @@ def streams(stretch=0.0, still=None):
 
 STREAM = Streamed(0.9, streams(), 9.0, "three regimes")
 LAWS = [
-    Fixed(0.8), FORCED, Stirred(0.3, 0.1, 0.9, 0.01), STREAM, Held(STREAM),
+    Fixed(0.8), FORCED, Stirred(0.3, 0.1, 0.9, 0.01), STREAM, AtUsualTemperature(STREAM),
     Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
     FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
     Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
@@ -139,7 +139,8 @@ LIMITS = {
     Stirred: [(Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": 0.0}, 4.0),
               (Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": -1e4}, 204.0)],
     Streamed: [(STREAM, {"flow": 2.0}, 0.9)],
-    Held: [(Held(STREAM), {"flow": 1.0}, 0.9 * 0.4 * 1.16), (Held(Fixed(0.8)), {}, 0.8)],
+    AtUsualTemperature: [
+        (AtUsualTemperature(STREAM), {"flow": 1.0}, 0.9 * 0.4 * 1.16), (AtUsualTemperature(Fixed(0.8)), {}, 0.8)],
     Switched: [
         (Switched(Fixed(2.0), "on", True), {"on": 1.0}, 2.0), (Switched(Fixed(2.0), "on", True), {"on": 0.0}, 0.0),
         (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0), (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
@@ -208,7 +209,7 @@ TEMPERATURE_LIMITS = {
     ],
     StreamTable: [  # at 80 degC, at its usual input of 1.5; beside still air; N beyond all use, N of next to nothing
         (streams(), 40.0, 40.0, 1.16 * (0.4 + 0.5 * np.log(1.5) / 0.6)),
-        (streams(1e9), 40.0, 40.0, streams().at(1.5, 80.0)), (streams(1e-9), 40.0, 40.0, streams().at(1.5, 80.0)),
+        (streams(1e9), 40.0, 40.0, streams().at(1.5, 80.0)), (streams(1e-14), 40.0, 40.0, streams().at(1.5, 80.0)),
         (streams(2.0), 40.0, 40.0, 0.75 * np.expm1(streams().at(1.5, 80.0) / 0.75)),
         (streams(still=FILM), 40.0, 40.0, np.cbrt(streams().at(1.5, 80.0) ** 3 + STILL**3) - STILL),
     ],
