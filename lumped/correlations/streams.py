@@ -16,7 +16,7 @@ from lumped.transfer.ranges import within_silence
 from lumped.transfer.streamed import Streamed
 
 Moving = Callable[[float, Fluid], tuple[float, Info]]
-TOLERANCE = 4e-3  # of a film, between two points of its table
+TOLERANCE = 1e-3  # of a film, between two points of its table
 THIN = 1.5e-3  # of a viscosity between two temperatures: where a regime begins a film grows with its fourth power
 LEAST, MOST = 1e-5, 1e4  # times the usual input: where a table ends at the latest
 REACH = 20.0  # and at the earliest: at four times the usual input in a fluid of a fifth of the viscosity
