@@ -7,30 +7,32 @@ What a circuit carries from its inlet to its outlet is m cp (T_out - T_in) at ev
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from geom.constants import L_MIN, M3_H
-from geom.errors import InputError
-from lumped.circuits.hydraulics import Duct, parallel_shares, pressure_drop, pumping_power
+from lumped.circuits.hydraulics import Array, Duct, parallel_shares, pressure_drop, pumping_power, split
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
+from lumped.correlations.info import Info
+from lumped.correlations.streams import LEAST, MOST, streamed
 from lumped.model.build import node_row
 from lumped.model.network import Link, Network, Row
 from lumped.transfer.coolant import Coolant
-from lumped.transfer.exchanger import BACKWARDS, CellFilm, Effectiveness, Exchanger, Flow, Rate
-from lumped.transfer.laws import Law, Table
-from lumped.transfer.properties import TABULATED_C
+from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow, Rate
+from lumped.transfer.laws import FULL_UNITS, AtUsualTemperature, InputPower, Law
+from lumped.transfer.properties import Fluid
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 
-RANGE = (0.0, *(2.0**k for k in np.arange(-5, 2.01, 0.125)))  # films are tabulated at these times the declared flow
 PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
 
-Edge = tuple[str, str, float]  # from, to, share of the flow
+Edge = tuple[str, str]  # from, to
+NOTHING = Row(np.empty(0, np.int64), np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -82,15 +84,34 @@ class Circuit:
         fluid = self.liquid(self.at_degC)
         return fluid.rho * fluid.cp
 
-    def stream(self, share: float = 1.0) -> Flow:
-        """Heat capacity rate of a share of the flow."""
-        return Flow(share * self.heat * (PER_M3S[self.unit] if self.of else self.flow), self.of)
+    def stream(self) -> Flow:
+        """Heat capacity rate of the flow."""
+        return Flow(self.heat * (PER_M3S[self.unit] if self.of else self.flow), self.of)
+
+    def shares(self, flow: float | None = None, degC: float | None = None) -> dict[str, float]:
+        """Of a flow (m3/s) through each branch, from equal pressure drop: as declared where nothing else is said."""
+        fluid = self.liquid(self.at_degC if degC is None else degC)
+        split = parallel_shares(self._ducts, self.flow if flow is None else flow, fluid)
+        return dict(zip(self.branches, split, strict=True))
 
     @property
-    def shares(self) -> dict[str, float]:
-        """Of the flow through each branch, from equal pressure drop at the declared flow."""
-        ducts = [[p.duct for p in passes] for passes in self.branches.values()]
-        return dict(zip(self.branches, parallel_shares(ducts, self.flow, self.liquid(self.at_degC)), strict=True))
+    def _ducts(self) -> list[list[Duct]]:
+        return [[p.duct for p in passes] for passes in self.branches.values()]
+
+    @cached_property
+    def _split(self) -> tuple[Array, dict[str, Array]]:
+        """Share of each branch over the logarithm of the flow (m3/s) at the viscosity of `at_degC`."""
+        low, high = LEAST * self.flow, MOST * self.flow
+        flows, each = split(self._ducts, low, high, self.liquid(self.at_degC))
+        return flows, dict(zip(self.branches, each, strict=True))
+
+    def share(self, branch: str, flow: float, fluid: Fluid) -> float:
+        """Of a flow (m3/s) of the coolant in some state."""
+        if len(self.branches) == 1:
+            return 1.0
+        flows, each = self._split
+        alike = flow * self.liquid(self.at_degC).nu / fluid.nu
+        return float(np.interp(math.log(max(alike, 1e-300)), flows, each[branch]))
 
     @property
     def outlet(self) -> str:
@@ -115,92 +136,102 @@ class Circuit:
     def links(self, network: Network) -> list[Link]:
         """Streams, films and exchanger."""
         out = self._streams(network)
-        for branch, share in self.shares.items():
-            for number, part in enumerate(self.branches[branch]):
-                out += self._films(network, branch, number, part, share)
+        for branch, passes in self.branches.items():
+            for number, part in enumerate(passes):
+                out += self._films(network, branch, number, part)
         return [*out, *self._exchanger(network)]
 
     def _streams(self, network: Network) -> list[Link]:
-        """In both directions, where it is known what flows in from behind and a column carries the flow."""
-        law, edges, end = Rate(self.stream()), list(self._edges()), {self.outlet: 1.0}
-        if self.of is None:
-            return [self._stream(network, "", self.inlet, end, edges, law)]
-        if not self._turns:
-            right = 'backwards_from = "BOUNDARY": what comes in at the outlet when the flow turns round'
-            one = OneWay(law, self.of, f"[circuits.{self.name}]", right, self.flow / PER_M3S[self.unit])
-            return [self._stream(network, "", self.inlet, end, edges, one)]
-        first, back = {self.cell(branch, 0): share for branch, share in self.shares.items()}, self._back()
-        return [
-            self._stream(network, "", self.inlet, end, edges, Direction(law, self.of, 1)),
-            self._stream(network, ":back", back[-1][0], first, back, Direction(law, self.of, -1)),
+        """In both directions, where it is known what flows in from behind and a column carries the flow.
+
+        Branches are streams of their own, whose shares follow flow and mean temperature, and sum to 1.
+        """
+        rate = Rate(self.stream())
+        if len(self.branches) == 1:
+            (path,) = self._paths.values()
+            return self._both_ways(network, "", [*path, *self._return], rate)
+        middle = _mean(network, [node for path in self._paths.values() for edge in path for node in edge])
+        out = [
+            replace(link, hot=middle, cold=NOTHING)
+            for branch, path in self._paths.items()
+            for link in self._both_ways(network, f".{branch}", path, self._shared(branch))
         ]
+        return [*out, *(self._both_ways(network, "", self._return, rate) if self._return else [])]
 
     @property
-    def _turns(self) -> bool:
-        """Whether its flow may turn round."""
-        return self.of is not None and (self.cooler is not None or bool(self.upstream))
+    def _paths(self) -> dict[str, list[Edge]]:
+        """Branch -> its edges from the inlet to where the branches meet."""
+        nodes = {
+            branch: [self.cell(branch, k) for k in range(self.cells * len(passes))]
+            for branch, passes in self.branches.items()
+        }
+        return {branch: list(pairwise([self.inlet, *cells, self.outlet])) for branch, cells in nodes.items()}
 
-    def _back(self) -> list[Edge]:
-        """The edges the other way round."""
-        inside = [(b, a, share) for a, b, share in self._edges() if self.cooler is not None or a != self.inlet]
-        return inside if self.cooler is not None else [*inside, (self.upstream, self.outlet, 1.0)]
+    @property
+    def _return(self) -> list[Edge]:
+        """Through the cooler of a closed circuit."""
+        return [] if self.cooler is None else list(pairwise([self.outlet, f"{self.name}.cooled", self.inlet]))
 
-    def _edges(self) -> Iterator[Edge]:
-        for branch, share in self.shares.items():
-            count = self.cells * len(self.branches[branch])
-            path = [self.inlet, *(self.cell(branch, k) for k in range(count)), self.outlet]
-            yield from ((a, b, share) for a, b in pairwise(path))
-        if self.cooler is not None:
-            yield from ((self.outlet, f"{self.name}.cooled", 1.0), (f"{self.name}.cooled", self.inlet, 1.0))
+    def _shared(self, branch: str) -> Law:
+        """Heat capacity rate (W/K) of a branch."""
+        flows, each = self._split
+        alike = self._streamed(self.branches[branch][0], branch, 0.0).table
+        number, value = flows - math.log(self._unit), np.tile(each[branch], len(alike.total))
+        table = replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist()))
+        stream = InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), table)
+        return stream if self.follows else AtUsualTemperature(stream)
 
-    def _stream(
-        self, network: Network, suffix: str, start: str, ends: Mapping[str, float], edges: list[Edge], law: Law
-    ) -> Link:
-        """One direction; ends : nodes that it leaves from, with their shares."""
-        a, b = [network.column(x) for x, _, _ in edges], [network.column(x) for _, x, _ in edges]
-        share = np.array([edge[2] for edge in edges])
-        rows, cols, vals = np.array(b + b), np.array(b + a), np.concatenate([share, -share])
-        out = Row(np.array([network.column(end) for end in ends]), np.array(list(ends.values())))
-        return Link(
-            f"stream:{self.name}{suffix}", "stream", (start, next(iter(ends))), rows, cols, vals, law, out,
-            node_row(network.column(start)),
-        )  # fmt: skip
+    def _streamed(self, part: Pass, branch: str, stretch: float) -> Streamed:
+        """Film (W/m2/K) of a pass onto what leaves its cells, or onto the coolant beside it where nothing stretches."""
+        usual = self.share(branch, self.flow, self.liquid(self.at_degC))
 
-    def _films(self, network: Network, branch: str, number: int, part: Pass, share: float) -> list[Link]:
-        flows = tuple(self.flow * r for r in RANGE)
-        h = tuple(self.film(part.duct, q * share) for q in flows)
-        unit = PER_M3S[self.unit] if self.of else self.flow
+        def film(size: float, fluid: Fluid) -> tuple[float, Info]:
+            share = self.share(branch, size * self._unit, fluid)
+            h, info = film_in(part.duct, size * self._unit * share, fluid)
+            return h * _restretched(h * stretch / max(size, 1e-300), share / usual), info
+
+        return streamed(self.of, self.flow / self._unit, film, self.liquid, self.at_degC, True, stretch=stretch)
+
+    @property
+    def _unit(self) -> float:
+        """m3/s of an input of 1; a flow that never changes is in m3/s itself."""
+        return PER_M3S[self.unit] if self.of else 1.0
+
+    def _both_ways(self, network: Network, suffix: str, edges: list[Edge], law: Law) -> list[Link]:
+        if self.of is None:
+            return [self._stream(network, suffix, edges, law)]
+        if not (self.cooler is not None or self.upstream):
+            right = 'backwards_from = "BOUNDARY": what comes in at the outlet when the flow turns round'
+            one = OneWay(law, self.of, f"[circuits.{self.name}]", right, self.flow / PER_M3S[self.unit])
+            return [self._stream(network, suffix, edges, one)]
+        back = [(b, a) for a, b in reversed(edges) if self.cooler is not None or a != self.inlet]
+        entry = [] if self.cooler is not None else [(self.upstream, self.outlet)]
+        return [
+            self._stream(network, suffix, edges, Direction(law, self.of, 1)),
+            self._stream(network, f"{suffix}:back", [*entry, *back], Direction(law, self.of, -1)),
+        ]
+
+    def _stream(self, network: Network, suffix: str, edges: list[Edge], law: Law) -> Link:
+        """In one direction, as long as edges follow each other; it ends where they meet, or with the last."""
+        a, b = [network.column(x) for x, _ in edges], [network.column(x) for _, x in edges]
+        rows, cols, vals = np.array(b + b), np.array(b + a), np.repeat([1.0, -1.0], len(edges))
+        end = self.outlet if any(x == self.outlet for _, x in edges[1:]) else edges[-1][1]
+        start, out = node_row(network.column(edges[0][0])), node_row(network.column(end))
+        places = edges[0][0], end
+        return Link(f"stream:{self.name}{suffix}", "stream", places, rows, cols, vals, law, out, start)
+
+    def _films(self, network: Network, branch: str, number: int, part: Pass) -> list[Link]:
+        usual = self.share(branch, self.flow, self.liquid(self.at_degC))
         whole = part.duct.wall / self.cells * sum(part.walls.values())
-        out = []
+        one = self._streamed(part, branch, whole / (self.heat * self._unit * usual))
+        nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
+        before = self.cell(branch, number * self.cells - 1) if number else self.inlet
+        middle, laws = _mean(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
         for wall, of in part.walls.items():
-            area = part.duct.wall / self.cells * of
-            law = CellFilm(tuple(q / unit for q in flows), h, self.stream(share), area, whole)
-            if self.follows:
-                law = replace(law, temperature=self._warming(law, part.duct, self.flow * share))
-            nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
-            out.append(_comb(network, f"film:{self.name}.{branch}.{number + 1}:{wall}", wall, nodes, law))
-        return out
-
-    def _warming(self, law: CellFilm, duct: Duct, flow: float) -> Table:
-        """The conductance at the usual flow over the coolant's temperature, as a share of that at `at_degC`."""
-        rate = np.array([flow * self.heat])
-        films = dict(self._films_at(duct, flow))
-        usual = law.conductance(rate, self.film(duct, flow))
-        return Table(tuple(films), tuple(float(law.conductance(rate, h) / usual) for h in films.values()))
-
-    def _films_at(self, duct: Duct, flow: float) -> Iterator[tuple[float, float]]:
-        """(degC, W/m2/K) wherever the liquid is known."""
-        for T in TABULATED_C:
-            with suppress(InputError):
-                yield T, self.film(duct, flow, T)
-
-    def film(self, duct: Duct, flow: float, degC: float | None = None) -> float:
-        """h (W/m2/K) in a duct at a flow (m3/s): Gnielinski in straight ones, Schmidt in coils."""
-        speed, fluid = flow / duct.section, self.liquid(self.at_degC if degC is None else degC)
-        if duct.coil:
-            return schmidt_helical(speed, duct.diameter, duct.coil, fluid)[0]
-        ratio = min(duct.width, duct.height) / max(duct.width, duct.height)
-        return duct_film(speed, duct.diameter, duct.length, fluid, staton_rectangle(ratio))[0]
+            law = replace(one, value=part.duct.wall / self.cells * of)
+            laws[wall] = law if self.follows else AtUsualTemperature(law)
+        name = f"film:{self.name}.{branch}.{number + 1}"
+        return [_comb(network, f"{name}:{wall}", wall, nodes, middle, law) for wall, law in laws.items()]
 
     def _exchanger(self, network: Network) -> list[Link]:
         if self.cooler is None:
@@ -225,7 +256,7 @@ class Circuit:
     def pressure_drop(self, flow: float | None = None) -> float:
         """Across the branches (Pa) at a flow (m3/s)."""
         q, fluid = self.flow if flow is None else flow, self.liquid(self.at_degC)
-        branch, share = max(self.shares.items(), key=lambda item: item[1])
+        branch, share = max(self.shares(q).items(), key=lambda item: item[1])
         return math.fsum(pressure_drop(p.duct, q * share, fluid) for p in self.branches[branch])
 
     def pump_power(self, flow: float | None = None) -> float:
@@ -234,13 +265,39 @@ class Circuit:
         return pumping_power(self.pressure_drop(q), q, self.pump_efficiency)
 
 
-def _comb(network: Network, name: str, wall: str, cells: list[str], law: CellFilm) -> Link:
-    """One link from a wall to every cell of a pass; its law looks at the mean temperature of the cells (degC)."""
+def film_in(duct: Duct, flow: float, fluid: Fluid) -> tuple[float, Info]:
+    """h (W/m2/K) in a duct at a flow (m3/s): Gnielinski in straight ones, Schmidt in coils."""
+    speed = flow / duct.section
+    if duct.coil:
+        return schmidt_helical(speed, duct.diameter, duct.coil, fluid)
+    ratio = min(duct.width, duct.height) / max(duct.width, duct.height)
+    return duct_film(speed, duct.diameter, duct.length, fluid, staton_rectangle(ratio))
+
+
+def _restretched(units: float, share: float) -> float:
+    """By what to take a film so that a stretch for the usual share is right at `share` times that.
+
+    units : transfer units of a cell at the usual share
+    """
+    N = units / share
+    if share == 1.0 or N <= 0.0 or math.expm1(FULL_UNITS) < N:
+        return 1.0
+    N = min(N, FULL_UNITS)
+    return math.log1p(share * math.expm1(N)) / (share * N)
+
+
+def _mean(network: Network, nodes: list[str]) -> Row:
+    """Of the temperatures of nodes, each as often as it is named."""
+    at, count = np.unique([network.column(node) for node in nodes], return_counts=True)
+    return Row(at, count / len(nodes))
+
+
+def _comb(network: Network, name: str, wall: str, cells: list[str], middle: Row, law: Law) -> Link:
+    """One link from a wall to every cell of a pass; its law looks at the mean temperature of the coolant (degC)."""
     w = network.column(wall)
     c = np.array([network.column(cell) for cell in cells])
     k = np.full(c.size, w)
     rows, cols = np.concatenate([k, k, c, c]), np.concatenate([k, c, c, k])
     one = np.ones(c.size)
     vals = np.concatenate([one, -one, one, -one])
-    mean, zero = Row(c, one / c.size), Row(np.empty(0, np.int64), np.empty(0))
-    return Link(name, "film", (wall, cells[0]), rows, cols, vals, law, mean, zero)
+    return Link(name, "film", (wall, cells[0]), rows, cols, vals, law, middle, NOTHING)

@@ -6,9 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.correlations.ducts import LAMINAR, TURBULENT
 from lumped.transfer.properties import Fluid
 
+Array = NDArray[np.float64]
+POINTS, SLOWEST = 800, 1e-3  # of a split, and where it begins below the least flow: branches may take so little
+STRAIGHT = 1e-3  # of a share
 ROUGHNESS = 2.5e-6  # m, drawn or die-cast channel
 
 
@@ -120,6 +126,31 @@ def parallel_shares(branches: Sequence[Sequence[Passage]], flow: float, fluid: F
     p = float(brentq(lambda p: sum(flow_at(b, p) for b in branches) - flow, 0.0, top, rtol=1e-12))
     total = sum(flow_at(b, p) for b in branches)
     return tuple(flow_at(b, p) / total for b in branches)
+
+
+def split(branches: Sequence[Sequence[Passage]], low: float, high: float, fluid: Fluid) -> tuple[Array, Array]:
+    """Logarithm of the flow (n,) from `low` to `high` (m3/s), and the share of each branch (branches, n), as above.
+
+    Shares depend on the flow over the kinematic viscosity alone: one split holds for a fluid at every temperature.
+    """
+    flows = np.geomspace(low * SLOWEST, high, POINTS)
+    drops = np.array([[sum(pressure_drop(duct, float(q), fluid) for duct in b) for q in flows] for b in branches])
+    p = np.linspace(np.log(drops[:, 0].max()), np.log(drops[:, -1].min()), POINTS)
+    each = np.exp([np.interp(p, np.log(drop), np.log(flows)) for drop in drops])
+    total = each.sum(axis=0)
+    some = _needed(np.log(total), each / total, 0, POINTS - 1)
+    return np.log(total[some]), each[:, some] / total[some]
+
+
+def _needed(x: Array, y: Array, first: int, last: int) -> list[int]:
+    """Points of curves y (curves, n) between which they are straight lines, to STRAIGHT of themselves."""
+    s = (x[first : last + 1] - x[first]) / (x[last] - x[first])
+    part = y[:, first : last + 1]
+    off = np.abs(part[:, :1] + s * (part[:, -1:] - part[:, :1]) - part) / part
+    worst = int(off.max(axis=0).argmax())
+    if off.max() <= STRAIGHT:
+        return [first, last]
+    return [*_needed(x, y, first, first + worst)[:-1], *_needed(x, y, first + worst, last)]
 
 
 def pumping_power(pressure: float, flow: float, efficiency: float = 0.5) -> float:

@@ -62,7 +62,8 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
     out = []
     for name, table in top.tables("circuits").items():
         films = tuple((x.name, 1.0) for x in network.links if x.name.startswith(f"film:{name}."))
-        streams = tuple((x.name, 1.0) for x in network.links if x.name in (f"stream:{name}", f"stream:{name}:back"))
+        single, parts = f"stream:{name}", (f"stream:{name}:", f"stream:{name}.")
+        streams = tuple((x.name, 1.0) for x in network.links if x.name == single or x.name.startswith(parts))
         acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
         out += [
             Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Row, Source
 from lumped.numerics.dense import Structure, least_fill
-from lumped.numerics.terms import CONSTANT, FILM, INVERSE, LINEAR, POWER, RADIATION, TABLE, Terms
+from lumped.numerics.terms import CONSTANT, FILM, INVERSE, LINEAR, POWER, RADIATION, STREAM, TABLE, Terms
 from lumped.transfer import laws
 
 Array = NDArray[np.float64]
@@ -72,6 +72,7 @@ class Assembly:
         self._flat = ints(p.row[p.to] * (size + 1) + p.cols for p in self.patterns)
         self._vals = floats(p.vals for p in self.patterns)
         self._packed: dict[bytes, Terms] = {}
+        self._sizes: dict[bytes, tuple[InputSize, ...]] = {}
         self._eliminated: dict[bytes, tuple[NDArray[np.int64], Structure]] = {}
 
     def matrix(self, coefficient: Array) -> Array:
@@ -108,6 +109,13 @@ class Assembly:
             patterns = [p for p, alive in zip(self.patterns, live, strict=True) if alive]
             self._packed[key] = _pack(patterns, steady[live])
         return self._packed[key]
+
+    def input_sizes(self, live: Mask) -> tuple[InputSize, ...]:
+        """What the temperature laws of the live terms see of inputs."""
+        key = live.tobytes()
+        if key not in self._sizes:
+            self._sizes[key] = input_sizes([p for p, alive in zip(self.patterns, live, strict=True) if alive])[0]
+        return self._sizes[key]
 
 
 @lru_cache(maxsize=64)
@@ -153,6 +161,8 @@ def _code(law: laws.TemperatureLaw) -> tuple[int, float, float]:
         return INVERSE, law.alpha, law.reference
     if isinstance(law, laws.FilmTable):
         return FILM, float(len(law.difference)), 0.0
+    if isinstance(law, laws.StreamTable):
+        return STREAM, float(len(law.total)), -float(len(law.still.difference)) if law.still else law.stretch
     return (TABLE if isinstance(law, laws.Table) else CONSTANT), 0.0, 0.0
 
 
@@ -162,6 +172,9 @@ def _table(law: laws.TemperatureLaw) -> Array:
         points = [law.difference, law.value]
     if isinstance(law, laws.FilmTable):
         points = [law.difference * laws.FILMS, law.value]
+    if isinstance(law, laws.StreamTable):
+        still, grid = _table(law.still).T if law.still else np.empty((2, 0)), (*law.number, *law.value)
+        points = [(*law.total, *grid, *still[0]), (*law.shift, *grid, *still[1])]
     return np.ascontiguousarray(np.array(points, float).T)
 
 
@@ -177,10 +190,33 @@ def ints(parts: Iterable[Sequence | NDArray]) -> NDArray[np.int64]:
     return np.concatenate([np.empty(0, np.int64), *(np.asarray(p, np.int64) for p in parts)])
 
 
+@dataclass(frozen=True)
+class InputSize:
+    """An input as temperature laws see it: a column of its own after the factors of all terms."""
+
+    name: str
+    law: laws.Law
+
+
+def input_sizes(patterns: Sequence[Pattern]) -> tuple[tuple[InputSize, ...], NDArray[np.int64]]:
+    """What temperature laws see of inputs; which column of all that is every pattern's, or 0."""
+    columns: dict[tuple[str | None, float], int] = {}
+    at = np.zeros(len(patterns), np.int64)
+    for e, p in enumerate(patterns):
+        if isinstance(law := p.law.temperature, laws.StreamTable):
+            key = law.of, 0.0 if law.of else law.usual
+            at[e] = len(patterns) + columns.setdefault(key, len(columns))
+    out = (laws.InputPower(1.0, ((of, 1.0, 1.0),)) if of else laws.Fixed(usual) for of, usual in columns)
+    return tuple(InputSize("what a stream's film follows", law) for law in out), at
+
+
 def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
-    tables = [_table(p.law.temperature) for p in patterns]
+    temperatures = [p.law.temperature for p in patterns]  # some laws make theirs when asked: they must stay alive
+    tables = {id(law): _table(law) for law in temperatures}
+    first = dict(zip(tables, starts(list(tables.values())).tolist(), strict=False))
+    spans = [(first[k], first[k] + len(tables[k])) for k in map(id, temperatures)]
+    points = np.array(spans, np.int64).reshape(-1, 2)
     codes = [_code(p.law.temperature) for p in patterns]
-    points = starts(tables)
     pattern_of = _numbered([(p.cols.tobytes(), p.vals.tobytes(), p.row.tobytes(), p.to.tobytes()) for p in patterns])
     distinct = [patterns[k] for k in np.unique(pattern_of, return_index=True)[1]]
     rows = starts([p.row for p in distinct])
@@ -197,12 +233,12 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
         weight=floats([floats(p.vals for p in distinct)[by_row], *(x.weights for x in probed)]),
         row=ints(p.row for p in distinct),
         part=np.column_stack(
-            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points[:-1], points[1:]]
+            [pattern_of, rows[pattern_of], rows[pattern_of + 1], rows[-1] + probe_of, points, input_sizes(patterns)[1]]
         ),
         order=np.argsort(pattern_of, kind="stable"),
         kind=np.array(kind, np.int64).reshape(-1, 5),
         par=np.array([c[1:] for c in codes], float).reshape(-1, 2),
-        point=np.concatenate([np.empty((0, 2)), *tables]),
+        point=np.concatenate([np.empty((0, 2)), *tables.values()]),
         m=np.empty(0),
     )
 

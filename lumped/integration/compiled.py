@@ -163,8 +163,19 @@ def compiled(
     moving = (m[live] != 0.0) & ~steady[live]
     stiff = moving & (terms.kind[:, STIFF] == 1)
     bends = bool(np.any(terms.kind[stiff, BENDS]))
+    sizes = every.input_sizes(live)
+    course, others = [curves[k] for k in alive], np.zeros(len(sizes), bool)
+    course += [signals.curve(x.name, x.law) for x in sizes]
     drive = forcing(
-        time, u, signals, patterns, [curves[k] for k in alive], moving, stiff, bends, precision.every_sample
+        time,
+        u,
+        signals,
+        [*patterns, *sizes],
+        course,
+        np.append(moving, ~others),
+        np.append(stiff, others),
+        bends,
+        precision.every_sample,
     )
     return Compiled(
         network.C * capacity_multipliers(network, acting),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.integration.assembly import Pattern
+from lumped.integration.assembly import InputSize, Pattern
 from lumped.integration.curve import NONE, ROUNDING, SMALL, Curve, between, straight
 from lumped.integration.signals import Signals
 from lumped.model.network import Network
@@ -47,10 +47,10 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
 
 
 def forcing(
-    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern], curves: Sequence[Curve], acting: Mask,
-    stiff: Mask, bends: bool, every_sample: bool = False,
+    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern | InputSize], curves: Sequence[Curve],
+    acting: Mask, stiff: Mask, bends: bool, every_sample: bool = False,
 ) -> Forcing:  # fmt: skip
-    """u (nt, nb) boundaries;  patterns, curves : the live terms, of which those `acting` set the knots
+    """u (nt, nb) boundaries;  patterns, curves : the live terms and what they see; those `acting` set the knots
 
     stiff : which acting terms touch the matrix;  bends : whether one of these follows temperature
     every_sample : to have a knot at every sample, whether a run needs it or not

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geom.errors import ThermoscopeError
 from geom.text import table
 from lumped.integration.compiled import compiled
+from lumped.integration.reach import Reach
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.stages import stages, work
@@ -65,5 +66,8 @@ def steady(
         why = "a node nothing holds, or thermal runaway"
         raise ThermoscopeError(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], scratch.D
+    reach = Reach(core.terms)
+    reach.see(z[None, :])
+    reach.tell(core.names)
     y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

@@ -10,27 +10,29 @@ pressure of its turning, as it comes in relative to the duct, is taken as lost a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from geom.constants import M3_H
+from geom.constants import M3_H, RPM
 from geom.description.geometry import Duct, Features
 from geom.description.machine import Machine
 from lumped.circuits.hydraulics import parallel_shares
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
-from lumped.machine.laws import Interpolated, film_over
+from lumped.correlations.info import Info
+from lumped.correlations.streams import streamed
 from lumped.machine.settings import Fan, Films
 from lumped.machine.shapes import Gap, gap_fluid
 from lumped.model.network import Link, Network, Row
-from lumped.transfer.laws import InputPower, Law
-from lumped.transfer.properties import air
+from lumped.transfer.laws import Array, InputPower, Inputs, Law, Table
+from lumped.transfer.properties import Fluid, air
 from lumped.transfer.reversal import OneWay
 
-AIR_HEAT = 1.205 * 1006.0  # rho cp of the air the fan takes in at 20 degC, J/m3/K
-STEPS = 121  # of speed in a table of films
-GAP_C, DUCT_C = 80.0, 40.0  # film temperatures at which tables over speed and flow are made
+GAP_C, DUCT_C = 80.0, 40.0  # usual film temperatures, at which ranges are checked
+INTAKE_C = tuple(float(T) for T in range(-60, 101, 10))  # of a fan; rho cp is straight between two to 0.03 %
 
 
 def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
@@ -44,21 +46,33 @@ def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
     return {name: share for name, share in shares.items() if share > 0.0}
 
 
-def stirred(share: float, films: Films, radius: float, top_rpm: float) -> Law:
+def stirred(share: float, films: Films, radius: float) -> Law:
     """Walls of air that a rotor of this radius (m) stirs; `share` of its tip speed passes the wall."""
-    speed = np.linspace(0.0, top_rpm, STEPS)
-    tip = speed * 2 * np.pi / 60 * radius * share
-    h = end_space(tip, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
-    return Interpolated("speed_rpm", tuple(speed), tuple(np.asarray(h)))
+    return Stirred(films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3, share * RPM * radius)
 
 
-def gap_film(gap: Gap, top_rpm: float) -> Law:
-    """One wall of the air gap. It follows its film temperature as it does at half of `top_rpm`."""
+@dataclass(frozen=True)
+class Stirred(Law):
+    """k1 (1 + k2 v^k3) (W/m2/K) of the speed v (m/s) past a wall, per_rpm (m/s) times the shaft's."""
 
-    def film(rpm: float, T: float) -> float:
-        return taylor_film(rpm * 2 * np.pi / 60, gap.rotor_radius, gap.width, air(T))[0]
+    k1: float
+    k2: float
+    k3: float
+    per_rpm: float
+    reads = ("speed_rpm",)
 
-    return film_over("speed_rpm", np.linspace(0.0, top_rpm, STEPS).tolist(), film, 0.5 * top_rpm, GAP_C)
+    def factor(self, inputs: Inputs) -> Array:
+        v = self.per_rpm * np.asarray(inputs["speed_rpm"], float)
+        return np.asarray(end_space(v, self.k1, self.k2, self.k3)[0])
+
+
+def gap_film(gap: Gap, usual_rpm: float) -> Law:
+    """One wall of the air gap."""
+
+    def film(rpm: float, fluid: Fluid) -> tuple[float, Info]:
+        return taylor_film(rpm * RPM, gap.rotor_radius, gap.width, fluid)
+
+    return streamed("speed_rpm", usual_rpm, film, air, GAP_C, liquid=False)
 
 
 def channel_film(duct: Duct, share: float, usual: float) -> Law:
@@ -67,10 +81,10 @@ def channel_film(duct: Duct, share: float, usual: float) -> Law:
     usual : flow (m3/h)
     """
 
-    def film(flow: float, T: float) -> float:
-        return duct_film(share * flow * M3_H / duct.section, duct.diameter, duct.length, air(T))[0]
+    def film(flow: float, fluid: Fluid) -> tuple[float, Info]:
+        return duct_film(share * flow * M3_H / duct.section, duct.diameter, duct.length, fluid)
 
-    return film_over("fan_flow_m3h", np.linspace(0.0, 600.0, 61).tolist(), film, usual, DUCT_C)
+    return streamed("fan_flow_m3h", usual, film, air, DUCT_C, liquid=False)
 
 
 def fan_streams(network: Network, features: Features, shares: Mapping[str, float], usual: float) -> list[Link]:
@@ -83,8 +97,15 @@ def fan_streams(network: Network, features: Features, shares: Mapping[str, float
         right: dict(shares),
     }
     way = "a flow from left to right: what comes in at the right is not known"
-    law = OneWay(InputPower(AIR_HEAT * M3_H, (("fan_flow_m3h", 1.0, 1.0),)), "fan_flow_m3h", "[fans]", way, usual)
+    rate = InputPower(M3_H, (("fan_flow_m3h", 1.0, 1.0),), heat_of_air())
+    law = OneWay(rate, "fan_flow_m3h", "[fans]", way, usual)
     return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
+
+
+@cache
+def heat_of_air() -> Table:
+    """rho cp (J/m3/K) of what a fan takes in, at its own temperature: a fan moves a volume."""
+    return Table(INTAKE_C, tuple(air(T).rho * air(T).cp for T in INTAKE_C))
 
 
 def _cell(network: Network, cell: str, upstream: Mapping[str, float], law: Law) -> Link:
@@ -92,7 +113,6 @@ def _cell(network: Network, cell: str, upstream: Mapping[str, float], law: Law) 
     column = network.column(cell)
     cols = np.array([column, *(network.column(name) for name in upstream)])
     vals = np.array([sum(upstream.values()), *(-share for share in upstream.values())])
-    inflow = -vals[1:] / vals[0]
     rows, first = np.full(len(cols), column), next(iter(upstream))
-    hot, cold = Row(np.array([column]), np.array([1.0])), Row(cols[1:], inflow)
-    return Link(f"stream:fan:{cell}", "stream", (first, cell), rows, cols, vals, law, hot, cold)
+    intake, nothing = Row(np.array([network.column("ambient")]), np.ones(1)), Row(np.empty(0, np.int64), np.empty(0))
+    return Link(f"stream:fan:{cell}", "stream", (first, cell), rows, cols, vals, law, intake, nothing)

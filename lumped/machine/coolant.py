@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache, partial
 
 import numpy as np
 
@@ -18,29 +18,35 @@ from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.profile import loop_length
 from lumped.correlations.ducts import duct_film, schmidt_helical
-from lumped.machine.laws import Interpolated
+from lumped.correlations.info import Info
+from lumped.correlations.streams import streamed
 from lumped.machine.path import cells_of, stem
 from lumped.machine.shapes import radius
 from lumped.model.network import Link, Network, Place, Row
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import Law
+from lumped.transfer.laws import AtUsualTemperature, InputPower, Law
 from lumped.transfer.properties import Fluid, ethylene_glycol, propylene_glycol, water
 from lumped.transfer.reversal import OneWay
+from lumped.transfer.streamed import Streamed
 
 INLET, FLOW = "coolant", "flow_l_min"
 LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
-RANGE = 4.0  # the tables reach up to this times the declared flow
-MOST_UNITS = 5.0  # of one cell: the coolant then leaves it at its walls' temperature, to 1 %
 
 
 @dataclass(frozen=True)
 class Cooling:
-    """feeds : jacket -> INLET or the jacket whose outlet feeds it;  property_C: where the liquid's properties hold"""
+    """feeds : jacket -> INLET or the jacket whose outlet feeds it
+
+    property_C : where density and heat capacity are those of the flow; films follow the coolant's own temperature
+    """
 
     coolant: str
     flow_l_min: float
     property_C: float
     feeds: Mapping[str, str]
+
+    def __hash__(self) -> int:
+        return hash((self.coolant, self.flow_l_min, self.property_C, *self.feeds.items()))
 
     @property
     def liquid(self) -> Fluid:
@@ -99,12 +105,12 @@ class Channel:
     length: float
     coil: float
 
-    def film(self, flow_l_min: float, fluid: Fluid) -> float:
+    def film(self, flow_l_min: float, fluid: Fluid) -> tuple[float, Info]:
         """W/m2/K"""
         speed = flow_l_min * L_MIN / self.area
         if self.coil:
-            return schmidt_helical(speed, self.diameter, self.coil, fluid)[0]
-        return duct_film(speed, self.diameter, self.length, fluid)[0]
+            return schmidt_helical(speed, self.diameter, self.coil, fluid)
+        return duct_film(speed, self.diameter, self.length, fluid)
 
 
 def channel_of(machine: Machine, jacket: str) -> Channel:
@@ -118,44 +124,54 @@ def channel_of(machine: Machine, jacket: str) -> Channel:
     return Channel(profile.area, 4 * profile.area / loop_length(profile.outer), z1 - z0, 0.0)
 
 
-def _flows(cooling: Cooling) -> tuple[float, ...]:
-    return tuple(cooling.flow_l_min * np.concatenate([[0.0], np.geomspace(0.02, RANGE, 80)]))
-
-
 def jacket_film(machine: Machine, jacket: str, cooling: Cooling) -> Law:
-    """W/m2/K over the inlet's flow (l/min)."""
-    channel, share, fluid, at = channel_of(machine, jacket), cooling.share(jacket), cooling.liquid, _flows(cooling)
-    return Interpolated(FLOW, at, tuple(channel.film(share * q, fluid) for q in at))
+    """W/m2/K over the inlet's flow (l/min), at the usual temperature of the coolant."""
+    return AtUsualTemperature(_film(channel_of(machine, jacket), cooling, cooling.share(jacket), 0.0))
 
 
-def outlet_film(machine: Machine, network: Network, cell: str, cooling: Cooling) -> Law:
-    """W/m2/K over the inlet's flow, onto the temperature at which the coolant leaves a cell."""
-    at = np.array(_flows(cooling))
-    film, rate = np.array(jacket_film(machine, stem(cell), cooling).factor({FLOW: at})), _rate(stem(cell), cooling)
+def onto_outlet(machine: Machine, jacket: str, cooling: Cooling, wet: float) -> Streamed:
+    """Film (W/m2/K) on what leaves a cell with some wetted area (m2)."""
+    return _film(channel_of(machine, jacket), cooling, cooling.share(jacket), wet / _rate(jacket, cooling))
+
+
+def outlet_film(machine: Machine, network: Network, place: str, cooling: Cooling) -> Link:
+    """From a wall onto what leaves a cell; it follows the temperature between what comes in and what leaves."""
+    cell = str(network.places[place].fluid)
+    jacket, feeds = stem(cell), _feeds(machine, cooling)
     wet = sum(p.area or 0.0 for p in network.places.values() if p.kind == "surface" and p.fluid == cell)
-    units = np.minimum(np.divide(film * wet, rate, out=np.zeros_like(rate), where=rate > 0), MOST_UNITS)
-    return Interpolated(FLOW, tuple(at), tuple(film * grown(units)))
+    law = onto_outlet(machine, jacket, cooling, wet)
+    between = np.array([network.column(feeds[cell]), network.column(cell)])
+    link = network.surface_link(f"film:{place}", "film", place, cell, law)
+    return replace(link, hot=Row(between, np.array([0.5, 0.5])), cold=Row(np.empty(0, np.int64), np.empty(0)))
 
 
-def grown(units: np.ndarray) -> np.ndarray:
-    """(e^N - 1) / N for N transfer units, 1 without."""
-    return np.where(units > 0, np.expm1(units) / np.where(units > 0, units, 1.0), 1.0)
+@lru_cache(64)
+def _film(channel: Channel, cooling: Cooling, share: float, stretch: float) -> Streamed:
+    """stretch : of StreamTable"""
+    return streamed(
+        FLOW, cooling.flow_l_min, lambda q, fluid: channel.film(share * q, fluid), partial(liquid, cooling.coolant),
+        cooling.property_C, liquid=True, stretch=stretch,
+    )  # fmt: skip
+
+
+def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
+    """Cell -> the cell, or the inlet, from which its coolant comes."""
+    cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
+    last = {jacket: path[-1] for jacket, path in cells.items()} | {INLET: INLET}
+    return {
+        cell: feed for jacket, path in cells.items() for feed, cell in zip((last[cooling.feeds[jacket]], *path), path)
+    }
 
 
 def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
     """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
-    cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
-    last = {jacket: path[-1] for jacket, path in cells.items()} | {INLET: INLET}
-    return [
-        _stream(network, feed, cell, _rate_law(machine, jacket, cooling))
-        for jacket, path in cells.items()
-        for feed, cell in zip((last[cooling.feeds[jacket]], *path), path)
-    ]
+    feeds = _feeds(machine, cooling).items()
+    return [_stream(network, feed, cell, _rate_law(machine, stem(cell), cooling)) for cell, feed in feeds]
 
 
 def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
-    rate = Interpolated(FLOW, _flows(cooling), tuple(_rate(jacket, cooling)))
     right = "a flow from inlet to outlet: what comes in at the outlet is not known"
+    rate = InputPower(_rate(jacket, cooling), ((FLOW, 1.0, 1.0),))
     return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
 
 
@@ -176,7 +192,6 @@ def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, P
     }
 
 
-def _rate(jacket: str, cooling: Cooling) -> np.ndarray:
-    """Heat capacity rate m cp (W/K) at the flows of the tables."""
-    fluid = cooling.liquid
-    return fluid.rho * fluid.cp * np.array(_flows(cooling)) * cooling.share(jacket) * L_MIN
+def _rate(jacket: str, cooling: Cooling) -> float:
+    """Heat capacity rate m cp (W/K) of an inlet's flow of 1 l/min."""
+    return cooling.liquid.rho * cooling.liquid.cp * cooling.share(jacket) * L_MIN

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.machine.air import channel_film, fan_shares, gap_film, stirred
@@ -18,9 +16,9 @@ from lumped.machine.roles import turning
 from lumped.machine.settings import Fan, Films, read_fan, read_films
 from lumped.machine.shapes import Gap, gap_of, radius
 from lumped.transfer.laws import Inputs, Law
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import coefficient
 
-TOP_RPM = 3000.0  # films of speed are tabulated at least this far
+USUAL_RPM = 1500.0  # where a machine file rates none: films of speed are tabulated around it
 
 
 @dataclass(frozen=True)
@@ -74,8 +72,9 @@ class Surroundings:
         return max((radius(profile.outer) for part in rotating for profile, _, _ in part.prisms), default=0.0)
 
     @cached_property
-    def top_rpm(self) -> float:
-        return max(TOP_RPM, 2.0 * float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)))
+    def usual_rpm(self) -> float:
+        """Rated speed, or what is usual."""
+        return float(self.machine.sections.get("ratings", {}).get("speed_rpm", 0.0)) or USUAL_RPM
 
 
 def surroundings(machine: Machine, contacts: Iterable[str]) -> Surroundings:
@@ -90,21 +89,18 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
     if around.cooling is not None and stem(fluid) in around.cooling.feeds:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if gap is not None and fluid in around.gaps:
-        return {"": gap_film(gap, around.top_rpm)}
+        return {"": gap_film(gap, around.usual_rpm)}
     ducts = around.machine.features.ducts
     if fluid in ducts and ducts[fluid].turns and fluid in around.shares:
         return {"axial": channel_film(ducts[fluid], around.shares[fluid], around.usual_flow)}
     if fluid in ducts and not ducts[fluid].turns:
         past = 1.0 - sum(share for way, share in around.shares.items() if way in ducts and ducts[way].turns)
         axial = {} if around.fan is None else {"axial": channel_film(ducts[fluid], past, around.usual_flow)}
-        return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius, around.top_rpm)}
+        return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
-    return {"": stirred(share, films, around.tip_radius, around.top_rpm)}
+    return {"": stirred(share, films, around.tip_radius)}
 
 
 def nominal(laws: Mapping[str, Law], inputs: Inputs, difference: float = 30.0) -> float:
     """What all mechanisms add up to (W/m2/K) at an operating point, `difference` (K) above 20 degC."""
-    return sum(
-        float(np.mean(law.factor(inputs))) * temperature_value(law.temperature, 20.0 + difference, 20.0)
-        for law in laws.values()
-    )
+    return sum(coefficient(law, inputs, 20.0 + difference, 20.0) for law in laws.values())

@@ -112,8 +112,8 @@ def _contact(link: Link) -> str:
 
 
 def _film_links(network: Network, face: Place, around: Surroundings) -> list[Link]:
-    laws = face_films(face.part, str(face.fluid), around)
     if around.cooling is not None and stem(str(face.fluid)) in around.cooling.feeds:
-        laws = {"": outlet_film(around.machine, network, str(face.fluid), around.cooling)}
+        return [outlet_film(around.machine, network, face.name, around.cooling)]
+    laws = face_films(face.part, str(face.fluid), around)
     name = {mechanism: f"film:{face.name}" + (f":{mechanism}" if mechanism else "") for mechanism in laws}
     return [network.surface_link(name[m], "film", face.name, str(face.fluid), law) for m, law in laws.items()]

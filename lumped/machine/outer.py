@@ -18,19 +18,20 @@ from lumped.correlations.fins import elenbaas, heiles, mean_of_decay
 from lumped.correlations.forced import flat_plate
 from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
+from lumped.correlations.streams import streamed
 from lumped.correlations.tabulate import film_tabulated
-from lumped.machine.laws import film_over
 from lumped.machine.settings import Films
 from lumped.machine.shapes import Extent, Fins, extent, fins_of
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law, Radiation
-from lumped.transfer.properties import air
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation
+from lumped.transfer.properties import Fluid, air
 from lumped.transfer.shaft_fan import shaft_fan
+from lumped.transfer.streamed import Streamed
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
 # A fifth apart: straight between them to 0.1 %; no frame is hotter.
 STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
-BLOWN_C = 40.0  # film temperature at which tables over speed are made
+BLOWN_C = 40.0  # film temperature at which ranges are checked
 CROWDED = 0.8  # still air along axial fins, over the bare cylinder's film (assumed)
 END_SHIELD = 0.35  # a turned body shorter than this share of its diameter is a vertical plate
 
@@ -49,7 +50,7 @@ class Outer:
     view: float = 1.0
     factor: float = 1.0
     spacing: float = 0.0
-    fan: Law | None = None
+    fan: InputPower | None = None
 
 
 @dataclass(frozen=True)
@@ -85,14 +86,17 @@ def cowl_of(machine: Machine) -> Cowl | None:
 
 
 def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
-    """Mechanism -> law (W/m2/K) of a part's outer face; they act in parallel."""
+    """Mechanism -> law (W/m2/K) of a part's outer face; they act in parallel.
+
+    Still and blown air do not add: "blown" is what is beyond still air of (h_blown^3 + h_still^3)^(1/3) (Churchill).
+    """
     outer, cowl = outer_of(machine, part, films), cowl_of(machine)
     laws: dict[str, Law] = {
         "natural": Fixed(outer.factor, still_air(outer)),
         "radiation": Fixed(outer.emissivity * outer.view, Radiation()),
     }
-    blown = _blown(machine, part, cowl) if outer.fan is None and cowl is not None else outer.fan
-    return laws if blown is None else {**laws, "blown": blown}
+    blown = _fan(outer.fan) if outer.fan is not None else None if cowl is None else _blown(machine, part, cowl)
+    return laws if blown is None else {**laws, "blown": _excess(blown, outer)}
 
 
 def outer_of(machine: Machine, part: str, films: Films) -> Outer:
@@ -112,7 +116,7 @@ def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     return outer
 
 
-def _fan_law(table: Table) -> Law | None:
+def _fan_law(table: Table) -> InputPower | None:
     if "fan" not in table:
         return None
     inner = Table(table.raw("fan"), f"{table.where} fan")
@@ -163,18 +167,18 @@ def still_air(outer: Outer) -> FilmTable:
     return replace(law, value=tuple(each.ravel()))
 
 
-def _blown(machine: Machine, part: str, cowl: Cowl) -> Law | None:
+def _blown(machine: Machine, part: str, cowl: Cowl) -> Streamed | None:
     """Films of the fan's air: fin channels by Heiles, end shields and a meshed fan's blades as flat plates."""
     e, fins = extent(machine.part(part)), fins_of(machine)
     if part == "housing" and fins is not None:
         share, diameter = mean_of_decay(cowl.end_share), fins.hydraulic_diameter
         length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
-        return _of_speed(cowl, share, lambda v, T: heiles(v, diameter, length, cowl.turbulence, air(T))[0])
+        return _of_speed(cowl, share, lambda v, air: heiles(v, diameter, length, cowl.turbulence, air))
     if machine.part(part).role is Role.FAN:
-        return _of_speed(cowl, 1.0, lambda v, T: flat_plate(v, 0.5 * e.size[1], air(T))[0])
+        return _of_speed(cowl, 1.0, lambda v, air: flat_plate(v, 0.5 * e.size[1], air))
     if e.turned and e.size[2] < END_SHIELD * e.size[1]:
         share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
-        return _of_speed(cowl, share, lambda v, T: flat_plate(v, e.size[1], air(T))[0])
+        return _of_speed(cowl, share, lambda v, air: flat_plate(v, e.size[1], air))
     return None
 
 
@@ -184,10 +188,23 @@ def _on_left(machine: Machine, e: Extent) -> bool:
     return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)
 
 
-def _of_speed(cowl: Cowl, share: float, film: Callable[[float, float], float]) -> Law:
+def _of_speed(cowl: Cowl, share: float, film: Callable[[float, Fluid], tuple[float, Info]]) -> Streamed:
     """A film of the air's speed and of its film temperature, over the shaft's speed."""
-    speed, per_rpm = np.linspace(0.0, 2.0 * cowl.at_rpm, 61).tolist(), share * cowl.air_speed / cowl.at_rpm
-    return film_over("speed_rpm", speed, lambda n, T: film(per_rpm * n, T), cowl.at_rpm, BLOWN_C)
+    per_rpm = share * cowl.air_speed / cowl.at_rpm
+    return streamed("speed_rpm", cowl.at_rpm, lambda n, fluid: film(per_rpm * n, fluid), air, BLOWN_C, liquid=False)
+
+
+def _fan(law: InputPower) -> Streamed:
+    """The declared film of a part's own fan."""
+    ((of, at, exponent),), info = law.terms, Info("fan", "declared", {}, {})
+    return streamed(of, at, lambda n, _: (law.value * abs(n / at) ** exponent, info), air, BLOWN_C, liquid=False)
+
+
+def _excess(blown: Streamed, outer: Outer) -> Streamed:
+    """What the fan's air adds to still air: both are one film, (h_blown^3 + h_still^3)^(1/3)."""
+    still = still_air(outer)
+    still = replace(still, value=tuple(outer.factor * h for h in still.value))
+    return replace(blown, table=replace(blown.table, still=still))
 
 
 __all__ = ["Cowl", "Fins", "Outer", "cowl_of", "outer_films", "outer_of", "still_air"]

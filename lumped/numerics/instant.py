@@ -8,6 +8,6 @@ from lumped.numerics.terms import flow, jacobian
 
 @entry
 def instant(T, K0, z, f, tau, v, F, G):
-    """F (n,) in C dx/dt = F and G = -dF/dx (n, n) at z+ = [x; u; 1] and input factors f (ne,); tau, v: scratch."""
+    """F (n,) in C dx/dt = F and G = -dF/dx (n, n) at z+ = [x; u; 1] and input factors f (nf,); tau, v: scratch."""
     flow(T, K0, z, f, tau, v, F)
     jacobian(T, K0, f, tau, v, G)

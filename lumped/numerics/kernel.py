@@ -126,7 +126,7 @@ def _along_time(T, K0, a, q, out):
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
             c = T.m[e] * q.f[0, e] * tau[e, 0]
-            turn = T.m[e] * directional(T, e, q.f[0, e], q.df[e], tau, vw)
+            turn = T.m[e] * directional(T, e, q.f[0], q.df, 1.0, tau, vw)
             for s in range(T.part[e, ROW], T.part[e, END]):
                 out[T.row[s]] -= c * vw[s] + turn * v[s]
 

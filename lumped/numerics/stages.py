@@ -20,7 +20,7 @@ import numpy as np
 
 from lumped.numerics.dense import Factored, dense, factored
 from lumped.numerics.jit import inner, pasted
-from lumped.numerics.terms import Floats, Ints, Terms, directional, flow, patterns
+from lumped.numerics.terms import PLACE, Floats, Ints, Terms, directional, flow, patterns
 
 GAMMA = 0.43586652150845899941601945119356
 _B2 = 1.0 / 3.0 - GAMMA
@@ -44,7 +44,7 @@ ROSENBROCK, EULER = 0, 1
 class Stages(NamedTuple):
     """First axis of z, v, tau: 0 the start of a step, 1 its inner stages, 2 its end; of w, vw: the three stages.
 
-    z (3, nz) z+, v (3, nv) rows of all patterns and temperatures that laws see, tau (3, ne, 6) temperature laws
+    z (3, nz) z+, v (3, nv) rows of all patterns and temperatures that laws see, tau (3, ne, 9) temperature laws
     w (3, nz) increments U of the states, and of the boundaries what D moves them by;  vw what that makes of v
     """
 
@@ -56,7 +56,7 @@ class Stages(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Scratch.  f (2, ne) input factors at start and end of the step, df (ne,), du (nb,) slopes of both
+    """Scratch.  f (2, nf) input factors at start and end of the step, df (nf,), du (nb,) slopes of both
 
     F (3, n) right-hand side as z;  G, H (n, n + nb) by states and boundaries;  L : an LU for rest
     error (n,) of the step
@@ -91,7 +91,7 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
     """The arrays of the stages, with the first states and boundary temperatures in place."""
     ne = T.m.size
     nv = T.begin.size - 1
-    tau, z = np.zeros((3, ne, 6)), np.tile(np.concatenate([x0, u0, [1.0]]), (3, 1))
+    tau, z = np.zeros((3, ne, 9)), np.tile(np.concatenate([x0, u0, [1.0]]), (3, 1))
     nz = z.shape[1]
     tau[..., 0] = 1.0
     return Stages(z, np.zeros((3, nv)), tau, np.zeros((3, nz)), np.zeros((3, nv)))
@@ -99,9 +99,9 @@ def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
 
 def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
-    ne = T.m.size
+    nf = max(T.m.size, int(T.part[:, PLACE].max(initial=0)) + 1)
     G, H = np.zeros((2, n, n + nb))
-    return Work(np.zeros((2, ne)), np.zeros(ne), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
+    return Work(np.zeros((2, nf)), np.zeros(nf), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
                 np.zeros(n), np.zeros((2, n)), np.zeros((n + nb, p)), np.zeros((4, n, p)),
                 np.zeros((T.begin.size - 1, p)))  # fmt: skip
 
@@ -167,7 +167,7 @@ def restored(T, K0, x0, U, h, a, q):
 def stage_outflow(T, e, s, stage, a, q, h):
     """What a stage takes out of row s by term e, times the step and without m; it linearises at the start."""
     at = min(stage, 1)
-    turn = directional(T, e, q.f[0, e], slope_of(stage) * h * q.df[e], a.tau[0], a.vw[stage])
+    turn = directional(T, e, q.f[0], q.df, slope_of(stage) * h, a.tau[0], a.vw[stage])
     now = q.f[at, e] * a.tau[at, e, 0] * a.v[at, s]
     return GAMMA * h * (now + q.f[0, e] * a.tau[0, e, 0] * a.vw[stage, s] + turn * a.v[0, s])
 

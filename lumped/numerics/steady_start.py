@@ -67,7 +67,7 @@ def _tangents(T, S, C, f, a, q):
 
 @entry
 def solve_steady_start(C, K0, T, S, f, a, q):
-    """Bring a.z[0] and its tangents q.D to the balance at input factors f (ne,); False if there is none.
+    """Bring a.z[0] and its tangents q.D to the balance at input factors f (nf,); False if there is none.
 
     C, K0, T, S, a, q as for the kernel; without any capacity this is where the whole network comes to rest.
     """

@@ -6,6 +6,7 @@ pattern in the last column, with minus signs.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +15,11 @@ from numpy.typing import NDArray
 from geom.constants import SIGMA, ZERO_C
 from lumped.numerics.dense import axpy, matvec
 from lumped.numerics.jit import inner, inner_reordered, pasted
-from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
+from lumped.transfer.laws import FILMS, FIRST_C, FULL_UNITS, LEAST, STEP_K
 
 SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its derivative would be unbounded
-CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE = range(7)
-PATTERN, ROW, END, HOT, COLD, POINT, LAST = range(7)
+CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE, STREAM = range(8)
+PATTERN, ROW, END, HOT, COLD, POINT, LAST, PLACE = range(8)
 CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
 
 Floats = NDArray[np.float64]
@@ -30,8 +31,8 @@ class Terms(NamedTuple):
 
     begin (nv + 1,), at, weight : v = [P z+ of all patterns; temperatures that laws see], row by row over z+
     row : the state each row of a pattern takes from
-    part (ne, 7) : PATTERN of each term, whose rows are ROW up to END of v; rows HOT and COLD that its law sees;
-        POINT up to LAST of its table
+    part (ne, 8) : PATTERN of each term, whose rows are ROW up to END of v; rows HOT and COLD that its law sees;
+        POINT up to LAST of its table; PLACE among the input factors of the |input| that its law sees, or 0
     order (ne,) : the terms, those of one pattern in a row
     kind (ne, 5) : CODE of the temperature law; DYNAMIC: assembled every step, else it stands in the constant matrix;
         STIFF: touches the matrix; BENDS: its law depends on temperature; SOURCE: puts heat in
@@ -54,8 +55,8 @@ class Terms(NamedTuple):
 class Forcing(NamedTuple):
     """What drives a network from knot to knot: between two of them input factors and boundaries are parabolas.
 
-    time (nk,) s; u (nk, nb) boundaries; factor (nk, ne) without multipliers
-    bulge (nk, ne), arch (nk, nb) : how far the factor, the boundary is above the mean of both ends in the middle of the
+    time (nk,) s; u (nk, nb) boundaries; factor (nk, nf) of terms, without multipliers, then what laws see of inputs
+    bulge (nk, nf), arch (nk, nb) : how far the factor, the boundary is above the mean of both ends in the middle of the
         interval that ends there
     renew (nk,) : the matrix over that interval is as before (0), other than before (1), varies within it (2)
     first (nk + 1,) : samples first[j] to first[j + 1] lie after knot j - 1 and up to knot j
@@ -128,9 +129,76 @@ def _filmed(points, first, nd, hot, cold, out):
     out[5] = -out[3]
 
 
+@inner
+def streamed(T, e, size, hot, cold, out):
+    """The StreamTable of term e: shifts over its totals, then its numbers, then its values, one total after the other.
+
+    par : how many totals; the stretch, or less than 0 how many differences the film of still air has that comes last
+    """
+    points, first, nt, stretch = T.point, T.part[e, POINT], int(T.par[e, 0]), T.par[e, 1]
+    total, nd = hot + cold, int(max(-stretch, 0.0))
+    nn = (T.part[e, LAST] - first - nt - FILMS * nd) // (1 + nt)
+    u, at = max(size, LEAST), min(max(total, points[first, 0]), points[first + nt - 1, 0])
+    i = _segment(points, first, first + nt - 1, at)
+    wide, begin = points[i + 1, 0] - points[i, 0], first + nt
+    share, drift = (at - points[i, 0]) / wide, (points[i + 1, 1] - points[i, 1]) / wide
+    y = math.log(u) - points[i, 1] - drift * (at - points[i, 0])
+    j = _segment(points, begin, begin + nn - 1, y)
+    high = points[j + 1, 0] - points[j, 0]
+    up, low = max(y, points[begin, 0]) - points[j, 0], begin + nn + (i - first) * nn + j - begin
+    cool = (points[low + 1, 1] - points[low, 1]) / high
+    warm = (points[low + nn + 1, 1] - points[low + nn, 1]) / high
+    one, two = points[low, 1] + cool * up, points[low + nn, 1] + warm * up
+    inside, moves = 1.0 if total == at else 0.0, 1.0 if size > LEAST else 0.0
+    rising = moves if y > points[begin, 0] else 0.0
+    h, by_y, both = one + share * (two - one), rising * (cool + share * (warm - cool)), rising * (warm - cool) / wide
+    by_T, by_u = inside * ((two - one) / wide - drift * by_y), by_y / u
+    twice, cross = -2.0 * inside * drift * both, inside * both / u
+    if nd > 0:
+        _excess(points, T.part[e, LAST] - FILMS * nd, nd, hot, cold, h, by_T, by_u, twice, cross, out)
+        return
+    if stretch > 0.0:
+        N = h * stretch / u
+        if N <= FULL_UNITS:
+            g, bend = math.exp(N), math.exp(N) * stretch / u
+            twice, cross = g * twice + bend * by_T * by_T, g * cross + bend * by_T * (by_u - moves * h / u)
+            by_u = g * by_u + moves * (math.expm1(N) - N * g) / stretch
+            by_T *= g
+            h = math.expm1(N) * u / stretch
+        elif math.expm1(FULL_UNITS) > N:
+            h = math.expm1(FULL_UNITS) * u / stretch
+            by_T, twice, cross, by_u = 0.0, 0.0, 0.0, moves * math.expm1(FULL_UNITS) / stretch
+    out[0], out[1], out[2], out[3], out[4], out[5] = h, by_T, by_T, twice, twice, twice
+    out[6], out[7], out[8] = by_u, cross, cross
+
+
+@pasted
+def _excess(points, first, nd, hot, cold, h, by_T, by_u, twice, cross, out):
+    """What blown air adds to a film of still air, from the film h of blown air alone and its derivatives."""
+    for k in range(6):
+        out[k] = 0.0
+    _filmed(points, first, nd, hot, cold, out)
+    s, s_hot, s_cold = out[0], out[1], out[2]
+    m = (h * h * h + s * s * s) ** (1.0 / 3.0)
+    if m == 0.0:
+        out[6] = out[7] = out[8] = 0.0
+        return
+    p, q = h / m, s / m
+    by_h, by_s = p * p, q * q - 1.0
+    hh, hs, ss = 2.0 * p * q * q * q / m, -2.0 * p * p * q * q / m, 2.0 * q * p * p * p / m
+    out[0] = m - s
+    out[3] = by_s * out[3] + by_h * twice + hh * by_T * by_T + 2.0 * hs * by_T * s_hot + ss * s_hot * s_hot
+    out[4] = by_s * out[4] + by_h * twice + hh * by_T * by_T + hs * by_T * (s_hot + s_cold) + ss * s_hot * s_cold
+    out[5] = by_s * out[5] + by_h * twice + hh * by_T * by_T + 2.0 * hs * by_T * s_cold + ss * s_cold * s_cold
+    out[1], out[2] = by_h * by_T + by_s * s_hot, by_h * by_T + by_s * s_cold
+    out[6] = by_h * by_u
+    out[7] = by_h * cross + by_u * (hh * by_T + hs * s_hot)
+    out[8] = by_h * cross + by_u * (hh * by_T + hs * s_cold)
+
+
 @pasted
 def law(code, a, b, hot, cold, out):
-    """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out (6,)."""
+    """Temperature law: value, its derivatives by hot and cold, and the second ones hh, hc, cc, into out."""
     if code == POWER:
         d = hot - cold
         s = d * d + SMOOTH * SMOOTH
@@ -175,8 +243,8 @@ def patterns(T, z, out):
 
 
 @pasted
-def _evaluate(T, v, tau):
-    """Temperature laws of all terms: tau (ne, 6) = value, d/dhot, d/dcold, hh, hc, cc."""
+def _evaluate(T, f, v, tau):
+    """Temperature laws of all terms: tau (ne, 9) = value, d/dhot, d/dcold, hh, hc, cc, d/dinput, uh, uc."""
     for e in range(T.m.size):
         if T.kind[e, BENDS]:
             hot, cold = v[T.part[e, HOT]], v[T.part[e, COLD]]
@@ -184,15 +252,17 @@ def _evaluate(T, v, tau):
                 _tabulated(T.point, T.part[e, POINT], T.part[e, LAST] - 1, hot - cold, tau[e])
             elif T.kind[e, CODE] == FILM:
                 _filmed(T.point, T.part[e, POINT], int(T.par[e, 0]), hot, cold, tau[e])
+            elif T.kind[e, CODE] == STREAM:
+                streamed(T, e, f[T.part[e, PLACE]], hot, cold, tau[e])
             else:
                 law(T.kind[e, CODE], T.par[e, 0], T.par[e, 1], hot, cold, tau[e])
 
 
 @inner
 def flow(T, K0, z, f, tau, v, out):
-    """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (ne,) input factors."""
+    """out = F = -K0 z - sum of the dynamic terms at z, whose tau and v = P z are left; f (nf,) input factors."""
     patterns(T, z, v)
-    _evaluate(T, v, tau)
+    _evaluate(T, f, v, tau)
     matvec(K0, z, out)
     for e in range(T.m.size):
         if T.kind[e, DYNAMIC] and T.m[e] != 0.0:
@@ -259,10 +329,10 @@ def conductances(T, K0, f, tau, K):
 
 
 @inner
-def directional(T, e, f, df, tau, v_dot):
-    """d/ds of the coefficient c (without m) of term e along v_dot, and along time with df = df/dt."""
+def directional(T, e, f, df, late, tau, v_dot):
+    """d/ds of the coefficient c (without m) of term e along v_dot, and over `late` s with df (nf,) = df/dt."""
     turn = tau[e, 1] * v_dot[T.part[e, HOT]] + tau[e, 2] * v_dot[T.part[e, COLD]]
-    return f * turn + df * tau[e, 0]
+    return f[e] * (turn + late * df[T.part[e, PLACE]] * tau[e, 6]) + late * df[e] * tau[e, 0]
 
 
 @inner_reordered
@@ -324,18 +394,18 @@ def conductance_difference(T, f, tau, v, scale, V, out):
 def conductance_derivative(T, f, df, late, tau, v, v_dot, scale, V, out):
     """out (3, n, p) -= scale times how G changes along v_dot (3, nv) and over `late` (3,) seconds, times D.
 
-    df (ne,) slopes of the factors;  V : of `pattern_products`
+    df (nf,) slopes of the factors;  V : of `pattern_products`
     """
     t0, t1, t2 = 0.0, 0.0, 0.0
     for k in range(T.order.size):
         e = T.order[k]
         if T.kind[e, DYNAMIC] and T.kind[e, STIFF] and T.m[e] != 0.0:
             m = scale * T.m[e]
-            t0 += m * directional(T, e, f[e], late[0] * df[e], tau, v_dot[0])
-            t1 += m * directional(T, e, f[e], late[1] * df[e], tau, v_dot[1])
-            t2 += m * directional(T, e, f[e], late[2] * df[e], tau, v_dot[2])
+            t0 += m * directional(T, e, f, df, late[0], tau, v_dot[0])
+            t1 += m * directional(T, e, f, df, late[1], tau, v_dot[1])
+            t2 += m * directional(T, e, f, df, late[2], tau, v_dot[2])
             for stage in range(3 if T.kind[e, BENDS] else 0):
-                _law_derivative(T, e, m, f[e], late[stage] * df[e], tau, v, v_dot[stage], V, out[stage])
+                _law_derivative(T, e, m, f[e], df, late[stage], tau, v, v_dot[stage], V, out[stage])
         if _ends(T, k):
             for s in range(T.part[e, ROW], T.part[e, END]):
                 if t0 != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -344,11 +414,12 @@ def conductance_derivative(T, f, df, late, tau, v, v_dot, scale, V, out):
 
 
 @inner
-def _law_derivative(T, e, m, f, slope, tau, v, v_dot, V, out):
+def _law_derivative(T, e, m, f, df, late, tau, v, v_dot, V, out):
     """The part of a law that follows temperature."""
     hot, cold = T.part[e, HOT], T.part[e, COLD]
-    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold])
-    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold])
+    slope, step = late * df[e], late * df[T.part[e, PLACE]]
+    by_hot = slope * tau[e, 1] + f * (tau[e, 3] * v_dot[hot] + tau[e, 4] * v_dot[cold] + step * tau[e, 7])
+    by_cold = slope * tau[e, 2] + f * (tau[e, 4] * v_dot[hot] + tau[e, 5] * v_dot[cold] + step * tau[e, 8])
     for s in range(T.part[e, ROW], T.part[e, END]):
         axpy(-m * (by_hot * v[s] + f * tau[e, 1] * v_dot[s]), V[hot], out[T.row[s]])
         axpy(-m * (by_cold * v[s] + f * tau[e, 2] * v_dot[s]), V[cold], out[T.row[s]])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
+from lumped.transfer.laws import Array, Inputs, Law
 
 Effectiveness = Callable[[Array, Array], Array]
 
@@ -89,39 +89,6 @@ class Exchanger(Law):
         N = self.UA / np.where(moving, least, 1.0)
         ratio = np.where(moving, least / np.where(most > 0.0, most, 1.0), 0.0)
         return _single(np.where(moving, self.effectiveness(N, ratio) * least, 0.0))
-
-
-@dataclass(frozen=True)
-class CellFilm(Law):
-    """From a wall to one upwind cell of a stream (W/K): exact for the exponential along a wall of one temperature.
-
-    A cell's node is what leaves it, so the conductance m cp (exp(N) - 1), N = h A / (m cp), gives the cell what a
-    wall of even temperature gives the flow. Where a cell has N > 1 (little flow) it is h A (e - 1).
-    h : film (W/m2/K) over the flow `at` (unit of the input, or of `flow` without one), piecewise linear
-    area : this wall's share (m2) of the cell;  whole : all its walls (m2)
-    temperature : how the conductance changes with the coolant's temperature, 1 where h holds
-    """
-
-    at: tuple[float, ...]
-    h: tuple[float, ...]
-    stream: Flow
-    area: float
-    whole: float
-    temperature: TemperatureLaw = CONSTANT
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.stream.reads
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        rate = self.stream.at(inputs)
-        return self.conductance(rate, np.interp(rate / self.stream.rate, self.at, self.h))
-
-    def conductance(self, rate: Array, h: Array | float) -> Array | float:
-        """W/K at a heat capacity rate (W/K) and a film (W/m2/K)."""
-        N = h * self.whole / np.maximum(rate, 1e-300)
-        stretch = np.where(N < 1.0, np.expm1(np.minimum(N, 1.0)) / np.maximum(np.minimum(N, 1.0), 1e-300), np.e - 1.0)
-        return _single(h * self.area * stretch)
 
 
 def _single(values: Array) -> Array | float:

@@ -22,6 +22,10 @@ Inputs = Mapping[str, Array]
 class TemperatureLaw:
     """Base of the temperature laws; `hot` and `cold` are the temperatures (degC) at both ends of the link."""
 
+    def level(self, inputs: Inputs) -> Array | float:
+        """What the law makes of the inputs at its usual temperatures: 1 of a law that follows temperature alone."""
+        return 1.0
+
 
 @dataclass(frozen=True)
 class Constant(TemperatureLaw):
@@ -80,6 +84,74 @@ class FilmTable(TemperatureLaw):
     difference: tuple[float, ...]
     value: tuple[float, ...]
 
+    def at(self, difference: float, total: Array | float) -> Array:
+        """The law at hot - cold (K) and hot + cold (degC)."""
+        along = [np.interp(abs(difference), self.difference, row) for row in np.reshape(self.value, (FILMS, -1))]
+        return np.interp(0.5 * np.asarray(total), FIRST_C + STEP_K * np.arange(FILMS), along)
+
+
+USUAL_RISE_K = 30.0  # of a face over its air
+LEAST = 1e-9  # of an input of a StreamTable: its logarithm is taken
+FULL_UNITS = 5.0  # transfer units of one cell: the coolant then leaves it at its walls' temperature, to 1 %
+
+
+@dataclass(frozen=True)
+class StreamTable(TemperatureLaw):
+    """A film that follows |input| and temperature together, by its Reynolds number and the fluid's properties.
+
+    Bilinear in `number`, ln|input| less `shift`, and in `total`, hot + cold: of a liquid its own temperature (its cold
+    side sees nothing), of air twice the film's. With shift = ln(nu) a table is one of Re and T: regimes do not cut its
+    cells. Outside it goes on in a straight line above its last number, flat everywhere else.
+
+    of, usual : the input, or None; its usual size, which holds where there is no input
+    degC : `total` at which the level is taken;  value : (nt * nn,), one total after the other
+    stretch : of a film onto what leaves an upwind cell, the wetted area over the heat capacity rate of an input of 1
+        (m2 K/W); with N = h stretch / |input| the value is then h (exp(N) - 1) / N, exact for walls of one temperature.
+        Beyond FULL_UNITS the coolant leaves as warm as its walls; where it all but stands the value is h again.
+    still : film of still air on the same face; the value is then what blown air adds to it, (h^3 + still^3)^(1/3) -
+        still (Churchill 1977)
+    """
+
+    of: str | None
+    usual: float
+    degC: float
+    total: tuple[float, ...]
+    shift: tuple[float, ...]
+    number: tuple[float, ...]
+    value: tuple[float, ...]
+    stretch: float = 0.0
+    still: FilmTable | None = None
+
+    def level(self, inputs: Inputs) -> Array | float:
+        return self.at(self.size(inputs), self.degC)
+
+    def size(self, inputs: Inputs) -> Array | float:
+        """|input|"""
+        return self.usual if self.of is None else np.abs(np.asarray(inputs[self.of], float))
+
+    def at(self, size: Array | float, total: Array | float, difference: float = USUAL_RISE_K) -> Array:
+        """The law at |input|, hot + cold (degC) and hot - cold (K)."""
+        u, T = np.broadcast_arrays(np.maximum(size, LEAST), np.asarray(total, float))
+        grid, numbers = np.array(self.total), np.array(self.number)
+        T = np.clip(T, grid[0], grid[-1])
+        y = np.maximum(np.log(u) - np.interp(T, grid, self.shift), numbers[0])
+        (i, p), (j, q) = _piece(grid, T), _piece(numbers, y)
+        H = np.reshape(self.value, (grid.size, numbers.size))
+        h = (1 - p) * ((1 - q) * H[i, j] + q * H[i, j + 1]) + p * ((1 - q) * H[i + 1, j] + q * H[i + 1, j + 1])
+        if self.still is not None:
+            still = self.still.at(difference, total)
+            return np.asarray(np.cbrt(h**3 + still**3) - still)
+        if not self.stretch:
+            return np.asarray(h)
+        N = h * self.stretch / u
+        return np.asarray(np.maximum(h, np.expm1(np.minimum(N, FULL_UNITS)) * u / self.stretch))
+
+
+def _piece(grid: Array, x: Array) -> tuple[NDArray[np.int64], Array]:
+    """The piece of a grid that x lies in, and where in it."""
+    k = np.clip(np.searchsorted(grid, x, "right") - 1, 0, grid.size - 2)
+    return k, (x - grid[k]) / (grid[k + 1] - grid[k])
+
 
 CONSTANT = Constant()
 CLOCK = "time_s"  # the input that is the record's time
@@ -105,6 +177,10 @@ class Law(ABC):
     @abstractmethod
     def factor(self, inputs: Inputs) -> Array | float:
         """The input factor: a number, or one value per time of the record."""
+
+    def size(self, inputs: Inputs) -> Array | float:
+        """The coefficient at the usual temperatures of its temperature law: how it follows the inputs in all."""
+        return np.asarray(self.factor(inputs)) * self.temperature.level(inputs)
 
 
 @dataclass(frozen=True)
@@ -141,6 +217,17 @@ class Scaled(Wrapped):
 
     def factor(self, inputs: Inputs) -> Array | float:
         return self.by * np.asarray(self.base.factor(inputs), float)
+
+
+@dataclass(frozen=True)
+class AtUsualTemperature(Wrapped):
+    """Another law as it is at its usual temperatures, whatever the temperatures are."""
+
+    temperature: TemperatureLaw = CONSTANT
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        self.base.factor(inputs)
+        return self.base.size(inputs)
 
 
 @dataclass(frozen=True)

@@ -6,21 +6,42 @@ import numpy as np
 
 from geom.constants import SIGMA, ZERO_C
 from lumped.transfer.laws import (
-    FILMS,
-    FIRST_C,
-    STEP_K,
+    AtUsualTemperature,
     Conductivity,
     FilmTable,
+    Inputs,
+    Law,
     Linear,
     Power,
     Radiation,
+    StreamTable,
     Table,
     TemperatureLaw,
 )
 
 
-def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:
-    """The law at two temperatures (degC)."""
+def coefficient(law: Law, inputs: Inputs, hot: float, cold: float) -> float:
+    """A law at an instant's inputs and two temperatures (degC), in all."""
+    follows = law.temperature
+    size = float(np.mean(follows.size(inputs))) if isinstance(follows, StreamTable) else None
+    return float(np.mean(law.factor(inputs))) * temperature_value(follows, hot, cold, size)
+
+
+def separated(law: Law) -> Law:
+    """A law whose factor holds all that inputs do to it: for what is linear in these; `turned` goes with it."""
+    return AtUsualTemperature(law) if isinstance(law.temperature, StreamTable) else law
+
+
+def turned(law: TemperatureLaw, hot: float, cold: float) -> float:
+    """The law at two temperatures (degC) over what it is at its usual ones, at the usual size of an input."""
+    usual = float(law.at(law.usual, law.degC)) if isinstance(law, StreamTable) else 1.0
+    return temperature_value(law, hot, cold) / usual
+
+
+def temperature_value(law: TemperatureLaw, hot: float, cold: float, size: float | None = None) -> float:
+    """The law at two temperatures (degC), and at a size of the input that it sees, if any: else at the usual one."""
+    if isinstance(law, StreamTable):
+        return float(law.at(law.usual if size is None else size, hot + cold, hot - cold))
     if isinstance(law, Power):
         return float(abs(hot - cold) ** law.exponent)
     if isinstance(law, Radiation):
@@ -34,9 +55,7 @@ def temperature_value(law: TemperatureLaw, hot: float, cold: float) -> float:
         d = hot - cold if law.difference[0] < 0.0 else abs(hot - cold)
         return float(np.interp(d, law.difference, law.value))
     if isinstance(law, FilmTable):
-        films = np.reshape(law.value, (FILMS, -1))
-        along = [np.interp(abs(hot - cold), law.difference, row) for row in films]
-        return float(np.interp(0.5 * (hot + cold), FIRST_C + STEP_K * np.arange(FILMS), along))
+        return float(law.at(hot - cold, hot + cold))
     return 1.0
 
 

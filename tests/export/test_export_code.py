@@ -2,15 +2,19 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from random_networks import built, machine
 
+from lumped.correlations.ducts import duct_film
+from lumped.correlations.streams import streamed
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
+from lumped.transfer.coolant import glycol
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, Linear, Table
 from thermoscope.commands.use.export import export
 from thermoscope.export.c_code import c_files
@@ -58,6 +62,33 @@ def curved():
     heat = [node_source(net, "h", "copper", {"chip": 1.0}, Fixed(40.0, Linear(0.004, 20.0)))]
     time = np.array([0.0, 60.0, 60.0, 600.0, 3600.0])
     return net.extended(links, heat), Record(time, {}, {"air": np.array([20.0, 20.0, 5.0, 5.0, 45.0])}, 20.0)
+
+
+@pytest.mark.parametrize("kind", ["plain", "onto the outlet of a cell", "beside still air"])
+def test_films_by_reynolds_number(kind):
+    """A flow that starts and stops through all regimes, over fluids of -30 to 90 degC."""
+    net, given = curved()
+    law = streamed(
+        "flow",
+        0.5,
+        lambda v, fluid: duct_film(v, 0.01, 1.0, fluid),
+        glycol("ethylene", 50),
+        40.0,
+        True,
+        1e-4,
+        3e-4 if "cell" in kind else 0.0,
+    )
+    if "still" in kind:
+        law = replace(law, table=replace(law.table, still=net.links[1].law.temperature))
+    link = node_link(net, "s", "film", "body", "air", law)
+    to_air = Row(np.array([2]), np.array([1.0]))  # a liquid's own temperature, where nothing is mixed
+    if "still" not in kind:
+        link = replace(link, hot=to_air, cold=Row(to_air.index[:0], np.empty(0)))
+    network = net.extended([link], [])
+    time = np.linspace(0.0, 3600.0, 61)
+    air = 30.0 + 60.0 * np.sin(time / 700.0)
+    given = Record(time, {"flow": 0.5 + 0.6 * np.cos(time / 300.0)}, {"air": air}, 20.0)
+    assert difference(Compiled(packed(network, {}, [Recorded(given)], states(network))), network, given, {}) < AGREES_K
 
 
 def test_a_table_that_begins_below_zero_minds_the_sign():

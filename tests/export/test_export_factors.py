@@ -10,15 +10,18 @@ from numpy.testing import assert_allclose
 
 import lumped
 from geom.errors import InputError
+from lumped.correlations.ducts import duct_film
+from lumped.correlations.streams import streamed
 from lumped.declarations.separated import FilmOver, Share
+from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
-from lumped.machine.laws import Interpolated
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate
-from lumped.transfer.laws import CONSTANT, Fixed, InputPower, Law, Power, Scaled, WithTemperature
+from lumped.transfer.exchanger import Exchanger, Flow, Rate
+from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
+from lumped.transfer.properties import water
 from lumped.transfer.reversal import Direction, OneWay
 from thermoscope.export.expansion import Unknown, expanded
 from thermoscope.export.products import value
@@ -37,13 +40,15 @@ COPPER = EddyLoss(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), (1.1, 0.02, 0.4), "sp
 MAP = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0), ((0.0, 1.0), (5.0, 9.0), (20.0, 60.0)), torque="iq_A")
 OVER = FilmOver("flow_l_min", film, 12.0)
 COUNTER = Exchanger(300.0, Flow(60.0, "flow_l_min"), Flow(0.2, "speed_rpm"))
+STREAM = streamed("flow_l_min", 4.0, lambda v, fluid: duct_film(v, 0.01, 1.0, fluid), water, 40.0, True, 0.1)
 EXACT = [
     Fixed(3.0), InputPower(2.0, (("speed_rpm", 1000.0, 0.8), ("flow_l_min", 4.0, 0.5))), COPPER, MAP,
     CopperLoss(0.01, ("id_A",)), PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),
     IronLoss(3.0, 2.0, "speed_rpm", 1000.0, "id_A", 100.0, 1.7, excess=0.3, frequency_exponent=1.2),
     IronLoss(3.0, 2.0, "speed_rpm", 1000.0), BrushLoss(2.0, "id_A"), BrushLoss(2.0, "id_A", 5.0, "speed_rpm", 900.0),
     MeasuredLoss(((1.0, ("power_W",)), (-0.1, ("speed_rpm", "iq_A")))), Scaled(COPPER, -1.0), OVER,
-    Interpolated("speed_rpm", (0.0, 500.0, 2000.0), (1.0, 4.0, 9.0)), Share(OVER, (0.0, 5.0, 9.0), (1.0, 7.0, 8.0)),
+    Stirred(15.0, 0.4, 0.9, 0.01), STREAM, Rate(Flow(60.0, "flow_l_min")),
+    Share(OVER, (0.0, 5.0, 9.0), (1.0, 7.0, 8.0)),
     Switched(Fixed(4.0), "on", True), Switched(COPPER, "on", False), Direction(InputPower(2.0, ()), "signed", -1),
     OneWay(InputPower(2.0, (("flow_l_min", 4.0, 0.8),)), "flow_l_min", "here", "that"),
     WithTemperature(Fixed(2.0), exponent_derivative(Power(0.25))), WithTemperature(COPPER),
@@ -51,8 +56,7 @@ EXACT = [
 TABLES = [
     RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), PulseLoss("voltage_V", 600.0, 1e-3, 8e3, 0.1),
     InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0),
-    Rate(Flow(60.0, "flow_l_min")), COUNTER,
-    CellFilm((0.0, 4.0, 12.0), (10.0, 400.0, 900.0), Flow(60.0, "flow_l_min"), 0.01, 0.02),
+    COUNTER, AtUsualTemperature(STREAM),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
     Shaped(Fixed(2.0), Ripple("chopper_Hz"), CONSTANT, ("chopper_Hz",)),
@@ -109,6 +113,4 @@ def test_an_unknown_law_of_three_inputs_is_refused():
     with pytest.raises(InputError, match=r"Shaped of 'odd' follows 3 inputs at once \(id_A, iq_A, speed_rpm\)"):
         factors("odd", law, RANGES)
     with pytest.raises(InputError, match="too rough for a table"):
-        factors(
-            "saw", Shaped(Interpolated("signed", (0.0, 1.0), (1.0, 1.0)), lambda u: np.sin(1e5 * u["signed"])), RANGES
-        )
+        factors("saw", Shaped(InputPower(1.0, (("signed", 1.0, 0.0),)), lambda u: np.sin(1e5 * u["signed"])), RANGES)

@@ -10,8 +10,8 @@ import numpy as np
 
 from lumped.numerics import stages
 from lumped.numerics.steady_start import CONVERGED_K
-from lumped.numerics.terms import COLD, END, HOT, POINT, ROW
-from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
+from lumped.numerics.terms import COLD, END, HOT, LAST, PLACE, POINT, ROW
+from lumped.transfer.laws import FILMS, FIRST_C, FULL_UNITS, LEAST, STEP_K
 from thermoscope.escapes import c_comment
 from thermoscope.export.flat import Flat, flat
 from thermoscope.export.heading import heading
@@ -35,6 +35,7 @@ def sizes(model: Model) -> str:
     counts = {
         "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
         "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
+        "FACTORS": len(model.factors) + len(model.sizes),
         "ROWS": T.begin.size - 1,
     }  # fmt: skip
     numbers = {
@@ -50,7 +51,8 @@ def sizes(model: Model) -> str:
 
 def data(model: Model) -> str:
     """All arrays."""
-    T, F = model.terms, flat(model.factors, [s.name for s in model.signals])
+    signals = [s.name for s in model.signals]
+    T, F = model.terms, flat(model.factors, signals)
     rows = [o.row for o in model.outputs]
     starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
     parts = [
@@ -59,11 +61,14 @@ def data(model: Model) -> str:
         ints("ROW_FIRST", T.part[:, ROW]), ints("ROW_END", T.part[:, END]), ints("ROW", T.row),
         ints("HOT", T.part[:, HOT]), ints("COLD", T.part[:, COLD]),
         ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
-        ints("POINT_START", [*T.part[:, POINT], len(T.point)]), reals("POINT_X", T.point[:, 0]),
-        reals("POINT_Y", T.point[:, 1]),
+        ints("POINT_START", T.part[:, POINT]), ints("POINT_END", T.part[:, LAST]), reals("POINT_X", T.point[:, 0]),
+        reals("POINT_Y", T.point[:, 1]), ints("PLACE", T.part[:, PLACE]),
+        ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
+        reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
         *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
         f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",
+        f"#define LEAST ((thermal_real){LEAST})", f"#define FULL_UNITS ((thermal_real){FULL_UNITS})",
     ]  # fmt: skip
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
 

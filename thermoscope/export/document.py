@@ -7,8 +7,9 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lumped.numerics.terms import COLD, END, FILM, HOT, LAST, POINT, ROW, Terms
+from lumped.numerics.terms import COLD, END, FILM, HOT, LAST, PLACE, POINT, ROW, STREAM, Terms
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model, Output
@@ -17,7 +18,7 @@ from thermoscope.export.products import Function, Mapped, Positive, Powered, Str
 KINDS: dict[type, str] = {
     Powered: "power", Straight: "straight", Positive: "positive", Tabulated: "table", Mapped: "map",
 }  # fmt: skip
-LAWS = ("constant", "power", "radiation", "linear", "table", "film table", "inverse")
+LAWS = ("constant", "power", "radiation", "linear", "table", "film table", "inverse", "stream table")
 
 
 def document(model: Model) -> dict[str, Any]:
@@ -49,7 +50,7 @@ def _term(model: Model, e: int) -> dict[str, Any]:
         "name": model.term_names[e], "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
         "col": T.at[entries], "val": T.weight[entries],
         "hot": _weighted_sum(T, T.part[e, HOT]), "cold": _weighted_sum(T, T.part[e, COLD]),
-        "law": _law(T, e), "factor": factor(model.factors[e]),
+        "law": _law(model, e), "factor": factor(model.factors[e]),
     }  # fmt: skip
 
 
@@ -58,14 +59,32 @@ def _weighted_sum(T: Terms, row: int) -> dict[str, Any]:
     return {"col": T.at[some], "val": T.weight[some]}
 
 
-def _law(T: Terms, e: int) -> dict[str, Any]:
+def _law(model: Model, e: int) -> dict[str, Any]:
+    T = model.terms
     code, (a, b) = int(T.kind[e, 0]), T.par[e]
     points = T.point[slice(*T.part[e, [POINT, LAST]])]
     out = {"kind": LAWS[code], "a": float(a), "b": float(b), "x": points[:, 0], "y": points[:, 1]}
     if code == FILM:
-        films = FIRST_C + STEP_K * np.arange(FILMS)
-        return {**out, "x": points[: int(a), 0], "films": films, "y": points[:, 1].reshape(FILMS, -1)}
-    return out
+        return {**out, **_films(points)}
+    return {**out, **_stream(model, e, points)} if code == STREAM else out
+
+
+def _films(points: NDArray[np.float64]) -> dict[str, Any]:
+    films = FIRST_C + STEP_K * np.arange(FILMS)
+    return {"x": points[: len(points) // FILMS, 0], "films": films, "y": points[:, 1].reshape(FILMS, -1)}
+
+
+def _stream(model: Model, e: int, points: NDArray[np.float64]) -> dict[str, Any]:
+    """u = |input|, or `size` without one: at ln(u) - shift over hot + cold; b: see StreamTable; or still air."""
+    T = model.terms
+    of, size = model.sizes[T.part[e, PLACE] - len(model.factors)]
+    nt, nd = int(T.par[e, 0]), int(max(-T.par[e, 1], 0.0))
+    end = len(points) - FILMS * nd
+    grid = points[nt : nt + (end - nt) // (1 + nt), 0]
+    y = points[nt + len(grid) : end, 1].reshape(nt, -1)
+    still = {"still": _films(points[end:])} if nd else {}
+    total, shift = points[:nt].T
+    return {"input": of or "", "size": size, "total": total, "shift": shift, "x": grid, "y": y, **still}
 
 
 def factor(total: Sum) -> list[dict[str, Any]]:

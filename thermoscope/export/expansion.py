@@ -10,13 +10,15 @@ from itertools import product as pairs
 import numpy as np
 
 from lumped.declarations.separated import FilmOver, Share, over_grid
+from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
-from lumped.machine.laws import Interpolated
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss
+from lumped.transfer.exchanger import Rate
 from lumped.transfer.laws import Fixed, InputPower, Law, Scaled, WithTemperature
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 from thermoscope.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
 
 
@@ -86,8 +88,20 @@ def _(law: MeasuredLoss) -> Sum | Unknown:
 
 
 @expanded.register
-def _(law: Interpolated) -> Sum | Unknown:
-    return (Product(1.0, (Tabulated(law.of, law.at, law.value, True),)),)
+def _(law: Streamed) -> Sum | Unknown:
+    return (Product(law.value),)
+
+
+@expanded.register
+def _(law: Rate) -> Sum | Unknown:
+    flow = law.flow
+    return (Product(flow.rate, (Powered(flow.of, 1.0, 1.0),) if flow.of else ()),)
+
+
+@expanded.register
+def _(law: Stirred) -> Sum | Unknown:
+    stirring = law.k1 * law.k2 * abs(law.per_rpm) ** law.k3
+    return Product(law.k1), Product(stirring, (Powered("speed_rpm", 1.0, law.k3),))
 
 
 @expanded.register

@@ -61,6 +61,7 @@ class Model:
     """A network as exported code has it.
 
     K0 (n, n + nb + 1) : constant terms;  terms : the others, with multipliers worked into `factors`
+    sizes : inputs, by their sizes, that temperature laws see; or a size that never changes
     unit, node (n,) : K per unit of a state; 1 where it is a temperature
     """
 
@@ -78,6 +79,7 @@ class Model:
     outputs: tuple[Output, ...]
     unit: Array
     node: NDArray[np.int64]
+    sizes: tuple[tuple[str | None, float], ...] = ()
     tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
     initial_degC: float = USUAL_C
 
@@ -111,9 +113,15 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
         tuple(_factors(every, live, acting, _reaches(inputs))),
         inputs,
         tuple(Signal(b, "degC", *_range(reference, b)) for b in network.boundaries),
-        tuple(looks), state_units(network), (~hidden).astype(np.int64),
+        tuple(looks), state_units(network), (~hidden).astype(np.int64), _sizes(every, live),
         initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
     )  # fmt: skip
+
+
+def _sizes(every: Assembly, live: NDArray[np.bool_]) -> tuple[tuple[str | None, float], ...]:
+    """What temperature laws see: (input, 0), or (None, a size)."""
+    laws = [x.law for x in every.input_sizes(live)]
+    return tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws)
 
 
 def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:

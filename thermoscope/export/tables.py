@@ -76,7 +76,7 @@ class ExponentRatio(Law):
         now = np.abs(np.asarray(inputs[self.error.input], float))
         level = {k: np.full_like(now, v) for k, v in self.error.reference.items()}
         at, right = (
-            np.abs(np.asarray(self.error.base.factor(u), float)) for u in ({**level, self.error.input: now}, level)
+            np.abs(np.asarray(self.error.base.size(u), float)) for u in ({**level, self.error.input: now}, level)
         )
         return np.asarray(np.clip(np.log(np.maximum(at, 1e-12 * right) / right), -FARTHEST, FARTHEST))
 

@@ -13,7 +13,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Array, Network, Source
 from lumped.transfer.laws import Law
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import coefficient
 
 Shares = Mapping[str, Mapping[str, float]]
 FLOOR = 0.1  # of the machine's largest rise: below it a percentage of a part's own rise means nothing
@@ -124,7 +124,7 @@ def coefficients(
     D, s = np.zeros((len(fluids), len(fluids))), np.zeros(len(fluids))
 
     def value(law: Law, name: str, hot: float, cold: float) -> float:
-        return m.get(name, 1.0) * float(np.mean(law.factor(signals))) * temperature_value(law.temperature, hot, cold)
+        return m.get(name, 1.0) * coefficient(law, signals, hot, cold)
 
     for link in network.links:
         g = value(link.law, link.name, _at(z, link.hot), _at(z, link.cold))

@@ -21,7 +21,7 @@ from lumped.integration.assembly import Pattern, assembly
 from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import separated, turned
 from validation.measurement.blocks import INSTANTS
 
 Array = NDArray[np.float64]
@@ -144,7 +144,7 @@ class _Felt:
         hidden = np.array(["#" in s for s in network.states], bool)
         z = np.concatenate([np.where(hidden, 0.0, level), [around[b] for b in network.boundaries], [1.0]])
         signals = Signals(inputs, time.size)
-        factors = [np.asarray(signals.factor(p.name, p.law)) for p in every.patterns]
+        factors = [np.asarray(signals.factor(p.name, separated(p.law))) for p in every.patterns]
         scale = np.array([acting.get(p.name, 1.0) * _value(p, z) for p in every.patterns])
         G = every.matrix(scale * np.array([float(np.mean(f)) for f in factors]))[:, :n]
         groups = network.capacity_group or network.states
@@ -186,4 +186,4 @@ class _Felt:
 def _value(p: Pattern, z: Array) -> float:
     """Of its temperature law."""
     hot, cold = (float(z[row.index] @ row.weights) for row in (p.hot, p.cold))
-    return temperature_value(p.law.temperature, hot, cold)
+    return turned(p.law.temperature, hot, cold)

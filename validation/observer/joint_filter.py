@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.integration.assembly import assembly
+from lumped.integration.assembly import assembly, input_sizes
 from lumped.integration.compiled import capacity_multipliers, capacity_slopes
 from lumped.integration.record import Record
 from lumped.integration.signals import Signals
@@ -167,15 +167,17 @@ class _Terms:
         self._col = np.concatenate([p.cols for p in patterns]).astype(int)
         self._val = np.concatenate([p.vals for p in patterns])
         self._flat = owner * self.n + np.concatenate([p.row[p.to] for p in patterns]).astype(int)
+        self._seen, self._place = input_sizes(patterns)
         self._bent = [(e, p.law.temperature, p.hot, p.cold) for e, p in enumerate(patterns) if p.bends]
         self._known, self._close = np.full(constants.sd.size, np.inf), close * constants.sd
 
     def factors(self, record: Record) -> Array:
-        """(nt, ne) of a record."""
+        """(nt, ne and more) of a record: of all terms, then what their temperature laws see of inputs."""
         u, nt = record.inputs, record.time.shape
         signals = u if isinstance(u, Signals) else Signals(u, record.time.size)
         with within_silence():  # a comparison says so
             every = [signals.factor(p.name, p.law) for p in self.every.patterns]
+            every += [signals.factor(x.name, x.law) for x in self._seen]
         return np.column_stack([np.broadcast_to(f, nt) for f in every])
 
     def at(self, w: Array, f: Array) -> None:
@@ -187,7 +189,7 @@ class _Terms:
             self.C = self.network.C * capacity_multipliers(self.network, acting)
             self._turn(slopes(self.network, values, self.constants.parameters))
             self._known = w.copy()
-        self.f = f
+        self.f, self._sizes = f[: len(self.every.names)], f[self._place]
 
     def _turn(self, moves: Sequence[Mapping[str, float]]) -> None:
         """by (ne, p), C_by (n, p) : slopes of the coefficients, and of the logarithm of the capacities."""
@@ -209,7 +211,7 @@ class _Terms:
     def _laws(self, z: Array) -> Array:
         out = np.ones(len(self.every.patterns))
         for e, law, hot, cold in self._bent:
-            out[e] = temperature_value(law, _T(hot, z), _T(cold, z))
+            out[e] = temperature_value(law, _T(hot, z), _T(cold, z), self._sizes[e])
         return out
 
     def heat(self, z: Array) -> tuple[Array, Array]:
@@ -219,7 +221,8 @@ class _Terms:
         K = self.every.matrix(now)
         G, unit = K[:, : self.n].copy(), self._unit(z) if self._bent else np.empty((0, 0))
         for e, law, hot, cold in self._bent:
-            for row, slope in ((hot, _slope(law, hot, cold, z, 0)), (cold, _slope(law, hot, cold, z, 1))):
+            size = float(self._sizes[e])
+            for row, slope in ((hot, _slope(law, hot, cold, z, 0, size)), (cold, _slope(law, hot, cold, z, 1, size))):
                 inside = row.index < self.n
                 if slope and inside.any():
                     np.subtract.at(
@@ -248,8 +251,10 @@ def _T(row: Row, z: Array) -> float:
     return float(row.weights @ z[row.index])
 
 
-def _slope(law: TemperatureLaw, hot: Row, cold: Row, z: Array, side: int) -> float:
-    """Of a law with one of its temperatures."""
-    T = [_T(hot, z), _T(cold, z)]
-    more = [t + STEP_K * (side == i) for i, t in enumerate(T)]
-    return 0.0 if law == CONSTANT else (temperature_value(law, *more) - temperature_value(law, *T)) / STEP_K
+def _slope(law: TemperatureLaw, hot: Row, cold: Row, z: Array, side: int, size: float) -> float:
+    """Of a law with one of its temperatures, at a size of the input that it sees."""
+    if law == CONSTANT:
+        return 0.0
+    a, b = _T(hot, z), _T(cold, z)
+    more = temperature_value(law, a + STEP_K * (side == 0), b + STEP_K * (side == 1), size)
+    return (more - temperature_value(law, a, b, size)) / STEP_K

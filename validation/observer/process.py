@@ -126,7 +126,7 @@ class Process:
 
     def _at(self, core: Compiled, x: Array, u: Array, f: Array) -> tuple[Array, Array]:
         T, n = core.terms, x.size
-        tau = np.zeros((T.m.size, 6))
+        tau = np.zeros((T.m.size, 9))
         tau[:, 0] = 1.0
         F, G = np.empty(n), np.empty((n, n))
         z = np.concatenate([x, u, [1.0]])

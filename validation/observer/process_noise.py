@@ -18,7 +18,7 @@ from lumped.integration.simulate import simulate
 from lumped.model.multipliers import multipliers, slopes, values_of
 from lumped.model.network import Network, Parameter
 from lumped.transfer.ranges import within_silence
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import separated, turned
 from validation.bands.posterior import ParameterPosterior, acting
 from validation.case import Test
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
@@ -96,7 +96,7 @@ class _Flows:
 
     def _factors(self, test: Test) -> Array:
         with within_silence():  # a comparison says so
-            every = [test.signals.factor(p.name, p.law) for p in self.terms.patterns]
+            every = [test.signals.factor(p.name, separated(p.law)) for p in self.terms.patterns]
         return np.stack([np.broadcast_to(f, test.time.shape) for f in every], axis=1)[self.some]
 
     def _shape(self, z: Array) -> Array:
@@ -139,7 +139,7 @@ def _laws(terms: Assembly, z: Array) -> Array:
         if p.bends:
             hot, cold = z[:, p.hot.index] @ p.hot.weights, z[:, p.cold.index] @ p.cold.weights
             pairs = zip(hot, np.broadcast_to(cold, hot.shape), strict=True)
-            out[:, e] = [temperature_value(p.law.temperature, float(a), float(b)) for a, b in pairs]
+            out[:, e] = [turned(p.law.temperature, float(a), float(b)) for a, b in pairs]
     return out
 
 

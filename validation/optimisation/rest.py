@@ -24,7 +24,7 @@ from lumped.model.network import Network, Row
 from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import solve_steady_start
 from lumped.transfer.laws import Law, Linear, Scaled, WithTemperature
-from lumped.transfer.terms_value import loss_slope, temperature_value
+from lumped.transfer.terms_value import coefficient, loss_slope, temperature_value
 
 Array = NDArray[np.float64]
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
@@ -84,8 +84,8 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     n, every = len(network.states), assembly(network)
     m, at = multipliers(network, values), {name: np.array([float(u)]) for name, u in inputs.items()}
     coefficient = np.array([
-        m.get(p.name, 1.0) * float(np.mean(p.law.factor(at)))
-        * (temperature_value(p.law.temperature, _T(p.hot, z), _T(p.cold, z)) if p.touches else 1.0)
+        m.get(p.name, 1.0)
+        * (coefficient(p.law, at, _T(p.hot, z), _T(p.cold, z)) if p.touches else float(np.mean(p.law.factor(at))))
         for p in every.patterns
     ])  # fmt: skip
     G = every.matrix(coefficient)[:, :n]

@@ -9,16 +9,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.description.profile import loop_length
-from lumped.machine.coolant import FLOW, MOST_UNITS, channel_of, grown
+from lumped.machine.coolant import FLOW, onto_outlet
 from lumped.machine.films import Surroundings, face_films, surroundings
 from lumped.machine.path import stem
 from lumped.model.network import Network, Parameter, Place
 from lumped.transfer.laws import Law
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import coefficient
 
 DIFFERENCE_K = 30.0  # at which still films of two sizes are compared: both go with the difference to the same power
 
@@ -107,15 +106,12 @@ def _conductance(where: Surroundings, jacket: str, area: float, inputs: Mapping[
     """Of one cell's walls onto what leaves it (W/K)."""
     cooling = where.cooling
     assert cooling is not None
-    flow, liquid = cooling.share(jacket) * inputs[FLOW], cooling.liquid
-    film = channel_of(where.machine, jacket).film(flow, liquid) * area
-    rate = liquid.rho * liquid.cp * flow * L_MIN
-    return film * float(grown(np.minimum(np.array([film / rate]), MOST_UNITS))[0]) if rate > 0.0 else film
+    return area * float(onto_outlet(where.machine, jacket, cooling, area).size({FLOW: np.array(inputs[FLOW])}))
 
 
 def _value(law: Law, inputs: Mapping[str, float]) -> float:
     at = {name: np.array([float(u)]) for name, u in inputs.items()}
-    return float(np.mean(law.factor(at))) * temperature_value(law.temperature, 20.0 + DIFFERENCE_K, 20.0)
+    return coefficient(law, at, 20.0 + DIFFERENCE_K, 20.0)
 
 
 def _walls(part: Part) -> float:

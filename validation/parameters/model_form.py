@@ -56,8 +56,8 @@ class ExponentError(Wrapped):
     def factor(self, inputs: Inputs) -> Array | float:
         now = np.abs(np.asarray(inputs[self.input], float))
         level = {k: np.full_like(now, v) for k, v in self.reference.items()}
-        at = np.abs(np.asarray(self.base.factor({**level, self.input: now}), float))
-        right = np.abs(np.asarray(self.base.factor(level), float))
+        at = np.abs(np.asarray(self.base.size({**level, self.input: now}), float))
+        right = np.abs(np.asarray(self.base.size(level), float))
         log_ratio = np.log(np.maximum(at, 1e-12 * right) / right)
         return np.asarray(self.base.factor(inputs) * np.clip(log_ratio, -FARTHEST, FARTHEST))
 

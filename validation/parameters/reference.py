@@ -84,7 +84,7 @@ def effect_sizes(network: Network, effects: Collection[str], tests: Sequence[Tes
 
 def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
     """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
-    factors = [np.abs(law.factor(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
+    factors = [np.abs(law.size(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
     return float(np.mean([np.mean(f) for f in factors])) if factors else 0.0
 
 

@@ -13,17 +13,18 @@ import validation
 import viz
 from lumped.declarations.separated import FilmOver, Share
 from lumped.integration.simulate import Record
+from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
-from lumped.machine.laws import Interpolated
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
 from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
-from lumped.transfer.exchanger import CellFilm, Exchanger, Flow, Rate, counterflow
+from lumped.transfer.exchanger import Exchanger, Flow, Rate, counterflow
 from lumped.transfer.laws import (
     CLOCK,
     CONSTANT,
     FILMS,
+    AtUsualTemperature,
     Conductivity,
     Constant,
     FilmTable,
@@ -33,10 +34,12 @@ from lumped.transfer.laws import (
     Power,
     Radiation,
     Scaled,
+    StreamTable,
     Table,
     WithTemperature,
 )
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 from thermoscope.export.tables import ExponentRatio
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
@@ -67,8 +70,17 @@ def grid(value):
     return tuple(v * f for f in np.linspace(1.0, 1.2, FILMS) for v in value)
 
 
+def streams(stretch=0.0, still=None):
+    """Three regimes over Re and a temperature."""
+    total, number = np.array([-20.0, 40.0, 90.0, 160.0]), np.array([-4.0, -1.0, 0.0, 0.6, 1.2, 3.0])
+    value = np.outer(1.0 + 0.002 * total, [0.3, 0.3, 0.4, 0.9, 1.2, 3.0])
+    shift = tuple(-0.01 * (total - 80.0))
+    return StreamTable("flow", 1.5, 80.0, tuple(total), shift, tuple(number), tuple(value.ravel()), stretch, still)
+
+
+STREAM = Streamed(0.9, streams(), 9.0, "three regimes")
 LAWS = [
-    Fixed(0.8), FORCED, Interpolated("speed_rpm", (0.0, 500.0, 2000.0), (0.3, 0.5, 0.9)),
+    Fixed(0.8), FORCED, Stirred(0.3, 0.1, 0.9, 0.01), STREAM, AtUsualTemperature(STREAM),
     Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
     FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
     Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
@@ -79,7 +91,7 @@ LAWS = [
     BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
     InverterLoss(("current_A",), 3.0, 0.1, 0.01, 8e3, 1e-6, 10.0, 600.0, 560.0, 1.0),
     PulseLoss("voltage_V", 96.0, 1e-3, 1e4, 0.5),
-    Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)), CellFilm((0.0, 2.0), (4.0, 9.0), BY_FLOW, 0.1, 0.2),
+    Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)),
     OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
     Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
     WithTemperature(FORCED, Power(0.25)),
@@ -91,8 +103,9 @@ TEMPERATURES = [
     CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Conductivity(0.004, 20.0),
     Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
     FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
+    streams(), streams(2.0), streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5)))),
 ]  # fmt: skip
-LAWS += [Fixed(0.5, temperature) for temperature in TEMPERATURES]
+LAWS += [Fixed(0.5, law) if type(law) is not StreamTable else Streamed(0.5, law, 9.0, "") for law in TEMPERATURES]
 NAMES = [f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
          for i, law in enumerate(LAWS)]  # fmt: skip
 LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear | Conductivity)]
@@ -122,7 +135,6 @@ def _film(x):
 
 
 STEEP = ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 1.0),)), "speed_rpm", {"speed_rpm": 1000.0})
-TABLED = Interpolated("speed_rpm", (100.0, 2000.0), (0.3, 0.9))
 # law -> [(law, inputs, its factor there)]: at rest, at its ends, beyond them, where its formula is known by heart
 LIMITS = {
     Fixed: [(Fixed(0.8), {}, 0.8)],
@@ -130,7 +142,11 @@ LIMITS = {
         (FORCED, {"speed_rpm": 0.0}, 0.0), (FORCED, {"speed_rpm": -1000.0}, 0.6),
         (InputPower(0.7, ()), {}, 0.7),
     ],
-    Interpolated: [(TABLED, {"speed_rpm": 0.0}, 0.3), (TABLED, {"speed_rpm": -1e9}, 0.9)],
+    Stirred: [(Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": 0.0}, 4.0),
+              (Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": -1e4}, 204.0)],
+    Streamed: [(STREAM, {"flow": 2.0}, 0.9)],
+    AtUsualTemperature: [
+        (AtUsualTemperature(STREAM), {"flow": 1.0}, 0.9 * 0.4 * 1.16), (AtUsualTemperature(Fixed(0.8)), {}, 0.8)],
     Switched: [
         (Switched(Fixed(2.0), "on", True), {"on": 1.0}, 2.0), (Switched(Fixed(2.0), "on", True), {"on": 0.0}, 0.0),
         (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0), (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
@@ -175,10 +191,6 @@ LIMITS = {
         (Exchanger(1e5, BY_FLOW, Flow(3.0), counterflow), {"flow": 1.0}, 2.0),
         (Exchanger(1e-7, BY_FLOW, Flow(3.0)), {"flow": 1.0}, 1e-7),
     ],
-    CellFilm: [  # without flow h A (e - 1), in a torrent h A
-        (CellFilm((0.0, 2.0), (4.0, 4.0), BY_FLOW, 0.1, 0.2), {"flow": 0.0}, 0.4 * (np.e - 1.0)),
-        (CellFilm((0.0, 2.0), (4.0, 4.0), BY_FLOW, 0.1, 0.2), {"flow": 1e7}, 0.4),
-    ],
     OneWay: [(OneWay(FORCED, "flow", "here", "so"), {"speed_rpm": 1000.0, "flow": 0.0}, 0.6)],
     Direction: [
         (Direction(Fixed(3.0), "q", 1), {"q": -1.0}, 0.0), (Direction(Fixed(3.0), "q", -1), {"q": -1.0}, 3.0),
@@ -196,7 +208,8 @@ LIMITS = {
     ],
     Shift: [(Shift(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2e-3)],
 }  # fmt: skip
-FILM = TEMPERATURES[-1]
+FILM = TEMPERATURES[5]
+STILL = FILM.at(0.0, 80.0)
 # temperature law -> [(law, hot, cold, its value)] in degC
 TEMPERATURE_LIMITS = {
     Constant: [(CONSTANT, 90.0, 20.0, 1.0)],
@@ -212,6 +225,12 @@ TEMPERATURE_LIMITS = {
     Table: [
         (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 20.0, 1.0), (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 3.0),
         (Table((-5.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 1.0),
+    ],
+    StreamTable: [  # at 80 degC, at its usual input of 1.5; beside still air; N beyond all use, N of next to nothing
+        (streams(), 40.0, 40.0, 1.16 * (0.4 + 0.5 * np.log(1.5) / 0.6)),
+        (streams(1e9), 40.0, 40.0, streams().at(1.5, 80.0)), (streams(1e-14), 40.0, 40.0, streams().at(1.5, 80.0)),
+        (streams(2.0), 40.0, 40.0, 0.75 * np.expm1(streams().at(1.5, 80.0) / 0.75)),
+        (streams(still=FILM), 40.0, 40.0, np.cbrt(streams().at(1.5, 80.0) ** 3 + STILL**3) - STILL),
     ],
     FilmTable: [(FILM, -300.0, -300.0, 1.0), (FILM, 500.0, 500.0, 1.2), (FILM, 590.0, 410.0, 2.4)],
 }  # fmt: skip

@@ -190,7 +190,7 @@ def test_the_compiled_law_is_the_law(temperature, watts):
     net = bare_network("one", {"a": 300.0}, ("ambient",))
     links = [node_link(net, "law", "film", "a", "ambient", Fixed(g, temperature))]
     sources = [node_source(net, "heat", "iron", {"a": 1.0}, Fixed(watts))]
-    T = steady(net.extended(links, sources), {}, {"ambient": 20.0})["a"]
+    T = steady(net.extended(links, sources), {"flow": 1.5}, {"ambient": 20.0})["a"]
     low, high = (g * temperature_value(temperature, x, 20.0) * (x - 20.0) for x in (T - near, T + near))
     assert low <= watts <= high
     assert np.sign(T - 20.0) == np.sign(watts)

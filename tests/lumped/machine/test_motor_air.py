@@ -12,7 +12,7 @@ from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.circuits.hydraulics import pressure_drop
 from lumped.integration.steady import steady
-from lumped.machine.air import AIR_HEAT, fan_shares
+from lumped.machine.air import fan_shares
 from lumped.machine.films import surroundings
 from lumped.machine.motor import operating_point
 from lumped.model.network import Network
@@ -87,7 +87,7 @@ def test_the_air_carries_off_what_the_outer_faces_do_not(machine, network):
     """Losses = flow x rho cp x warming from ambient to the outlet + films to the surroundings."""
     z = rest(network)
     c = coefficients(network, POINT, z)
-    by_air = AIR_HEAT * 138.0 / 3600.0 * (at(network, z, "air.right") - 20.0)
+    by_air = air(20.0).rho * air(20.0).cp * 138.0 / 3600.0 * (at(network, z, "air.right") - 20.0)
     outer = [place for place in network.places.values() if place.fluid == "ambient"]
     by_faces = sum(c.films[p.name] * p.area * (float(p.mean.weights @ z[p.mean.index]) - 20.0) for p in outer)
     windage = machine.sections["losses"]["windage_W"]
@@ -107,7 +107,14 @@ def test_a_duct_takes_up_what_its_walls_give_off(machine, network):
     z = rest(network)
     share, area = shares_of(machine)["air.ducts"], 12 * np.pi * 0.020 * 0.188
     h = coefficients(network, POINT, z).films["rotor.core.air.ducts"]
-    taken = share * AIR_HEAT * 138.0 / 3600.0 * (at(network, z, "air.ducts") - at(network, z, "air.left"))
+    taken = (
+        share
+        * air(20.0).rho
+        * air(20.0).cp
+        * 138.0
+        / 3600.0
+        * (at(network, z, "air.ducts") - at(network, z, "air.left"))
+    )
     given = h * area * (at(network, z, "rotor.core") - at(network, z, "air.ducts"))
     assert taken == pytest.approx(given, rel=0.01), "the mesh's wall is within 1 % of the cylinders"
     assert 5.0 < h < 12.0, "laminar, entering: Nu between 3.66 and 9"

@@ -11,7 +11,7 @@ from geom import library, load_machine
 from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.integration.steady import steady
-from lumped.machine.coolant import channel_of, cooling_of, jacket_film
+from lumped.machine.coolant import channel_of, cooling_of
 from lumped.machine.films import surroundings
 from lumped.machine.losses import _declared, loss_watts
 from lumped.machine.motor import operating_point
@@ -22,7 +22,7 @@ from lumped.machine.settings import read_films
 from lumped.machine.shapes import fins_of
 from lumped.machine.zones import motor_zones
 from lumped.model.multipliers import multipliers
-from lumped.transfer.terms_value import temperature_value
+from lumped.transfer.terms_value import coefficient, temperature_value
 from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
@@ -133,20 +133,20 @@ def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(n
     """T(x) = T_wall - (T_wall - T_in) exp(-h A(x) / mcp) at the end of every cell, at any flow: Incropera 8.41b."""
     network, machine = networks["ipmsm-48s8p-jacket"], load_machine("ipmsm-48s8p-jacket")
     cells = [name for name in network.states if name.startswith("jacket@")]
-    wall, cooling = 80.0, cooling_of(machine)
+    wall, cooling, channel = 80.0, cooling_of(machine), channel_of(machine, "jacket")
     for flow in (1.0, 5.0, 12.0):
         at, T, area = {"flow_l_min": np.array([flow])}, 20.0, 0.0
         rate = cooling.liquid.rho * cooling.liquid.cp * flow / 60000.0
-        h = float(jacket_film(machine, "jacket", cooling).factor(at)[0])
+        h = channel.film(flow, cooling.liquid)[0]
         for cell in cells:
             films = [link for link in network.links if link.kind == "film" and link.places[1] == cell]
             (stream,) = (link for link in network.links if link.name == f"stream:{cell}")
             own = [network.place(film.places[0]).area for film in films]
             area += sum(own)
-            G = sum(A * float(film.law.factor(at)[0]) for A, film in zip(own, films, strict=True))
+            films_W_m2K = [coefficient(film.law, at, cooling.property_C, 0.0) for film in films]
+            G = sum(A * film for A, film in zip(own, films_W_m2K, strict=True))
             assert float(stream.law.factor(at)[0]) == pytest.approx(rate, rel=2e-3)
             T = (rate * T + G * wall) / (rate + G)
-            # The law's table is piecewise linear in the flow.
             assert wall - T == pytest.approx((wall - 20.0) * np.exp(-h * area / rate), rel=2e-3)
 
 

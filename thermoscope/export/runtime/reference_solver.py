@@ -18,10 +18,29 @@ def function(f, u):
     return RegularGridInterpolator(grids, np.array(f["y"]))(inside)[0]
 
 
-def law(g, hot, cold):
+def film(g, hot, cold):
+    return np.interp((hot + cold) / 2, g["films"], [np.interp(abs(hot - cold), g["x"], y) for y in g["y"]])
+
+
+def stream(g, hot, cold, u):
+    u, x, y = max(abs(u), 1e-9), np.array(g["x"]), np.array(g["y"])
+    T = np.clip(hot + cold, g["total"][0], g["total"][-1])
+    at = max(np.log(u) - np.interp(T, g["total"], g["shift"]), x[0])
+    k = min(np.searchsorted(x, at, "right") - 1, x.size - 2)
+    each = y[:, k] + (y[:, k + 1] - y[:, k]) * (at - x[k]) / (x[k + 1] - x[k])
+    h = np.interp(T, g["total"], each)
+    if "still" in g:
+        still = film(g["still"], hot, cold)
+        return np.cbrt(h**3 + still**3) - still
+    return max(h, np.expm1(min(h * g["b"] / u, 5.0)) * u / g["b"]) if g["b"] > 0 else h
+
+
+def law(g, hot, cold, u):
     h, c, d = hot + 273.15, cold + 273.15, abs(hot - cold)
     if g["kind"] == "film table":
-        return np.interp((hot + cold) / 2, g["films"], [np.interp(d, g["x"], y) for y in g["y"]])
+        return film(g, hot, cold)
+    if g["kind"] == "stream table":
+        return stream(g, hot, cold, u[g["input"]] if g["input"] else g["size"])
     laws = {"constant": lambda: 1.0, "power": lambda: (d * d + 1e-4) ** (g["a"] / 2),
             "linear": lambda: 1 + g["a"] * (hot - g["b"]), "inverse": lambda: 1 / (1 + g["a"] * (hot - g["b"])),
             "table": lambda: np.interp(hot - cold if g["x"][0] < 0 else d, g["x"], g["y"]),
@@ -35,7 +54,7 @@ def flow(model, x, u):
     for t in model["terms"]:
         hot, cold = (float(np.dot(t[s]["val"], z[np.array(t[s]["col"], int)])) for s in ("hot", "cold"))
         share = sum(p["coefficient"] * np.prod([function(f, u) for f in p["functions"]]) for p in t["factor"])
-        np.subtract.at(F, t["row"], law(t["law"], hot, cold) * share * np.array(t["val"]) * z[t["col"]])
+        np.subtract.at(F, t["row"], law(t["law"], hot, cold, u) * share * np.array(t["val"]) * z[t["col"]])
     return F
 
 

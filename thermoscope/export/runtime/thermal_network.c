@@ -15,7 +15,7 @@ typedef thermal_real real;
 
 static const real G_ = (real)0.43586652150845899941601945119356;
 static const real SIGMA = (real)5.670374419e-8, ZERO_C = (real)273.15, SMOOTH = (real)0.01;
-enum { CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE };
+enum { CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE, STREAM };
 enum { POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED };
 enum { MOST_TRIES = 12, MOST_ITERATIONS = 50 };
 
@@ -68,6 +68,7 @@ static void factors(const real *u, real *f) {
             f[e] += one;
         }
     }
+    for (int k = NE; k < THERMAL_FACTORS; k++) f[k] = SEEN[k - NE] < 0 ? SEEN_SIZE[k - NE] : size_of(u[SEEN[k - NE]]);
 }
 
 static void film(const real *x, const real *y, int nd, real hot, real cold, real *out) {
@@ -88,13 +89,68 @@ static void film(const real *x, const real *y, int nd, real hot, real cold, real
     out[2] -= side * by_d;
 }
 
-/* Temperature law of term e: its value, d/dhot, d/dcold. */
-static void law(int e, real hot, real cold, real *out) {
+/* A film by Reynolds number and temperature: nt totals with shifts, then numbers, then values, one total after the other;
+   onto what leaves a cell where `stretch` is above 0, beyond still air (whose film comes last) where it is below. */
+static void stream(const real *x, const real *y, int n, int nt, real stretch, real size, real hot, real cold, real *out) {
+    int nd = stretch < 0 ? (int)-stretch : 0, nn = (n - FILMS * nd - nt) / (1 + nt), i, j;
+    real u = most(size, LEAST), total = hot + cold, at = least(most(total, x[0]), x[nt - 1]);
+    real wide, share, drift, place, high, up, cool, warm, one, two, by_y, by_T, by_u, h;
+    const real *number = x + nt, *low;
+    i = segment(x, nt, at);
+    wide = x[i + 1] - x[i];
+    share = (at - x[i]) / wide;
+    drift = (y[i + 1] - y[i]) / wide;
+    place = (real)log((double)u) - y[i] - drift * (at - x[i]);
+    j = segment(number, nn, place);
+    high = number[j + 1] - number[j];
+    up = most(place, number[0]) - number[j];
+    low = y + nt + nn + i * nn + j;
+    cool = (low[1] - low[0]) / high;
+    warm = (low[nn + 1] - low[nn]) / high;
+    one = low[0] + cool * up;
+    two = low[nn] + warm * up;
+    by_y = place > number[0] && size > LEAST ? cool + share * (warm - cool) : 0;
+    h = one + share * (two - one);
+    by_T = total == at ? (two - one) / wide - drift * by_y : 0;
+    by_u = by_y / u;
+    if (nd > 0) {
+        real s[3], m, p, q;
+        film(x + n - FILMS * nd, y + n - FILMS * nd, nd, hot, cold, s);
+        m = (real)pow((double)(h * h * h + s[0] * s[0] * s[0]), 1.0 / 3.0);
+        p = m > 0 ? h / m : 0;
+        q = m > 0 ? s[0] / m : 1;
+        out[0] = m - s[0];
+        out[1] = p * p * by_T + (q * q - 1) * s[1];
+        out[2] = p * p * by_T + (q * q - 1) * s[2];
+        out[3] = p * p * by_u;
+        return;
+    }
+    if (stretch > 0) {
+        real units = h * stretch / u, full = (real)expm1((double)FULL_UNITS);
+        real moves = size > LEAST ? 1 : 0;
+        if (units <= FULL_UNITS) {
+            real g = (real)exp((double)units);
+            by_u = g * by_u + moves * ((real)expm1((double)units) - units * g) / stretch;
+            by_T *= g;
+            h = (real)expm1((double)units) * u / stretch;
+        } else if (units < full) {
+            h = full * u / stretch;
+            by_T = 0;
+            by_u = moves * full / stretch;
+        }
+    }
+    out[0] = h;
+    out[1] = out[2] = by_T;
+    out[3] = by_u;
+}
+
+/* Temperature law of term e: its value, d/dhot, d/dcold, d/dsize of the input that it sees. */
+static void law(int e, real hot, real cold, const real *f, real *out) {
     real a = LAW_A[e], b = LAW_B[e], d = hot - cold;
     const real *x = POINT_X + POINT_START[e], *y = POINT_Y + POINT_START[e];
-    int n = POINT_START[e + 1] - POINT_START[e];
+    int n = POINT_END[e] - POINT_START[e];
     out[0] = 1;
-    out[1] = out[2] = 0;
+    out[1] = out[2] = out[3] = 0;
     if (LAW[e] == POWER) {
         real s = d * d + SMOOTH * SMOOTH;
         out[0] = (real)pow((double)s, 0.5 * (double)a);
@@ -120,6 +176,8 @@ static void law(int e, real hot, real cold, real *out) {
         out[2] = -out[1];
     } else if (LAW[e] == FILM) {
         film(x, y, (int)a, hot, cold, out);
+    } else if (LAW[e] == STREAM) {
+        stream(x, y, n, (int)a, b, f[PLACE[e]], hot, cold, out);
     }
 }
 
@@ -132,7 +190,7 @@ static void patterns(const real *z, real *v) {
 }
 
 /* F = -K0 z - sum of all terms. */
-static void flow(const real *z, const real *f, real (*tau)[3], real *v, real *F) {
+static void flow(const real *z, const real *f, real (*tau)[4], real *v, real *F) {
     patterns(z, v);
     for (int i = 0; i < N; i++) {
         real sum = 0;
@@ -140,13 +198,13 @@ static void flow(const real *z, const real *f, real (*tau)[3], real *v, real *F)
         F[i] = -sum;
     }
     for (int e = 0; e < NE; e++) {
-        law(e, v[HOT[e]], v[COLD[e]], tau[e]);
+        law(e, v[HOT[e]], v[COLD[e]], f, tau[e]);
         for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++) F[ROW[r]] -= f[e] * tau[e][0] * v[r];
     }
 }
 
 /* G = -dF/dx; without how coefficients turn with temperature where `frozen`. */
-static void jacobian(const real *f, real (*tau)[3], const real *v, int frozen, real (*G)[N]) {
+static void jacobian(const real *f, real (*tau)[4], const real *v, int frozen, real (*G)[N]) {
     for (int i = 0; i < N; i++) memcpy(G[i], K0[i], N * sizeof(real));
     for (int e = 0; e < NE; e++) {
         for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++) {
@@ -224,7 +282,7 @@ static void along_time(thermal_work *w, real h) {
     }
     for (int e = 0; e < NE; e++) {
         real turn = w->tau0[e][1] * v[HOT[e]] + w->tau0[e][2] * v[COLD[e]];
-        real change = w->f0[e] * turn + w->df[e] * w->tau0[e][0];
+        real change = w->f0[e] * (turn + w->df[PLACE[e]] * w->tau0[e][3]) + w->df[e] * w->tau0[e][0];
         for (int r = ROW_FIRST[e]; r < ROW_END[e]; r++)
             w->Ft[ROW[r]] -= w->f0[e] * w->tau0[e][0] * v[r] + change * w->v0[r];
     }
@@ -341,7 +399,7 @@ int thermal_step(thermal_state *s, thermal_work *w, thermal_real seconds, const 
             between(begin, u, (done + h / 2) / seconds, w->um);
             factors(w->u1, w->f1);
             factors(w->um, w->fm);
-            for (int e = 0; e < NE; e++) w->df[e] = (4 * w->fm[e] - 3 * w->f0[e] - w->f1[e]) / h;
+            for (int e = 0; e < THERMAL_FACTORS; e++) w->df[e] = (4 * w->fm[e] - 3 * w->f0[e] - w->f1[e]) / h;
             size = rosenbrock(w, h);
             if (size > 1) wanted = h * most(least((real)0.8 * (real)pow((double)size, -1.0 / 3.0), (real)0.5), (real)0.05);
         }

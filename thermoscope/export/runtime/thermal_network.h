@@ -27,8 +27,8 @@ typedef struct {
 typedef struct {
     thermal_real z0[THERMAL_STATES + THERMAL_BOUNDARIES + 1], z1[THERMAL_STATES + THERMAL_BOUNDARIES + 1];
     thermal_real v0[THERMAL_ROWS + 1], v1[THERMAL_ROWS + 1];
-    thermal_real tau0[THERMAL_TERMS + 1][3], tau1[THERMAL_TERMS + 1][3];
-    thermal_real f0[THERMAL_TERMS + 1], fm[THERMAL_TERMS + 1], f1[THERMAL_TERMS + 1], df[THERMAL_TERMS + 1];
+    thermal_real tau0[THERMAL_TERMS + 1][4], tau1[THERMAL_TERMS + 1][4];
+    thermal_real f0[THERMAL_FACTORS + 1], fm[THERMAL_FACTORS + 1], f1[THERMAL_FACTORS + 1], df[THERMAL_FACTORS + 1];
     thermal_real u0[THERMAL_SIGNALS + 1], u1[THERMAL_SIGNALS + 1], um[THERMAL_SIGNALS + 1];
     thermal_real F0[THERMAL_STATES], F1[THERMAL_STATES], Ft[THERMAL_STATES];
     thermal_real w0[THERMAL_STATES], w1[THERMAL_STATES], w2[THERMAL_STATES], error[THERMAL_STATES];

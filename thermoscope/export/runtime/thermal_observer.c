@@ -101,7 +101,7 @@ static int predict(
     thermal_work *v = &w->network;
     real *x = o->s.x;
     between(begin, all, share, v->um);
-    for (int e = 0; e < NE; e++) v->f0[e] = w->begin[e] + share * (w->end[e] - w->begin[e]);
+    for (int e = 0; e < THERMAL_FACTORS; e++) v->f0[e] = w->begin[e] + share * (w->end[e] - w->begin[e]);
     state_of(x, v->um, v->z0);
     flow(v->z0, v->f0, v->tau0, v->v0, v->F0);
     jacobian(v->f0, v->tau0, v->v0, 0, v->G);

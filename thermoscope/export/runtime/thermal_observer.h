@@ -42,8 +42,8 @@ typedef struct {
 
 typedef struct {
     thermal_work network;
-    thermal_real G[THERMAL_STATES][THERMAL_STATES], first[THERMAL_STATES], begin[THERMAL_TERMS + 1];
-    thermal_real end[THERMAL_TERMS + 1];
+    thermal_real G[THERMAL_STATES][THERMAL_STATES], first[THERMAL_STATES], begin[THERMAL_FACTORS + 1];
+    thermal_real end[THERMAL_FACTORS + 1];
     double along[THERMAL_STATES][THERMAL_SLOW + 1], A[THERMAL_REDUCED + THERMAL_BODIES][THERMAL_REDUCED];
     double change[THERMAL_REDUCED], h[THERMAL_REDUCED], phi[THERMAL_REDUCED], gain[THERMAL_REDUCED];
     double right[THERMAL_STATES], signature[THERMAL_KINDS], chance[THERMAL_KINDS];

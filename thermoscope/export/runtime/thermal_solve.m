@@ -17,7 +17,7 @@ function F = flow(model, x, u)
     for j = 1:numel(t.factor)
       p = t.factor{j}; f = f + p.coefficient * prod([1; cellfun(@(g) value(g, u), p.functions(:))]);
     end
-    c = f * law(t.law, sum(t.hot.val .* z(t.hot.col)), sum(t.cold.val .* z(t.cold.col)));
+    c = f * law(t.law, sum(t.hot.val .* z(t.hot.col)), sum(t.cold.val .* z(t.cold.col)), u);
     F = F - accumarray(t.row, c * t.val .* z(t.col), size(F));
   end
 end
@@ -34,7 +34,17 @@ function v = value(f, u)
   end
 end
 function x = held(x, grid), x = min(max(x, grid(1)), grid(end)); end
-function v = law(g, hot, cold)
+function v = film(g, hot, cold)
+  v = interp2(g.x, g.films, g.y, held(abs(hot - cold), g.x), held((hot + cold) / 2, g.films));
+end
+function v = stream(g, hot, cold, u)
+  T = held(hot + cold, g.total); u = max(abs(u), 1e-9);
+  at = max(log(u) - interp1(g.total, g.shift, T), g.x(1));
+  v = interp1(g.total, interp1(g.x, g.y', at, 'linear', 'extrap'), T);
+  if isfield(g, 'still'), s = film(g.still, hot, cold); v = (v ^ 3 + s ^ 3) ^ (1 / 3) - s;
+  elseif g.b > 0, v = max(v, expm1(min(v * g.b / u, 5)) * u / g.b); end
+end
+function v = law(g, hot, cold, u)
   d = abs(hot - cold); h = hot + 273.15; c = cold + 273.15;
   switch g.kind
     case 'constant', v = 1;
@@ -43,6 +53,8 @@ function v = law(g, hot, cold)
     case 'linear', v = 1 + g.a * (hot - g.b);
     case 'inverse', v = 1 / (1 + g.a * (hot - g.b));
     case 'table', if g.x(1) < 0, d = hot - cold; end, v = interp1(g.x, g.y, held(d, g.x));
-    case 'film table', v = interp2(g.x, g.films, g.y, held(d, g.x), held((hot + cold) / 2, g.films));
+    case 'film table', v = film(g, hot, cold);
+    case 'stream table'
+      if isempty(g.input), v = stream(g, hot, cold, g.size); else, v = stream(g, hot, cold, u.(g.input)); end
   end
 end

@@ -29,8 +29,8 @@ class Chord(Wrapped):
         readings: Mapping[str, Array] = {name: inputs[name] for name in self.reads}
         error, above, below = self.chord(np.asarray(inputs[self.input], float))
         with within_silence():  # the chord may leave a table that the input itself stays in
-            more, less = (np.asarray(self.base.factor({**readings, self.input: u})) for u in (above, below))
-        return np.asarray((more - less) / (2.0 * error))
+            more, less = (np.asarray(self.base.size({**readings, self.input: u})) for u in (above, below))
+        return np.asarray((more - less) / (2.0 * error * self.temperature.level(readings)))
 
 
 @dataclass(frozen=True)

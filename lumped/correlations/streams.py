@@ -1,0 +1,127 @@
+"""Films of moving fluids over an input and a temperature together: by Reynolds number, so that no regime is cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from geom.errors import InputError
+from lumped.correlations.info import Info
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, Array, StreamTable
+from lumped.transfer.properties import TABULATED_C, Fluid
+from lumped.transfer.ranges import within_silence
+from lumped.transfer.streamed import Streamed
+
+Moving = Callable[[float, Fluid], tuple[float, Info]]
+TOLERANCE = 1e-3  # of a film, between two points of its table
+THIN = 1.5e-3  # of a viscosity between two temperatures: where a regime begins a film grows with its fourth power
+LEAST, MOST = 1e-5, 1e4  # times the usual input: where a table ends at the latest
+REACH = 20.0  # and at the earliest: at four times the usual input in a fluid of a fifth of the viscosity
+LOOKS = (0.2, 0.5, 0.8)  # of a cell, where a film is looked at: a corner may be anywhere in it
+FINEST = 2e-3  # of a logarithm: no cell is cut further, at a jump
+
+
+def streamed(
+    of: str | None, usual: float, film: Moving, fluid: Callable[[float], Fluid], degC: float, liquid: bool,
+    value: float = 1.0, stretch: float = 0.0,
+) -> Streamed:  # fmt: skip
+    """value times a film over |input|, which warns beyond the range of its correlation.
+
+    film : of |input| and fluid;  usual : of |input|, above 0;  degC : usual temperature, at which the range is checked
+    liquid : whether the fluid's own temperature counts, else that of the film;  stretch : see StreamTable
+    """
+    with within_silence():
+        temperatures = _temperatures(film, fluid, usual, liquid, degC)
+        fluids = [fluid(T) for T in temperatures]
+        reference = fluid(degC).nu
+        shift = [math.log(x.nu / reference) for x in fluids]
+        tops = [_top(film, x, usual) for x in (fluids[0], fluid(degC), fluids[-1])]
+        high = math.log(REACH * usual)
+        high = max(high, math.log(tops[0]) - shift[0], math.log(tops[1]), math.log(tops[2]) - shift[-1])
+        states, low = list(zip(fluids, shift, strict=True)), math.log(LEAST * usual)
+        number = _numbers(film, states, low, math.log(usual), high)
+        each = [_film(film, x, s, y, low) for x, s in states for y in number]
+    times = 1.0 if liquid else 2.0
+    totals = tuple(times * T for T in temperatures)
+    table = StreamTable(of, usual, times * degC, totals, tuple(shift), tuple(number), tuple(each), stretch)
+    name = film(usual, fluid(degC))[1].name
+    return Streamed(value, table, tops[1], name)
+
+
+def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -> float:
+    """At the lowest number what it is at rest."""
+    return float(film(math.exp(number + shift) if number > low else 0.0, fluid)[0])
+
+
+def _top(film: Moving, fluid: Fluid, usual: float) -> float:
+    """The largest |input| inside the correlation's range, up to MOST times the usual one."""
+    low, high = 1.0, MOST
+    if not _out_of_range(film, fluid, high * usual):
+        return high * usual
+    while high / low > 1.01:
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if _out_of_range(film, fluid, middle * usual) else (middle, high)
+    return low * usual
+
+
+def _out_of_range(film: Moving, fluid: Fluid, size: float) -> bool:
+    """Whether a number that grows with the input has left its range."""
+    info = film(size, fluid)[1]
+    return any(info.numbers[k] > info.limits[k][1] for k in info.outside)
+
+
+def _temperatures(
+    film: Moving, fluid: Callable[[float], Fluid], usual: float, liquid: bool, degC: float
+) -> list[float]:
+    """The usual one, at which nothing is missed, and as many as viscosity and film ask for where the fluid is known."""
+    wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
+    span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
+    some = sorted({T for T in (*wide, degC) if span[0] < T < span[-1]})
+    return list(_between(film, fluid, usual, [span[0], *some, span[-1]]))
+
+
+def _exists(fluid: Callable[[float], Fluid], T: float) -> bool:
+    try:
+        fluid(T)
+    except InputError:
+        return False
+    return True
+
+
+def _between(film: Moving, fluid: Callable[[float], Fluid], usual: float, degC: Sequence[float]) -> Iterator[float]:
+    """The temperatures, and those halfway as long as these are missed."""
+    for a, b in pairwise(degC):
+        cold, middle, warm = fluid(a), fluid(0.5 * (a + b)), fluid(b)
+        curved = abs(math.log(middle.nu**2 / (cold.nu * warm.nu))) > 2.0 * THIN
+        h = [film(usual * x.nu / middle.nu, x)[0] for x in (cold, middle, warm)]
+        if b - a > 1.0 and (curved or abs(0.5 * (h[0] + h[2]) - h[1]) > TOLERANCE * h[1]):
+            yield from list(_between(film, fluid, usual, (a, 0.5 * (a + b), b)))[:-1]
+        else:
+            yield a
+    yield degC[-1]
+
+
+def _numbers(film: Moving, fluids: Sequence[tuple[Fluid, float]], low: float, usual: float, high: float) -> list[float]:
+    """Logarithms of the input, as at the usual viscosity, between which the films are straight."""
+    some = [fluids[k] for k in sorted({0, len(fluids) // 3, 2 * len(fluids) // 3, len(fluids) - 1})]
+
+    def at(y: float) -> Array:
+        return np.array([_film(film, fluid, shift, y, low) for fluid, shift in some])
+
+    def cut(a: float, b: float, first: Array, last: Array) -> Iterator[float]:
+        middle = 0.5 * (a + b)
+        inside = {share: at(a + share * (b - a)) for share in LOOKS}
+        missed = (np.abs(first + share * (last - first) - h) > TOLERANCE * h for share, h in inside.items())
+        if b - a > FINEST and any(map(np.any, missed)):
+            yield from cut(a, middle, first, inside[0.5])
+            yield from cut(middle, b, inside[0.5], last)
+        else:
+            yield a
+
+    start = sorted({*np.linspace(low, high, 25).tolist(), usual})
+    films = [at(y) for y in start]
+    inner = [y for k in range(len(start) - 1) for y in cut(start[k], start[k + 1], films[k], films[k + 1])]
+    return [*inner, high]
