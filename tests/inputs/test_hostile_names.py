@@ -19,6 +19,7 @@ from scipy.io import loadmat
 
 from geom.description.names import FORBIDDEN, LETTERS, file_stem, is_plain, plain_header
 from geom.errors import InputError
+from geom.escapes import c_comment, csv_lines, toml_key, toml_value, xml_text
 from lumped.declarations.network import load_network
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
@@ -26,7 +27,6 @@ from lumped.transfer.laws import Fixed
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
 from thermoscope.console.answer import Answer, Grid, printed, within
 from thermoscope.console.terminal import give, notes
-from thermoscope.escapes import c_comment, csv_lines, toml_key, toml_value, xml_text
 from thermoscope.export.document import document, mat
 from thermoscope.export.drive import Compiled
 from thermoscope.export.fmu import description, identifier

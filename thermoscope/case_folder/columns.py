@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
+from geom.escapes import csv_lines
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.settings import Entry
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from thermoscope.recordings.formats import stem_of
 from validation.effects import effect

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.description.names import file_stem
+from geom.escapes import csv_lines
 from geom.text import visible
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from thermoscope.recordings.data_table import rows_of
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from geom.escapes import c_comment
 from lumped.numerics import stages
 from lumped.numerics.steady_start import CONVERGED_K
 from lumped.numerics.terms import COLD, END, HOT, LAST, PLACE, POINT, ROW
 from lumped.transfer.laws import FILMS, FIRST_C, FULL_UNITS, LEAST, STEP_K
-from thermoscope.escapes import c_comment
 from thermoscope.export.flat import Flat, flat
 from thermoscope.export.heading import heading
 from thermoscope.export.model import Model

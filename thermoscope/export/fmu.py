@@ -14,8 +14,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 
 from geom.errors import MissingDependency
+from geom.escapes import xml_text
 from geom.text import visible
-from thermoscope.escapes import xml_text
 from thermoscope.export.c_code import RUNTIME, c_files
 from thermoscope.export.compilers import PLATFORMS, Platform, here, library
 from thermoscope.export.heading import heading

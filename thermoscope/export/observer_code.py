@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.escapes import c_comment
 from lumped.model.network import Network
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.sources.loss_measured import MeasuredLoss
-from thermoscope.escapes import c_comment
 from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
 from thermoscope.export.model import Model, Output, packed
 from validation.case import Channel, Reference

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.escapes import toml_key, toml_value
 from geom.text import visible
 from thermoscope.caches import cache_folder
-from thermoscope.escapes import toml_key, toml_value
 from thermoscope.files import abandoned, locked, within_inputs, write_whole
 from thermoscope.importing.aligned import Recording
 from thermoscope.importing.draft import Draft, sample_of

@@ -15,7 +15,7 @@ import numpy as np
 from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
-from thermoscope.escapes import toml_key, toml_value
+from geom.escapes import toml_key, toml_value
 from thermoscope.importing.draft import Draft
 from thermoscope.importing.guess import AXES, Array, Guess, in_memory
 from thermoscope.importing.source import Source

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from geom.limits import COLUMNS, ReadingTime
-from thermoscope.recordings.bounds import CHUNK, check_text
+from geom.recording_bounds import CHUNK, check_text
 from thermoscope.recordings.data_table import Column, DataTable, as_number, is_missing
 
 COMMA, QUOTE, LF, CR = b',"\n\r'

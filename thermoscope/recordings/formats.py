@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from geom.errors import InputError, MissingDependency
 from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
+from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows
 from lumped.schemas.reader import suggestion
-from thermoscope.recordings.bounds import check_archive, check_shape, check_size, counted_rows
 from thermoscope.recordings.csv_file import read_csv
 from thermoscope.recordings.data_table import DataTable
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import ThermoscopeError
+from geom.escapes import csv_lines
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, plain, progress
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 
 if TYPE_CHECKING:

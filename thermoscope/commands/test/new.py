@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.escapes import toml_value
 from lumped.machine.losses import ASSUMED
 from lumped.schemas.reader import suggestion
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.escapes import toml_value
 from thermoscope.extras import message as missing_extra
 from thermoscope.files import write_whole
 from thermoscope.importing.aligned import Recording, common, grouped, shift

@@ -11,6 +11,7 @@ import numpy as np
 
 from geom.description.names import file_stem
 from geom.errors import InputError
+from geom.escapes import csv_lines
 from thermoscope.commands.use.export import read_limits
 from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
@@ -18,7 +19,6 @@ from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.design_problem import DesignRequest, checked_request, design_problem
 from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.search import METHODS, Design, Effort, pareto_set

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.escapes import toml_value
 from lumped.correlations import RangeWarning
 from thermoscope.bands import posterior_of, wanted
 from thermoscope.case_folder.folder import Folder, find_case
@@ -24,7 +25,6 @@ from thermoscope.commands.use.export import read_limits
 from thermoscope.commands.use.simulate_readings import short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.escapes import toml_value
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
 from thermoscope.recordings.data_table import as_number

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from geom.description.names import file_stem
 from geom.errors import InputError, ThermoscopeError
+from geom.escapes import csv_lines
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
@@ -27,7 +28,6 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from validation.bands import Bands, ParameterPosterior
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
 from geom.errors import InputError
+from geom.escapes import csv_lines
 from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
 from thermoscope.case_folder.folder import Folder
@@ -20,7 +21,6 @@ from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
-from thermoscope.escapes import csv_lines
 from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started

@@ -1,6 +1,6 @@
 """The network that a case runs against its field, at the hot spot of every heated part, away from where it was made.
 
-    python benchmarks/case_network.py [MACHINE ...] [--json FILE]
+    python benchmarks/condensed/case_network.py [MACHINE ...] [--json FILE]
 
 Points: nominal; all films x0.3 and x10; all contacts x0.2 and x5; every film and contact drawn between x0.2 and x5.
 Steady, errors are in percent of the part's own rise, at least a tenth of the machine's largest. After a step of loss,
