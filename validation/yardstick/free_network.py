@@ -159,10 +159,14 @@ class NetworkLessons:
 
 
 def nonnegative(A: Array, b: Array) -> Array:
-    """The least squares of A x = b with x >= 0, columns scaled alike; a column of zeros gets 0."""
+    """The least squares of A x = b with x >= 0, columns scaled alike; a column of zeros gets 0.
+
+    With fewer equations than unknowns SciPy's solver writes beyond its memory, so zeros are equations too.
+    """
     scale = np.linalg.norm(A, axis=0)
     alive = scale > 1e-12 * max(float(scale.max(initial=0.0)), 1e-300)
     x = np.zeros(A.shape[1])
-    R = np.asarray(np.linalg.qr(np.column_stack([A[:, alive] / scale[alive], b]), mode="r"))
+    both = np.column_stack([A[:, alive] / scale[alive], b])
+    R = np.asarray(np.linalg.qr(np.vstack([both, np.zeros((both.shape[1], both.shape[1]))]), mode="r"))
     x[alive] = nnls(R[:, :-1], R[:, -1], maxiter=30 * A.shape[1])[0] / scale[alive]
     return x

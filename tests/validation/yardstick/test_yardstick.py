@@ -7,6 +7,7 @@ import pytest
 from two_bodies import bench
 
 from validation.case import Test
+from validation.yardstick.free_network import nonnegative
 from validation.yardstick.yardstick import KINDS, yardstick
 
 TRUTH = {"joint": 4.0, "film": 2.0, "heat": 80.0}  # W/K, W/K, W: as `two_bodies` declares them
@@ -108,3 +109,12 @@ def test_the_document_names_all_three(measure):
     assert {f"{kind}_K" for kind in KINDS} <= set(document)
     assert document["over"] == "hold-out"
     assert {row["name"] for row in document["tests"]} == {"noon", "dawn", "dusk"}
+
+
+@pytest.mark.parametrize("rows", [1, 3, 30])
+def test_fewer_rows_than_terms_give_a_fit_that_is_not_negative(rows):
+    rng = np.random.default_rng(0)
+    A, x = rng.random((rows, 12)), np.maximum(rng.standard_normal(12), 0.0)
+    found = nonnegative(A, A @ x)
+    assert found.min() >= 0.0
+    assert A @ found == pytest.approx(A @ x)
