@@ -54,7 +54,7 @@ def driven(record: Record, ends: NDArray[np.int64]) -> Array:
 
 @dataclass(frozen=True)
 class BlackBoxLessons:
-    """What each record teaches: the normal equations of the black box.  AA, Ab : per record"""
+    """What each fold of records teaches: the normal equations of the black box.  AA, Ab : per fold"""
 
     window: float
     columns: Columns
@@ -62,15 +62,16 @@ class BlackBoxLessons:
     Ab: Sequence[Array]
 
     @staticmethod
-    def of(records: Sequence[Record], columns: Columns, window: float) -> BlackBoxLessons:
-        AA, Ab = [], []
-        for record in records:
+    def of(folds: Sequence[Sequence[Record]], columns: Columns, window: float) -> BlackBoxLessons:
+        def taught(record: Record) -> tuple[Array, Array]:
             ends = window_ends(len(record.time), record.rows(window))
             A = np.column_stack([record.T[ends[:-1]][:, columns.steady], driven(record, ends)])
-            A, b = A[: max(len(A) - 1, 1)], np.diff(record.T[ends], axis=0)[: max(len(A) - 1, 1)]  # the last is short
-            AA.append(A.T @ A)
-            Ab.append(A.T @ b)
-        return BlackBoxLessons(window, columns, AA, Ab)
+            whole = slice(0, max(len(A) - 1, 1))  # the last window is short
+            b = np.diff(record.T[ends], axis=0)[whole]
+            return A[whole].T @ A[whole], A[whole].T @ b
+
+        pairs = [[np.sum(part, axis=0) for part in zip(*map(taught, fold), strict=True)] for fold in folds]
+        return BlackBoxLessons(window, columns, [AA for AA, _ in pairs], [Ab for _, Ab in pairs])
 
     def fit(self, lessons: Sequence[int], ridge: float) -> BlackBox:
         """ridge : added to the normal equations, over their diagonal"""

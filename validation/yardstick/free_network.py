@@ -127,24 +127,22 @@ def linear_run(time: Array, A: Array, s: Array, start: Array) -> Array:
 
 @dataclass(frozen=True)
 class NetworkLessons:
-    """What each record teaches under a form: per record and sensor a triangle.  Any choice of records is one fit."""
+    """What each fold of records teaches under a form: per fold and sensor a triangle.  Any choice is one fit."""
 
     form: Form
     columns: Columns
     parts: Sequence[Sequence[Triangle]]
 
     @staticmethod
-    def of(records: Sequence[Record], columns: Columns, form: Form) -> NetworkLessons:
-        every = range(len(columns.sensors))
+    def of(folds: Sequence[Sequence[Record]], columns: Columns, form: Form) -> NetworkLessons:
+        def taught(fold: Sequence[Record], n: int) -> Triangle:
+            others = [np.column_stack([r.T[:, columns.steady], r.boundary]) for r in fold]
+            return Triangle.of(np.vstack([windows(r, n, o, form) for r, o in zip(fold, others, strict=True)]))
 
-        def taught(record: Record, n: int) -> Triangle:
-            others = np.column_stack([record.T[:, columns.steady], record.boundary])
-            return Triangle.of(windows(record, n, others, form))
-
-        return NetworkLessons(form, columns, [[taught(r, n) for n in every] for r in records])
+        return NetworkLessons(form, columns, [[taught(f, n) for n in range(len(columns.sensors))] for f in folds])
 
     def fit(self, lessons: Sequence[int]) -> FreeNetwork:
-        """The network learnt from some records."""
+        """The network learnt from some folds."""
         k, steady = len(self.columns.sensors), np.flatnonzero(self.columns.steady)
         bodies, factors = steady.size + len(self.columns.boundaries), 1 + self.form.powers * len(self.columns.inputs)
         where = np.append(steady, k + np.arange(len(self.columns.boundaries)))

@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 from validation.case import Test
 
 Array = NDArray[np.float64]
-MOST_ROWS = 40_000  # of all tests together: one more halves what is learnt by little and doubles the wait
+MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait
+MOST_WORK = 1e11  # multiplications of all fits together: some 20 s on one core
+FEWEST_ROWS = 2_000  # of all tests together: fewer would not show what happens within a test
+FEW_SENSORS = 10  # with more of them fewer inputs are looked at: terms grow as their product
+MOST_INPUTS, FEW_INPUTS = 8, 3
+FITS = 5.0  # of every sensor, counted in the longest of them: three powers, and windows that overlap less and less
+MIDDLE = 40  # windows of a test over which an input is held against how fast sensors move
 
 
 @dataclass(frozen=True)
@@ -61,18 +67,43 @@ def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:
     present = [{c.name for c in t.channels if np.isfinite(c.y).any()} for t in every]
     steady = np.array([all(name in names for names in present) for name in sensors], bool)
     boundaries = _in_all([t.boundaries for t in every])
-    inputs = tuple(n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted))
+    inputs = _telling([n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted)],
+                      fitted, MOST_INPUTS if len(sensors) <= FEW_SENSORS else FEW_INPUTS)  # fmt: skip
     scale = np.array([max(float(np.max(np.abs(t.inputs[n]))) for t in fitted) for n in inputs])
     return Columns(sensors, steady, boundaries, inputs, scale)
+
+
+def _telling(names: Sequence[str], tests: Sequence[Test], most: int) -> tuple[str, ...]:
+    """Of many inputs those that go with how fast the sensors move."""
+    if len(names) <= most:
+        return tuple(names)
+    sizes: dict[str, list[Array]] = {name: [] for name in names}
+    rates = []
+    for test in tests:
+        ends = np.unique(np.linspace(0, test.time.size - 1, MIDDLE + 1).astype(int))
+        y = np.column_stack([_filled(test.time, c.y)[ends] for c in test.channels])
+        rates.append(np.abs(np.diff(y, axis=0)).mean(axis=1))
+        for name in names:
+            running = np.cumsum(np.abs(np.asarray(test.inputs[name], float)))
+            sizes[name].append(np.diff(running[ends]))
+    rate = np.concatenate(rates)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        match = {name: abs(float(np.corrcoef(np.concatenate(u), rate)[0, 1])) for name, u in sizes.items()}
+    best = sorted(names, key=lambda name: -np.nan_to_num(match[name]))[:most]
+    return tuple(name for name in names if name in best)
 
 
 def _in_all(tables: Sequence[Iterable[str]]) -> tuple[str, ...]:
     return tuple(name for name in tables[0] if all(name in table for table in tables))
 
 
-def row_step(tests: Sequence[Test]) -> int:
-    """How many rows become one, so that all tests together stay below MOST_ROWS."""
-    return -(-sum(t.time.size for t in tests) // MOST_ROWS)
+def row_step(tests: Sequence[Test], columns: Columns) -> int:
+    """How many rows become one, so that all tests together stay below MOST_ROWS and all fits below MOST_WORK."""
+    inputs, sensors = len(columns.inputs), len(columns.sensors)
+    links = (int(columns.steady.sum()) + len(columns.boundaries)) * (1 + 2 * inputs)
+    terms = links + 1 + 2 * inputs + 2 * inputs * (inputs - 1)
+    affordable = max(MOST_WORK / (2.0 * FITS * sensors * terms**2), FEWEST_ROWS)
+    return -(-sum(t.time.size for t in tests) // int(min(affordable, MOST_ROWS)))
 
 
 def table_record(test: Test, columns: Columns, step: int = 1) -> Record:

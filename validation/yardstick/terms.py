@@ -46,13 +46,13 @@ class Term:
         return dict(vars(self))
 
 
-def needed_terms(fit: Fitter, records: Sequence[Record], columns: Columns, case: Case) -> tuple[Term, ...]:
+def needed_terms(fit: Fitter, folds: Sequence[Sequence[Record]], columns: Columns, case: Case) -> tuple[Term, ...]:
     """The terms of a free network that no choice of tests does without, those that carry most first."""
-    every = range(len(records))
+    every = range(len(folds))
     whole = fit(every)
     parts = [fit([j for j in every if j != i]) for i in every]
     assert isinstance(whole, FreeNetwork)
-    share = _shares(whole, records)
+    share = _shares(whole, [r for fold in folds for r in fold])
     names, places = _term_names(whole, columns), {c.name: c.place for t in case.tests for c in t.channels}
     values, others = _vector(whole), np.array([_vector(p) for p in parts])  # type: ignore[arg-type]
     out = []

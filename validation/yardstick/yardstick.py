@@ -28,6 +28,7 @@ WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noi
 POWERS = (0, 1, 2)  # of an input that a link follows: not at all, as films in ducts do, as the work of fans
 RIDGES = (1e-9, 1e-6, 1e-4, 1e-2)  # over the diagonal: from none to one that shrinks all but what is plain
 THIRDS = 3  # stretches of the only test: two teach, one is predicted
+MOST_FOLDS = 12  # of many tests so many shares are left out in turn: each fit costs as much as that many tests
 FEWEST = 12  # rows of a record: with fewer not even a window of one row says anything
 KINDS = ("persistence", "black_box", "free_network")
 
@@ -87,31 +88,33 @@ def yardstick(case: Case) -> Yardstick | None:
     columns = table_columns(fitted, case.tests)
     if not columns.sensors:
         return None
-    step = row_step(fitted)
+    step = row_step(fitted, columns)
     records = _parted([table_record(t, columns, step) for t in fitted])
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
     if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
         return None
+    folds = _folds(records)
+    records = [r for fold in folds for r in fold]
     which = {
-        "persistence": _best(_persistences(records, columns), records),
-        "black_box": _best(_black_boxes(records, columns), records),
-        "free_network": _best(_free_networks(records, columns), records),
+        "persistence": _best(_persistences(folds, columns), folds),
+        "black_box": _best(_black_boxes(folds, columns), folds),
+        "free_network": _best(_free_networks(folds, columns), folds),
     }
-    every = range(len(records))
+    every = range(len(folds))
     errors = {kind: [*left, *(_error(fit(every), r) for r in unseen)] for kind, (fit, left) in which.items()}
 
     def pooled(rows: Sequence[int], columns: Sequence[int] | slice = slice(None)) -> dict[str, float]:
         return {kind: _rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}
 
     names = [r.name for r in (*records, *unseen)]
-    unseen_numbers = range(len(records), len(names))
-    scope = unseen_numbers or every
+    learnt, unseen_numbers = range(len(records)), range(len(records), len(names))
+    scope = unseen_numbers or learnt
     return Yardstick(
-        left_out=pooled(every),
+        left_out=pooled(learnt),
         hold_out=pooled(unseen_numbers) if unseen_numbers else {},
         tests={name: pooled([i for i, other in enumerate(names) if other == name]) for name in dict.fromkeys(names)},
         sensors={sensor: pooled(scope, [j]) for j, sensor in enumerate(columns.sensors)},
-        terms=needed_terms(which["free_network"][0], records, columns, case),
+        terms=needed_terms(which["free_network"][0], folds, columns, case),
     )
 
 
@@ -123,35 +126,43 @@ def _parted(records: Sequence[Record]) -> list[Record]:
     return [records[0].stretch(a, b) for a, b in pairwise(ends)]
 
 
-def _persistences(records: Sequence[Record], columns: Columns) -> list[Fitter]:
+def _folds(records: Sequence[Record]) -> list[list[Record]]:
+    """What is left out at a time: each record, or of many a share, chosen by what was read and not by their order."""
+    count = min(len(records), MOST_FOLDS)
+    order = sorted(range(len(records)), key=lambda i: (len(records[i].time), float(records[i].T.sum())))
+    return [[records[i] for i in sorted(order[k::count])] for k in range(count)]
+
+
+def _persistences(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
     def fitter(boundary: int | None) -> Fitter:
-        return lambda which: usual_rise([records[i] for i in which], boundary)
+        return lambda lessons: usual_rise([r for i in lessons for r in folds[i]], boundary)
 
     return [fitter(b) for b in (None, *range(len(columns.boundaries)))]
 
 
-def _windows(records: Sequence[Record]) -> list[float]:
+def _windows(folds: Sequence[Sequence[Record]]) -> list[float]:
     """Windows (s), as shares of the middle one of the records' lengths: the same whatever the sample step."""
-    length = float(np.median([r.time[-1] - r.time[0] for r in records]))
+    length = float(np.median([r.time[-1] - r.time[0] for fold in folds for r in fold]))
     return [share * length for share in WINDOWS]
 
 
-def _black_boxes(records: Sequence[Record], columns: Columns) -> list[Fitter]:
-    lessons = [BlackBoxLessons.of(records, columns, h) for h in _windows(records)]
+def _black_boxes(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
+    lessons = [BlackBoxLessons.of(folds, columns, h) for h in _windows(folds)]
     return [partial(a.fit, ridge=r) for a, r in product(lessons, RIDGES)]
 
 
-def _free_networks(records: Sequence[Record], columns: Columns) -> list[Fitter]:
+def _free_networks(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
     powers = POWERS if columns.inputs else (0,)
-    return [NetworkLessons.of(records, columns, Form(h, p)).fit for p, h in product(powers, _windows(records))]
+    return [NetworkLessons.of(folds, columns, Form(h, p)).fit for p, h in product(powers, _windows(folds))]
 
 
-def _best(fitters: Sequence[Fitter], records: Sequence[Record]) -> tuple[Fitter, list[Array]]:
-    """The one that predicts records best that were left out, with its errors there."""
-    every = range(len(records))
+def _best(fitters: Sequence[Fitter], folds: Sequence[Sequence[Record]]) -> tuple[Fitter, list[Array]]:
+    """The one that predicts best what was left out, with its errors there, record by record."""
+    every = range(len(folds))
 
     def left_out(fit: Fitter) -> list[Array]:
-        return [_error(fit([j for j in every if j != i]), r) for i, r in enumerate(records)]
+        models = [fit([j for j in every if j != i]) for i in every]
+        return [_error(model, r) for model, fold in zip(models, folds, strict=True) for r in fold]
 
     return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: _rms(pair[1]))
 
