@@ -435,6 +435,7 @@ FORMATS: dict[str, Format] = {
     "points in times": Format("tIWA", ["Data e ora", *IWA], ";", ",", stamp=at("%d/%m/%Y %H.%M.%S")),
     "degrees that were lost": Format("tIWA", ["Time [s]", "I [A]", "winding [?C]", "room [\u00c2\u00b0C]"]),
     "names over two lines": Format("tIWA", ["Time\n[s]", "I\n[A]", "winding\n[°C]", "room\n[°C]"], quote=True),
+    "a name for dates over degrees": Format("tWAI", ["Time [s]", "Data winding [°C]", "Data room [°C]", "I [A]"]),
     "a code among currents": Format(
         "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"
     ),
