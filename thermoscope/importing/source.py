@@ -137,7 +137,7 @@ def _book(file: Path) -> list[list[Any]]:
     def read() -> list[list[Any]]:
         with workbook(file) as book:
             sheets = [worksheet_rows(sheet, file) for sheet in book.worksheets]
-        return max(sheets, key=lambda rows: len(rows) * len(rows[0]) if rows else 0, default=[])
+        return max(sheets, key=lambda rows: len(rows) * len(rows[0]) if rows else 0)
 
     rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
     return rows

@@ -17,7 +17,7 @@ from lumped.transfer.laws import CLOCK
 from thermoscope.recordings.consistency import checked_heat, checked_sheet
 from thermoscope.recordings.grid import ROUNDING, averaged, bridged, grid_of, read, rms
 from thermoscope.recordings.sheet import Column, Sheet
-from thermoscope.recordings.tables import Samples
+from thermoscope.recordings.tables import Samples, standing_still
 from validation.case import Channel, Recorded, Role, Test
 from validation.measurement.sampling import SampleStep, sample_step
 
@@ -40,7 +40,9 @@ def read_test(
     name: str, role: Role, samples: Samples, sheet: Sheet, network: Network, wished: float | None = None
 ) -> Reading:
     """wished : the coarsest step (s) that is wanted; by default as coarse as the sensors do not feel."""
-    notes, usual = [*samples.notes, *checked_sheet(sheet, network)], float(np.median(np.diff(samples.time)))
+    inside = [c for c in sheet.columns if c.place not in network.boundaries]  # a room may stand still
+    notes = [*samples.notes, *standing_still(inside, samples).values(), *checked_sheet(sheet, network)]
+    usual = float(np.median(np.diff(samples.time)))
     notes += grid_of(samples, wished or usual, sheet.where)[1]
     fine = _recorded(sheet, samples)
     air = {c.place: c.name for c in sheet.columns if c.is_temperature and c.place in network.boundaries}

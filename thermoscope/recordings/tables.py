@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -72,7 +72,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
         notes += _look(column, values[column.name], file, rows.start)
-    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
+    return Samples(file, time, values, gaps, tuple(notes), sigma, start)
 
 
 def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | None]:
@@ -202,19 +202,19 @@ def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
     return []
 
 
-def _frozen(columns: tuple[Column, ...], time: Array, values: Mapping[str, Array], file: Path) -> list[str]:
-    """Temperatures that stand still for long while the others move."""
+def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str]:
+    """Doubts of temperatures that stand still for long while the others of `columns` move, by column."""
     hot = [c.name for c in columns if c.is_temperature]
-    notes = []
+    doubts, time, values = {}, samples.time, samples.values
     for name in hot:
         a, b = _longest_run(values[name])
         others = [
             np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
         ]
         if others and time[b - 1] - time[a] > FROZEN_SHARE * time[-1] and np.median(others) > FROZEN_MOVE_K:
-            notes.append(f"{file.name} column '{name}': stands at {values[name][a]:g} degC from {time[a]:g} s to "
-                         f"{time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
-    return notes
+            doubts[name] = (f"{samples.file.name} column '{name}': stands at {values[name][a]:g} degC from "
+                            f"{time[a]:g} s to {time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
+    return doubts
 
 
 def _longest_run(v: Array) -> tuple[int, int]:

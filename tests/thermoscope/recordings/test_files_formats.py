@@ -11,6 +11,7 @@ from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
+from thermoscope.importing.source import read_source
 from thermoscope.recordings.alignment import clock_shift
 from thermoscope.recordings.formats import joined, read_recording, recording
 from thermoscope.recordings.sheet import read_sheet
@@ -251,3 +252,16 @@ def test_a_chart_sheet_holds_no_table(tmp_path):
     assert read_recording(tmp_path / "x.xlsx").columns == ["time_s", "T"]
     with pytest.raises(InputError, match="no worksheet 'drawn'"):
         read_recording(tmp_path / "x.xlsx", "drawn")
+
+
+@pytest.mark.parametrize("drawn", [True, False])
+def test_a_workbook_of_charts_alone_is_told(tmp_path, drawn):
+    book = openpyxl.Workbook()
+    sheet = book.create_chartsheet("drawn")
+    if drawn:
+        sheet.add_chart(LineChart())
+    book.remove(book.worksheets[0])
+    book.save(tmp_path / "x.xlsx")
+    for read in (read_recording, read_source):
+        with pytest.raises(InputError, match="holds charts alone"):
+            read(tmp_path / "x.xlsx")
