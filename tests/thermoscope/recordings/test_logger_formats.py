@@ -1,4 +1,4 @@
-"""Ninety-seven formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
+"""A hundred and more formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from thermoscope.importing.source import read_source
 RENAMED = {
     "no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
     "an object on every line", "names for statistics programs", "a comment sign before the names",
+    "what channels are in a row of remarks",
 }  # fmt: skip
 
 
