@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 NONE = np.empty(0)
 ALTERNATING = 0.25  # share of the samples at which the sign changes: no machine is reversed that often
 COOL = (BodyRole.BEARING, BodyRole.SHAFT, BodyRole.FOOT, BodyRole.BASE, BodyRole.TEST_BED)  # little heat arises there
+UNSEEN = "no reading says how warm the winding is"
 START_S = 10.0  # the first readings are the mean over this time
 
 
@@ -71,7 +72,7 @@ def _far_from_heat(name: str, sensors: Sequence[Sensor], network: Network) -> li
     if any(kind is None or kind.role not in COOL for kind in kinds):
         return []
     of = ", ".join(dict.fromkeys(s.channel.place for s in sensors))
-    return [f"{name} is measured at {of} alone: no reading says how warm the winding is, where most of the heat is"]
+    return [f"{name} is measured at {of} alone: {UNSEEN}, where most of the heat is"]
 
 
 @dataclass(frozen=True)

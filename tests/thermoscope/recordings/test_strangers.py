@@ -11,6 +11,7 @@ from logger_formats import signals
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.test.compare import compare as compare_command
 from thermoscope.commands.test.new import Wishes, new, places
 from thermoscope.console.answer import within
 from thermoscope.importing.clock import clock_of
@@ -73,8 +74,11 @@ def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, wor
     assert " ".join(capsys.readouterr().out.split()).startswith(words)
 
 
-def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path):
+def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path, capsys):
     folder, _ = written(tmp_path, table("t [s],I [A],T_Lager [°C],T_room [°C]", S["t"], S["I"], S["B"], S["A"]))
+    capsys.readouterr()
+    compare_command(str(folder.settings.path), None)
+    assert "is measured at lager alone" in " ".join(capsys.readouterr().out.split())[:60]
     assert any("measured at lager alone: no reading says how warm the winding is" in note for note in folder.notes)
     with_winding, _ = written(
         (tmp_path / "b").mkdir() or tmp_path / "b",
