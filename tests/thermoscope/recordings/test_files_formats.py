@@ -1,6 +1,7 @@
 """The recordings people have, each written by its own library and read back: the same numbers from every format."""
 
 import io
+import struct
 
 import numpy as np
 import openpyxl
@@ -265,3 +266,26 @@ def test_a_workbook_of_charts_alone_is_told(tmp_path, drawn):
     for read in (read_recording, read_source):
         with pytest.raises(InputError, match="holds charts alone"):
             read(tmp_path / "x.xlsx")
+
+
+@pytest.mark.parametrize("claimed", [10**6, 10**12, 2**63 - 1])
+@pytest.mark.parametrize("ending", ["tdms", "mf4"])
+def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending, claimed):
+    """77 rows that call themselves more are 77, or beyond a limit that says its name."""
+    file, t = tmp_path / f"a.{ending}", np.arange(77.0)
+    if ending == "tdms":
+        nptdms = pytest.importorskip("nptdms")
+        with nptdms.TdmsWriter(str(file)) as writer:
+            writer.write_segment([nptdms.ChannelObject("g", n, t, {"wf_increment": 1.0}) for n in ("T winding", "I")])
+    else:
+        asammdf = pytest.importorskip("asammdf")
+        with asammdf.MDF(version="4.10") as made:
+            made.append([asammdf.Signal(t, t, name=n, unit=u) for n, u in (("T winding", "degC"), ("I", "A"))])
+            made.save(file)
+    sound = file.read_bytes()
+    assert (count := struct.pack("<Q", 77)) in sound
+    file.write_bytes(sound.replace(count, struct.pack("<Q", claimed)))
+    try:
+        assert read_source(file).rows == 77
+    except InputError as refused:
+        assert "the limit 'rows'" in str(refused)
