@@ -212,8 +212,9 @@ def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str
             np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
         ]
         if others and time[b - 1] - time[a] > FROZEN_SHARE * time[-1] and np.median(others) > FROZEN_MOVE_K:
-            doubts[name] = (f"{samples.file.name} column '{name}': stands at {values[name][a]:g} degC from "
-                            f"{time[a]:g} s to {time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
+            stands = f"stands at {values[name][a]:g} degC from {time[a]:g} s to {time[b - 1]:g} s"
+            where = f"{samples.file.name} column '{name}'"
+            doubts[name] = f"{where}: {stands} while the others move; is the sensor frozen?"
     return doubts
 
 

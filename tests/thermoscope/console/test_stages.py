@@ -3,6 +3,7 @@
 import json
 import re
 import time
+from itertools import pairwise
 
 import pytest
 
@@ -124,7 +125,7 @@ def test_the_share_moves_between_two_counts():
         for _ in range(6):
             clock.now += 20.0
             seen.append((stages.left() or (0.0,))[0])
-    assert all(b - a > 0.01 for a, b in zip(seen[6:], seen[7:]))
+    assert all(b - a > 0.01 for a, b in pairwise(seen[6:]))
     assert seen[-1] < 1.0
 
 

@@ -282,10 +282,11 @@ def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending
         with asammdf.MDF(version="4.10") as made:
             made.append([asammdf.Signal(t, t, name=n, unit=u) for n, u in (("T winding", "degC"), ("I", "A"))])
             made.save(file)
-    sound = file.read_bytes()
-    assert (count := struct.pack("<Q", 77)) in sound
+    sound, count = file.read_bytes(), struct.pack("<Q", 77)
+    assert count in sound
     file.write_bytes(sound.replace(count, struct.pack("<Q", claimed)))
-    try:
+    if ending == "tdms" or claimed == 10**6:
         assert read_source(file).rows == 77
-    except InputError as refused:
-        assert "the limit 'rows'" in str(refused)
+    else:
+        with pytest.raises(InputError, match="the limit 'rows'"):
+            read_source(file)

@@ -30,7 +30,11 @@ def test_every_column_is_what_it_was_written_as(tmp_path, kind):
     assert form.doubt in " ".join([clock.doubt, *source.notes, *(g.doubt for g in found)])
     values = signals(form.step_s)
     letters = [c for c in form.columns if c in values and c != "t"]
-    names = list(used) if kind in RENAMED else [plain_header(n) for n, c in zip(form.header(), form.columns) if c in letters]
+    names = (
+        list(used)
+        if kind in RENAMED
+        else [plain_header(n) for n, c in zip(form.header(), form.columns) if c in letters]
+    )
     assert set(used) == set(names), [g.doubt for g in found if not g.used]
     for name, letter in zip(names, letters, strict=True):
         g, read = used[name], in_memory(source, used[name])[:ROWS]

@@ -156,7 +156,7 @@ def test_a_zero_byte_in_a_name_stores_nothing(case, monkeypatch):
             first = await session.get(address, allow_redirects=False)
             tab = first.headers["Location"].removesuffix("index.html")
             cookies = "; ".join(f"{c.key}={c.value}" for c in session.cookie_jar)
-            body = (b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n')
+            body = b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n'
             head = (f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
                     f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
                     "Connection: close\r\n\r\n")  # fmt: skip
