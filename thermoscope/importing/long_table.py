@@ -37,7 +37,7 @@ def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: 
     for signal, instant, reading in zip(columns[key], clocks, columns[value], strict=True):
         if signal is not None and str(signal).strip():
             series.setdefault(f"{signal}{unit}", {})[instant] = reading
-    instants = list(max(series.values(), key=len))
+    instants: list[tuple[Any, ...]] = max((list(readings) for readings in series.values()), key=len)
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         raise InputError(what, where, "a column for each signal, with common times")

@@ -474,6 +474,12 @@ FORMATS: dict[str, Format] = {
     "days since year 0": Format(
         "tIWA", ["datenum", "i_rms", "T_wdg", "T_amb"], stamp=lambda k: f"{740069.5 + k / 17280:.9f}"
     ),
+    "polish": Format(
+        "tIWBA",
+        ["Czas [s]", "Prąd [A]", "Temp. uzwojenia [°C]", "Temp. łożyska [°C]", "Temp. otoczenia [°C]"],
+        ";",
+        ",",
+    ),
     "a speed in dutch": Format(
         "tInWA", ["Tijd", "Stroom (A)", "Toerental (omw/min)", "Wikkeling (°C)", "Omgeving (°C)"], ";", ","
     ),
