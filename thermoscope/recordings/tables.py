@@ -17,7 +17,7 @@ from lumped.schemas.reader import suggestion
 from thermoscope.recordings.alignment import clock_shift, merged
 from thermoscope.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
 from thermoscope.recordings.formats import TIME, read_recording, recording
-from thermoscope.recordings.invalid_readings import code_note, coded
+from thermoscope.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from thermoscope.recordings.sheet import Column, Recorder, Sheet
 from thermoscope.recordings.units import converted
 
@@ -62,7 +62,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
-        if column.is_temperature and column.electrical is None and (codes := coded(raw)).any():
+        codes = coded(raw) & (column.is_temperature | (np.abs(raw) > LARGEST_THERMOCOUPLE))
+        if not column.is_temperature and codes.any():
+            what = f"{int(codes.sum())} readings of {raw[codes][0]:g} are kept: a logger's code, or a reading?"
+            notes.append(f"{file.name} column '{column.header}': {what}")
+        elif column.electrical is None and codes.any():
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:
