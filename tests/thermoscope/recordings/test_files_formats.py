@@ -268,7 +268,7 @@ def test_a_workbook_of_charts_alone_is_told(tmp_path, drawn):
             read(tmp_path / "x.xlsx")
 
 
-@pytest.mark.parametrize("claimed", [10**6, 10**12, 2**63 - 1])
+@pytest.mark.parametrize("claimed", [10**8, 10**12, 2**63 - 1])
 @pytest.mark.parametrize("ending", ["tdms", "mf4"])
 def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending, claimed):
     """77 rows that call themselves more are 77, or beyond a limit that says its name."""
@@ -285,7 +285,7 @@ def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending
     sound, count = file.read_bytes(), struct.pack("<Q", 77)
     assert count in sound
     file.write_bytes(sound.replace(count, struct.pack("<Q", claimed)))
-    if ending == "tdms" or claimed == 10**6:
+    if ending == "tdms":
         assert read_source(file).rows == 77
     else:
         with pytest.raises(InputError, match="the limit 'rows'"):
