@@ -73,7 +73,6 @@ SAME = {
     "no answer on the bus": (cell("T_flange", 30, -127.0), "1 readings of -127"),
     "overrange of a meter": (cell("T_flange", 30, 9.9e37), "1 readings of 9.9e+37"),
     "register": (cell("T_flange", 30, 6553.5), "1 readings of 6553.5"),
-    "code in an input": (cell("current", 30, -9999.0), "current': 1 readings of -9999"),
 }  # fmt: skip
 
 
@@ -85,6 +84,15 @@ def test_the_same_result_and_a_note(tmp_path, plain, change, note):
     assert note in " ".join(folder.notes)
     # one of 150 readings is missing, or its instant interpolated: far less than a hundredth of a kelvin
     assert compare(folder.case).rmse_K == pytest.approx(plain, abs=0.02)
+
+
+def test_a_code_in_an_input_is_kept_and_doubted(tmp_path):
+    """It may be what was read: 1370 rpm is a speed, and -9999 hardly a current."""
+    case = case_of(tmp_path)
+    cell("current", 30, -9999.0)(case)
+    assert "'current': 1 readings of -9999 are kept: a logger's code" in " ".join(load_case(case).notes)
+    cell("current", 30, 1370.0)(case)
+    assert "code" not in " ".join(load_case(case).notes)
 
 
 def test_rows_far_apart_are_said(tmp_path):

@@ -149,6 +149,16 @@ def test_a_room_may_stand_still(tmp_path):
     case = case_of(tmp_path)
     changed(case, "stand", lambda table: table.__setitem__("air", 21.5))
     assert not [f for f in findings(case) if "frozen" in f["what"]]
+    assert "frozen" not in answered("compare", case).err
+
+
+def test_it_may_be_cold_outside(tmp_path):
+    """A tenth of where a machine starts is weather, ten times of it is none."""
+    case = case_of(tmp_path)
+    changed(case, "stand", lambda table: table.__setitem__("air", 0.1 * table["T_winding"].iloc[0]))
+    assert not [f for f in findings(case) if "tenths" in f["what"]]
+    changed(case, "stand", lambda table: table.__setitem__("air", 10.0 * table["T_winding"].iloc[0]))
+    assert [f["where"] for f in findings(case) if "tenths" in f["what"]] == ["air"]
 
 
 def test_heat_for_an_hour_between_hourly_rows_is_no_leap(tmp_path):

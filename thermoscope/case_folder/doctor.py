@@ -21,12 +21,14 @@ from thermoscope.case_folder.recording_checks import (
     first_readings,
 )
 from thermoscope.recordings.sheet import Column
+from thermoscope.recordings.tables import standing_still
 
 Array = NDArray[np.float64]
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least
 ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
+SCALED_C = 60.0  # warmer at rest is no room and no machine in it
 NEAR_F = 18.0  # degF between the sensors of such a machine
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
 SOME = np.array([1.0, 1e3, 1e6])  # of every input: small, usual, large
@@ -119,15 +121,30 @@ def _frozen(p: Patient, network: Network) -> Iterator[Finding]:
 
 
 def _noted(p: Patient, network: Network) -> Iterator[Finding]:
-    """Doubts of the reader that are no gaps, nor of what stands still throughout or may stand still."""
-    still = [f.where for f in _frozen(p, network)]
-    still += [c.name for c in p.sheet.columns if c.is_temperature and c.place in network.boundaries]
-    for note in p.samples.notes:
-        if "no rows from" not in note and not any(f"column '{name}': stands at" in note for name in still):
+    """Doubts of the reader that are no gaps, and of sensors that stand still for a part of the test."""
+    still = {f.where for f in _frozen(p, network)}
+    doubts = standing_still(_within(p, network), p.samples)
+    for note in [*p.samples.notes, *(doubt for name, doubt in doubts.items() if name not in still)]:
+        if "no rows from" not in note:
             yield p.finding("", note, "look at it; use = false leaves a column out")
 
 
-INSIDE = (_all_units, _noted, _frozen, _power, _reversed, _declared)
+def _scale(p: Patient, network: Network) -> Iterator[Finding]:
+    """A column at ten times, or a sensor of the machine at a tenth, of where the others start: tenths of a degree.
+
+    It may be cold outside, and no room is as hot as ten times a room.
+    """
+    starts, within = first_readings(p), {c.name for c in _within(p, network)}
+    for name, start in starts.items():
+        others = [n for n in starts if n != name and (start > SCALED_C or within >= {n, name})]
+        usual = float(np.median([starts[n] for n in others] or [start]))
+        for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
+            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > OFFSET_K:
+                what = f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?"
+                yield p.finding(name, what, cure)
+
+
+INSIDE = (_all_units, _scale, _noted, _frozen, _power, _reversed, _declared)
 
 
 def _rates(patients: list[Patient]) -> Iterator[Finding]:

@@ -84,18 +84,6 @@ def _units(p: Patient) -> Iterator[Finding]:
             )
 
 
-def _scale(p: Patient) -> Iterator[Finding]:
-    """A column that starts at ten times, or a tenth, of where the others do: a logger's tenths of a degree."""
-    starts = first_readings(p)
-    for name, start in starts.items():
-        usual = float(np.median([s for n, s in starts.items() if n != name] or [start]))
-        for factor, cure in ((10.0, "divide the column by 10"), (0.1, "multiply the column by 10")):
-            if abs(start - factor * usual) < 0.1 * abs(factor * usual) and abs(start - usual) > OFFSET_K:
-                yield p.finding(
-                    name, f"starts at {start:.4g} degC, the others at {usual:.4g}: tenths of a degree?", cure
-                )
-
-
 def _sparse(p: Patient) -> Iterator[Finding]:
     """Sensors that were hardly read."""
     after = {c.name for c in p.sheet.columns if c.electrical is not None}  # one reading says the end, and is meant so
@@ -152,4 +140,4 @@ def _twins(p: Patient) -> Iterator[Finding]:
             yield p.finding(f"{a}, {b}", "are the same readings throughout", "one of them; check the logger's channels")
 
 
-RECORDING_CHECKS = (_units, _scale, _sparse, _clock, _spikes, _twins)
+RECORDING_CHECKS = (_units, _sparse, _clock, _spikes, _twins)

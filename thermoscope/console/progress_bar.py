@@ -15,6 +15,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from itertools import count
+from math import exp
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING
@@ -44,7 +45,8 @@ class ProgressBar:
     last : stage -> s of the last time, in their order;  clock : s, rising
     shortest_s : work that took less the last time has no share and no time left (s)
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
-    stages;  part : of the stage that runs, where its messages count "(3 of 200)"
+    stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
+    counted_s : how long the stage ran up to its last count (s)
     """
 
     last: dict[str, float]
@@ -55,6 +57,8 @@ class ProgressBar:
     block: int = 0
     shortest_s: float = WORTH_S
     part: float = 0.0
+    piece: float = 0.0
+    counted_s: float = 0.0
     share: float = 0.0
 
     def enter(self, message: str) -> bool:
@@ -63,18 +67,23 @@ class ProgressBar:
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
         if stage == self.now:
-            self.part = max(part, self.part)
+            if part > self.part:
+                self.part, self.piece, self.counted_s = part, 1 / int(count[2]) if count else 0.0, self._here()
             return False
         self.leave()
         self.now, self.part = stage, part
         return True
+
+    def _here(self) -> float:
+        """Time in the stage that runs (s)."""
+        return self.clock() - self.since if self.now else 0.0
 
     def leave(self) -> None:
         """Count the time of the stage that ends."""
         instant = self.clock()
         if self.now:
             self.took[self.now] = self.took.get(self.now, 0.0) + instant - self.since
-        self.since, self.now, self.part = instant, "", 0.0
+        self.since, self.now, self.part, self.counted_s = instant, "", 0.0, 0.0
 
     def left(self) -> tuple[float, float] | None:
         """Share done, and seconds left; None where no stage is known that is worth it. The share never falls.
@@ -83,14 +92,14 @@ class ProgressBar:
         this run: what its stages took, and will take, over what they took the last time. What comes before the stage
         that runs does not come any more.
         """
-        here = self.clock() - self.since if self.now else 0.0
+        here = self._here()
         before, order = self.took.get(self.now, 0.0), list(self.last)
         earlier = [s for s in self.took if s in self.last and s != self.now]
         usual = sum(self.last[s] for s in earlier)
         pace = sum(self.took[s] for s in earlier) / usual if usual > PACED_S else 1.0
         whole = max(pace * self.last.get(self.now, 0.0) - before, here)
         if self.part * here > 0.0:
-            whole = here / self.part
+            whole = here / self._done(here)
             if self.now in self.last:
                 usual += self.last[self.now]
                 pace = (sum(self.took[s] for s in earlier) + before + whole) / max(usual, 1e-9)
@@ -101,6 +110,12 @@ class ProgressBar:
             return None
         self.share = max(self.share, min(spent / max(spent + rest, 1e-9), 0.99))
         return self.share, rest
+
+    def _done(self, here: float) -> float:
+        """Part of the stage, as it grows between two counts: as if the next piece took as long as those before it."""
+        if not self.counted_s:
+            return self.part
+        return self.part + self.piece * (1.0 - exp(-(here - self.counted_s) / self.counted_s * self.part / self.piece))
 
     def words(self, message: str) -> str:
         """The message with share and time left."""

@@ -122,7 +122,8 @@ def _sheet(draft: Draft) -> Iterator[str]:
     first = draft.records[0]
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
-    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(f'{first.name}, {first.clock.words}')}",
+    description = visible(f"{first.name}, {first.clock.words}")
+    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(description)}",
                 'initial = "first-readings"')  # fmt: skip
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:

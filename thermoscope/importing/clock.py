@@ -373,7 +373,7 @@ def _total(parts: list[float], two: bool) -> float:
 def _numeric(source: Source) -> Clock | None:
     """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
     numeric = [c for c in source.cells if source.is_numeric(c)]
-    by_name = [c for c in numeric if is_time(source.labels[c])]
+    by_name = [c for c in numeric if _is_named(source, c)]
     by_unit = [c for c in numeric if rises(source, c) and (_unit_of_time(source, c) or _since_1970(source, c))]
     candidates = sorted(dict.fromkeys(c for c in (*by_name, *by_unit) if c != TIME), key=lambda c: not rises(source, c))
     is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
@@ -403,10 +403,16 @@ def _unit_of_time(source: Source, column: str) -> str:
 
 def is_second_clock(source: Source, column: str) -> bool:
     """Is it a time beside the clock: by its name, its unit, its size (seconds since 1970 in any unit) or its cells?"""
-    if is_time(source.labels[column]) or unit_of(source.units[column]) in TIME_UNITS or is_instants(source, column):
+    if _is_named(source, column) or unit_of(source.units[column]) in TIME_UNITS or is_instants(source, column):
         return True
     has_name = bool(set(tokens(column)) & CLOCKS) or bool(_unit_of_time(source, column))
+    has_name &= unit_of(source.units[column]) in ("", *TIME_UNITS)
     return rises(source, column) and (has_name or _since_1970(source, column))
+
+
+def _is_named(source: Source, column: str) -> bool:
+    """Has it a name for time, and no unit of something else: "Data [°C]" is no date?"""
+    return is_time(source.labels[column]) and unit_of(source.units[column]) in ("", *TIME_UNITS)
 
 
 def _since_1970(source: Source, column: str) -> bool:

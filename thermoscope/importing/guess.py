@@ -29,7 +29,7 @@ from thermoscope.importing.words import (
     roles_of,
     tokens,
 )
-from thermoscope.recordings.invalid_readings import coded
+from thermoscope.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
 from thermoscope.recordings.tables import LARGEST
 from thermoscope.recordings.units import QUANTITIES, converted
 
@@ -39,7 +39,6 @@ ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts,
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
-LARGEST_THERMOCOUPLE = 1820.0  # codes up to it are limits of thermocouples, and may be speeds
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's

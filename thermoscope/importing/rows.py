@@ -56,7 +56,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     names = [str(c or "").strip() for c in trimmed(rows[header])]
     if names and names[0].strip("#%/ ") != names[0]:
         names[0] = names[0].strip("#%/ ")
-        names = names[1:] if not names[0] and len(names) > width else names
+        widest = max(len(row) for row in head[first:])  # cells that are empty in most rows have names too
+        names = names[1:] if not names[0] and len(names) > max(width, widest) else names
     if len(names) == width - 1:
         names = ["", *names] if all(names) and _counts(head[first:]) else [*names, ""]
     if len(names) < width - 1:
@@ -67,6 +68,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     if above and len(set(names)) < len(names):  # names of groups over those of columns
         groups = _forward_filled(above[-1])
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
+    if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
+        names = [names[0], *(f"{name} {remark}".strip() for name, remark in zip(names[1:], remarks[1:], strict=True))]
     return Layout(tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width,
                   block[0])  # fmt: skip
 
@@ -128,8 +131,14 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
     fits = [_readings(row) and width / 2 < len(row) and len(trimmed(row)) <= width for row in rows]
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
+            while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
+                i -= 1  # a remark behind the readings of a first row
             return i
     raise InputError("fewer than three rows of readings: it is no record", where, "at least 3 rows of numbers")
+
+
+def _kinds(row: Row, width: int) -> list[bool]:
+    return [is_reading("" if c is None else c) for c in row[:width]]
 
 
 def _all_units(row: Row) -> bool:

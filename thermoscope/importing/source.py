@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from geom.description.names import plain_header
 from geom.errors import InputError
 from thermoscope.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from thermoscope.importing.long_table import side_by_side
 from thermoscope.importing.rows import Layout, layout
 from thermoscope.importing.text import text_table
 from thermoscope.importing.words import is_time, quantities_of, roles_of
@@ -155,6 +156,8 @@ def _of_table(
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once(_plain(plan.names))
+    if beside := side_by_side(names, columns, str(file)):
+        return _source(file, list(beside), list(beside.values()), {}, notes)
     doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])

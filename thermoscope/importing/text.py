@@ -22,8 +22,8 @@ BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-si
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250")
 LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñ℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
 INTERVAL = re.compile(
-    r"(?im)^\W*(?:delta_x|sampl\w*[ _](?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
-    r"[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
+    r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
+    r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
@@ -71,7 +71,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
 def _interval(preamble: str) -> float | None:
     """Time between rows (s) as lines before a header give it: "Delta_X 0,5", "Sampling interval, 5 s"."""
     match = INTERVAL.search(preamble)
-    step = number(match[1]) * TIMES.get((match[2] or "s").lower(), 1.0) if match else 0.0
+    step = number(match[2]) * TIMES.get((match[1] or match[3] or "s").lower(), 1.0) if match else 0.0
     return step if step > 0 else None
 
 

@@ -124,8 +124,8 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
 
 def _xlsx(file: Path, worksheet: str) -> Columns:
     with workbook(file) as book:
-        sheets = {sheet.title: sheet for sheet in book.worksheets}  # without those that are charts
-        if not sheets or (worksheet and worksheet not in sheets):
+        sheets = {sheet.title: sheet for sheet in book.worksheets}
+        if worksheet and worksheet not in sheets:
             raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
         header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))], file) or [[]]
     names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
@@ -135,11 +135,21 @@ def _xlsx(file: Path, worksheet: str) -> Columns:
 @contextmanager
 def workbook(file: Path) -> Iterator[Any]:
     """A workbook's values, not its formulas."""
-    from openpyxl import load_workbook
+    from openpyxl.reader.excel import ExcelReader
+
+    class Reader(ExcelReader):
+        """Sheets of cells alone: openpyxl trips over a chart sheet that draws nothing."""
+
+        def read_chartsheet(self, sheet: Any, rel: Any) -> None:
+            pass
 
     check_archive(file)
-    book = load_workbook(file, read_only=True, data_only=True, keep_links=False)
+    reader = Reader(file, read_only=True, data_only=True, keep_links=False)
+    reader.read()
+    book = reader.wb
     try:
+        if not book.worksheets:
+            raise InputError("holds charts alone", str(file), "a workbook with a sheet of cells")
         yield book
     finally:
         book.close()

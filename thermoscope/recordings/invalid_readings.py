@@ -14,6 +14,7 @@ CODES = np.array([
     32767.0, -32768.0, 65535.0, 3276.7, -3276.8, 6553.5,
 ])  # fmt: skip
 ENDLESS = 1e30  # and beyond: 9.9e37 and its kin
+LARGEST_THERMOCOUPLE = 1820.0  # codes up to it are limits of thermocouples, and may be speeds
 FAR = 5.0  # times the spread of the other readings, from their median: nearer, a reading may be what it says
 LEAST = 50.0  # in the unit of the file, of that distance
 

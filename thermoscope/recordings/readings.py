@@ -17,7 +17,7 @@ from lumped.transfer.laws import CLOCK
 from thermoscope.recordings.consistency import checked_heat, checked_sheet
 from thermoscope.recordings.grid import ROUNDING, averaged, bridged, grid_of, read, rms
 from thermoscope.recordings.sheet import Column, Sheet
-from thermoscope.recordings.tables import Samples
+from thermoscope.recordings.tables import Samples, standing_still
 from validation.case import Channel, Recorded, Role, Test
 from validation.measurement.sampling import SampleStep, sample_step
 
@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 NONE = np.empty(0)
 ALTERNATING = 0.25  # share of the samples at which the sign changes: no machine is reversed that often
 COOL = (BodyRole.BEARING, BodyRole.SHAFT, BodyRole.FOOT, BodyRole.BASE, BodyRole.TEST_BED)  # little heat arises there
+UNSEEN = "no reading says how warm the winding is"
 START_S = 10.0  # the first readings are the mean over this time
 
 
@@ -40,7 +41,9 @@ def read_test(
     name: str, role: Role, samples: Samples, sheet: Sheet, network: Network, wished: float | None = None
 ) -> Reading:
     """wished : the coarsest step (s) that is wanted; by default as coarse as the sensors do not feel."""
-    notes, usual = [*samples.notes, *checked_sheet(sheet, network)], float(np.median(np.diff(samples.time)))
+    inside = [c for c in sheet.columns if c.place not in network.boundaries]  # a room may stand still
+    notes = [*samples.notes, *standing_still(inside, samples).values(), *checked_sheet(sheet, network)]
+    usual = float(np.median(np.diff(samples.time)))
     notes += grid_of(samples, wished or usual, sheet.where)[1]
     fine = _recorded(sheet, samples)
     air = {c.place: c.name for c in sheet.columns if c.is_temperature and c.place in network.boundaries}
@@ -69,7 +72,7 @@ def _far_from_heat(name: str, sensors: Sequence[Sensor], network: Network) -> li
     if any(kind is None or kind.role not in COOL for kind in kinds):
         return []
     of = ", ".join(dict.fromkeys(s.channel.place for s in sensors))
-    return [f"{name} is measured at {of} alone: no reading says how warm the winding is, where most of the heat is"]
+    return [f"{name} is measured at {of} alone: {UNSEEN}, where most of the heat is"]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from lumped.schemas.reader import suggestion
 from thermoscope.recordings.alignment import clock_shift, merged
 from thermoscope.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
 from thermoscope.recordings.formats import TIME, read_recording, recording
-from thermoscope.recordings.invalid_readings import code_note, coded
+from thermoscope.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from thermoscope.recordings.sheet import Column, Recorder, Sheet
 from thermoscope.recordings.units import converted
 
@@ -62,7 +62,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
-        if column.is_temperature and column.electrical is None and (codes := coded(raw)).any():
+        codes = coded(raw) & (column.is_temperature | (np.abs(raw) > LARGEST_THERMOCOUPLE))
+        if not column.is_temperature and codes.any():
+            what = f"{int(codes.sum())} readings of {raw[codes][0]:g} are kept: a logger's code, or a reading?"
+            notes.append(f"{file.name} column '{column.header}': {what}")
+        elif column.electrical is None and codes.any():
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:
@@ -72,7 +76,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
         notes += _look(column, values[column.name], file, rows.start)
-    return Samples(file, time, values, gaps, (*notes, *_frozen(sheet.columns, time, values, file)), sigma, start)
+    return Samples(file, time, values, gaps, tuple(notes), sigma, start)
 
 
 def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | None]:
@@ -202,19 +206,20 @@ def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
     return []
 
 
-def _frozen(columns: tuple[Column, ...], time: Array, values: Mapping[str, Array], file: Path) -> list[str]:
-    """Temperatures that stand still for long while the others move."""
+def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str]:
+    """Doubts of temperatures that stand still for long while the others of `columns` move, by column."""
     hot = [c.name for c in columns if c.is_temperature]
-    notes = []
+    doubts, time, values = {}, samples.time, samples.values
     for name in hot:
         a, b = _longest_run(values[name])
         others = [
             np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
         ]
         if others and time[b - 1] - time[a] > FROZEN_SHARE * time[-1] and np.median(others) > FROZEN_MOVE_K:
-            notes.append(f"{file.name} column '{name}': stands at {values[name][a]:g} degC from {time[a]:g} s to "
-                         f"{time[b - 1]:g} s while the others move; is the sensor frozen?")  # fmt: skip
-    return notes
+            stands = f"stands at {values[name][a]:g} degC from {time[a]:g} s to {time[b - 1]:g} s"
+            where = f"{samples.file.name} column '{name}'"
+            doubts[name] = f"{where}: {stands} while the others move; is the sensor frozen?"
+    return doubts
 
 
 def _longest_run(v: Array) -> tuple[int, int]:

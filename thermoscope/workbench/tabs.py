@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from aiohttp import WSMsgType, web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from thermoscope.workbench.access_control import served
 from thermoscope.workbench.dropped import stored
@@ -131,7 +132,10 @@ class Tabs:
             raise web.HTTPNotFound()
         folder = Path(tempfile.mkdtemp(prefix="thermoscope-drop-"))
         try:
-            files = await stored(await request.multipart(), folder, self.largest_drop)
+            try:
+                files = await stored(await request.multipart(), folder, self.largest_drop)
+            except (HttpProcessingError, ValueError) as fault:  # such as a zero byte in a name
+                raise web.HTTPBadRequest(text="not readable as an upload of files") from fault
             if files:
                 await tab.session.take_in(files)
         finally:

@@ -3,6 +3,7 @@
 import json
 import re
 import time
+from itertools import pairwise
 
 import pytest
 
@@ -113,6 +114,19 @@ def test_a_stage_that_counts_says_how_long_it_takes():
     assert seen == sorted(seen)
     stages.enter("fitting")
     assert stages.left()[1] == pytest.approx(150.0), "a mesh that was not needed is not waited for"
+
+
+def test_the_share_moves_between_two_counts():
+    """Three pieces of two minutes each, counted as they begin: in every 20 s of the second and third it rises."""
+    clock = Clock()
+    stages, seen = ProgressBar({}, clock), []
+    for number in (1, 2, 3):
+        stages.enter(f"fitting ({number} of 3)")
+        for _ in range(6):
+            clock.now += 20.0
+            seen.append((stages.left() or (0.0,))[0])
+    assert all(b - a > 0.01 for a, b in pairwise(seen[6:]))
+    assert seen[-1] < 1.0
 
 
 def test_a_line_of_80_columns_keeps_its_times():

@@ -435,6 +435,63 @@ FORMATS: dict[str, Format] = {
     "points in times": Format("tIWA", ["Data e ora", *IWA], ";", ",", stamp=at("%d/%m/%Y %H.%M.%S")),
     "degrees that were lost": Format("tIWA", ["Time [s]", "I [A]", "winding [?C]", "room [\u00c2\u00b0C]"]),
     "names over two lines": Format("tIWA", ["Time\n[s]", "I\n[A]", "winding\n[°C]", "room\n[°C]"], quote=True),
+    "a name for dates over degrees": Format("tWAI", ["Time [s]", "Data winding [°C]", "Data room [°C]", "I [A]"]),
+    "a logger of buildings": Format(
+        "xtWAIyz",
+        [
+            "#",
+            "Date Time, GMT+01:00",
+            "Temp, °F (LGR S/N: 1, SEN S/N: 2, LBL: winding)",
+            "Temp, °F (LGR S/N: 1, SEN S/N: 3, LBL: ambient)",
+            "Current, A (LGR S/N: 1, SEN S/N: 4)",
+            "Host Connected (LGR S/N: 1)",
+            "End Of File (LGR S/N: 1)",
+        ],
+        before='"Plot Title: pump"\n',
+        stamp=at("%m/%d/%y %I:%M:%S %p"),
+        scale=FAHRENHEIT,
+        quote=True,
+        cells={"x": lambda k: k + 1, "y": lambda k: "Logged" * (k == 0), "z": lambda k: "Logged" * (k == ROWS - 1)},
+    ),
+    "a controller's scope": Format(
+        "xIyWzA",
+        ["Name", "fCurrent", "Name", "fMotorTemp", "Name", "fAmbientTemp"],
+        "\t",
+        before="File\tC:/scope/a\nStart\t134190792100000000\n\n",
+        units=[
+            *["Data-Type", "LREAL"] * 2,
+            "Data-Type",
+            "LREAL\n" + "\t".join(["SampleTime[ms]", "5000"] * 3) + "\nUnit\tA\tUnit\t°C\tUnit\t°C\n",
+        ],
+        cells={c: lambda k: 5000 * k for c in "xyz"},
+        doubt="rows 5 s apart as the lines before its header say",
+    ),
+    "what channels are in a row of remarks": Format(
+        "tWHAI",
+        ["Time", "U1-1[C]", "U1-2[C]", "U1-3[C]", "U2-1[A]"],
+        before='"Mode","Tc K","Tc K","Tc K","Voltage"\n"Comment","Winding","Housing","Room","Shunt"\n',
+    ),
+    "days since year 0": Format(
+        "tIWA", ["datenum", "i_rms", "T_wdg", "T_amb"], stamp=lambda k: f"{740069.5 + k / 17280:.9f}"
+    ),
+    "polish": Format(
+        "tIWBA",
+        ["Czas [s]", "Prąd [A]", "Temp. uzwojenia [°C]", "Temp. łożyska [°C]", "Temp. otoczenia [°C]"],
+        ";",
+        ",",
+    ),
+    "a speed in dutch": Format(
+        "tInWA", ["Tijd", "Stroom (A)", "Toerental (omw/min)", "Wikkeling (°C)", "Omgeving (°C)"], ";", ","
+    ),
+    "a speed controller": Format(
+        "tUWnI",
+        ["ms_today", "input_voltage", "temp_motor", "motor_rpm", "current_motor"],
+        ";",
+        stamp=lambda k: str(43_210_000 + 5000 * k),
+    ),
+    "a flight log": Format(
+        "tnUIHW", ["timestamp", "RPM", "Volt", "Curr", "TempEsc", "MotTemp"], stamp=lambda k: f"{UNIX + 5 * k}.0"
+    ),
     "a code among currents": Format(
         "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"
     ),

@@ -1,6 +1,7 @@
 """The recordings people have, each written by its own library and read back: the same numbers from every format."""
 
 import io
+import struct
 
 import numpy as np
 import openpyxl
@@ -11,6 +12,7 @@ from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
+from thermoscope.importing.source import read_source
 from thermoscope.recordings.alignment import clock_shift
 from thermoscope.recordings.formats import joined, read_recording, recording
 from thermoscope.recordings.sheet import read_sheet
@@ -251,3 +253,40 @@ def test_a_chart_sheet_holds_no_table(tmp_path):
     assert read_recording(tmp_path / "x.xlsx").columns == ["time_s", "T"]
     with pytest.raises(InputError, match="no worksheet 'drawn'"):
         read_recording(tmp_path / "x.xlsx", "drawn")
+
+
+@pytest.mark.parametrize("drawn", [True, False])
+def test_a_workbook_of_charts_alone_is_told(tmp_path, drawn):
+    book = openpyxl.Workbook()
+    sheet = book.create_chartsheet("drawn")
+    if drawn:
+        sheet.add_chart(LineChart())
+    book.remove(book.worksheets[0])
+    book.save(tmp_path / "x.xlsx")
+    for read in (read_recording, read_source):
+        with pytest.raises(InputError, match="holds charts alone"):
+            read(tmp_path / "x.xlsx")
+
+
+@pytest.mark.parametrize("claimed", [10**8, 10**12, 2**63 - 1])
+@pytest.mark.parametrize("ending", ["tdms", "mf4"])
+def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending, claimed):
+    """77 rows that call themselves more are 77, or beyond a limit that says its name."""
+    file, t = tmp_path / f"a.{ending}", np.arange(77.0)
+    if ending == "tdms":
+        nptdms = pytest.importorskip("nptdms")
+        with nptdms.TdmsWriter(str(file)) as writer:
+            writer.write_segment([nptdms.ChannelObject("g", n, t, {"wf_increment": 1.0}) for n in ("T winding", "I")])
+    else:
+        asammdf = pytest.importorskip("asammdf")
+        with asammdf.MDF(version="4.10") as made:
+            made.append([asammdf.Signal(t, t, name=n, unit=u) for n, u in (("T winding", "degC"), ("I", "A"))])
+            made.save(file)
+    sound, count = file.read_bytes(), struct.pack("<Q", 77)
+    assert count in sound
+    file.write_bytes(sound.replace(count, struct.pack("<Q", claimed)))
+    if ending == "tdms":
+        assert read_source(file).rows == 77
+    else:
+        with pytest.raises(InputError, match="the limit 'rows'"):
+            read_source(file)

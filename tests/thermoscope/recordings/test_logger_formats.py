@@ -1,9 +1,10 @@
-"""Ninety-seven formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
+"""A hundred and more formats of loggers: every column is what its writer meant, or its doubt is said aloud."""
 
 import numpy as np
 import pytest
 from logger_formats import FORMATS, ROWS, signals
 
+from geom.description.names import plain_header
 from thermoscope.commands.test.new import first_model
 from thermoscope.importing.clock import clock_of
 from thermoscope.importing.guess import guesses, in_memory
@@ -13,6 +14,7 @@ from thermoscope.importing.source import read_source
 RENAMED = {
     "no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
     "an object on every line", "names for statistics programs", "a comment sign before the names",
+    "what channels are in a row of remarks",
 }  # fmt: skip
 
 
@@ -28,7 +30,11 @@ def test_every_column_is_what_it_was_written_as(tmp_path, kind):
     assert form.doubt in " ".join([clock.doubt, *source.notes, *(g.doubt for g in found)])
     values = signals(form.step_s)
     letters = [c for c in form.columns if c in values and c != "t"]
-    names = list(used) if kind in RENAMED else [n for n, c in zip(form.header(), form.columns) if c in letters]
+    names = (
+        list(used)
+        if kind in RENAMED
+        else [plain_header(n) for n, c in zip(form.header(), form.columns) if c in letters]
+    )
     assert set(used) == set(names), [g.doubt for g in found if not g.used]
     for name, letter in zip(names, letters, strict=True):
         g, read = used[name], in_memory(source, used[name])[:ROWS]

@@ -11,6 +11,7 @@ from logger_formats import signals
 
 from geom.errors import InputError
 from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.test.compare import compare as compare_command
 from thermoscope.commands.test.new import Wishes, new, places
 from thermoscope.console.answer import within
 from thermoscope.importing.clock import clock_of
@@ -73,8 +74,11 @@ def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, wor
     assert " ".join(capsys.readouterr().out.split()).startswith(words)
 
 
-def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path):
+def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path, capsys):
     folder, _ = written(tmp_path, table("t [s],I [A],T_Lager [°C],T_room [°C]", S["t"], S["I"], S["B"], S["A"]))
+    capsys.readouterr()
+    compare_command(str(folder.settings.path), None)
+    assert "is measured at lager alone" in " ".join(capsys.readouterr().out.split())[:60]
     assert any("measured at lager alone: no reading says how warm the winding is" in note for note in folder.notes)
     with_winding, _ = written(
         (tmp_path / "b").mkdir() or tmp_path / "b",
@@ -216,3 +220,36 @@ def test_published_recordings_of_a_cell_and_a_house(root, tmp_path):
     assert {c.name for c in test.channels} == {"Ti", "Th"}
     assert test.boundaries["ambient"][0] == pytest.approx(5.4, abs=0.5)
     assert test.inputs["power_W"].max() > 90.0
+
+
+LONG = {
+    "VarName;TimeString;VarValue;Validity;Time_ms": lambda n, k, v: (
+        f'"{n}";"28.03.2026 12:{k // 12:02d}:{5 * k % 60:02d}";{v:.2f};1;{46109500.0 + 5 * k:.1f}'.replace(
+            ".", ","
+        ).replace("28,03,", "28.03.")
+    ),
+    ",result,table,_time,_value,_field": lambda n, k, v: (
+        f",,0,2026-03-28T12:{k // 12:02d}:{5 * k % 60:02d}Z,{v:.2f},{n}"
+    ),
+    "time_s,sensor,reading": lambda n, k, v: f"{5 * k},{n},{v:.2f}",
+}
+
+
+@pytest.mark.parametrize("header", LONG)
+@pytest.mark.parametrize("in_turn", [True, False])
+def test_a_row_for_every_reading_becomes_a_column_for_every_signal(tmp_path, header, in_turn):
+    signs = {"Temp_Winding": S["W"], "Temp_ambient": S["A"], "Current": S["I"]}
+    rows = [(k, LONG[header](name, k, v[k])) for name, v in signs.items() for k in range(len(S["t"]))]
+    text = "\n".join([header, *(row for _, row in (sorted(rows, key=lambda r: r[0]) if in_turn else rows))])
+    (tmp_path / "a.csv").write_text(text + "\n")
+    source = read_source(tmp_path / "a.csv")
+    assert clock_of(source).seconds == pytest.approx(S["t"], abs=1e-3)
+    for name, values in signs.items():
+        assert source.numbers(name) == pytest.approx(values, abs=0.006)
+
+
+def test_signals_with_times_of_their_own_are_refused(tmp_path):
+    rows = [f"{5 * k + (name == 'I')},{name},{k}" for k in range(30) for name in ("T_winding", "I")]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value", *rows]) + "\n")
+    with pytest.raises(InputError, match=r"2 signals .'sensor'., each at its own times"):
+        read_source(tmp_path / "a.csv")

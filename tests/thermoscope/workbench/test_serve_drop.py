@@ -138,6 +138,42 @@ def test_a_name_that_no_file_may_have_is_made_one(case):
     assert [name[-4:] for name, _ in seen[:3]] == [".csv"] * 3
 
 
+def test_a_zero_byte_in_a_name_stores_nothing(case, monkeypatch):
+    """No client's library sends one: the server answers 4xx, stores nothing, and serves on."""
+    taken = []
+
+    async def take_in(self, files):
+        taken.extend(files)
+
+    monkeypatch.setattr("thermoscope.workbench.session.Session.take_in", take_in)
+
+    async def main():
+        folder = load_case(case)
+        async with running(folder, AccessControl("127.0.0.1", TOKEN)) as address, ClientSession(
+            cookie_jar=CookieJar(unsafe=True)
+        ) as session:  # fmt: skip
+            await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
+            first = await session.get(address, allow_redirects=False)
+            tab = first.headers["Location"].removesuffix("index.html")
+            cookies = "; ".join(f"{c.key}={c.value}" for c in session.cookie_jar)
+            body = b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n'
+            head = (f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
+                    f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
+                    "Connection: close\r\n\r\n")  # fmt: skip
+            reader, writer = await asyncio.open_connection("127.0.0.1", int(address.rpartition(":")[2]))
+            writer.write(head.encode() + body)
+            answer = await reader.read()
+            writer.close()
+            after = await session.get(f"{address}{tab}index.html")
+            return answer, after.status
+
+    answer, after = asyncio.run(main())
+    assert answer.startswith(b"HTTP/1.1 400")
+    assert answer.endswith(b"not readable as an upload of files")
+    assert after == 200
+    assert taken == []
+
+
 def test_strangers_cannot_drop(case):
     status, seen = upload(case, [("a.csv", b"1")], token="")
     assert status == 401

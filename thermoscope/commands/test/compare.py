@@ -11,6 +11,7 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.files import STOPPED
+from thermoscope.recordings.readings import UNSEEN
 from validation.comparison.uncertainty import RULE
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
             if so_far is None:
                 raise
             return _stopped(folder, so_far, case)
-    give(document, target, lambda: answer(document, case))
+    unseen = next((note for note in folder.notes if UNSEEN in note), "")
+    give(document, target, lambda: answer(document, case, unseen))
     return 0 if result.agrees else 1
 
 
@@ -83,8 +85,11 @@ def uncertainty(result: Comparison) -> dict[str, Any]:
     return {"uncertainty": [u.document() for test in result.tests for u in test.uncertainty]}
 
 
-def answer(document: Mapping[str, Any], called: str) -> Answer:
-    """How many sensors are over, which, and what the rest looks like.  called : what the user calls the case"""
+def answer(document: Mapping[str, Any], called: str, unseen: str = "") -> Answer:
+    """How many sensors are over, which, and what the rest looks like.
+
+    called : what the user calls the case;  unseen : what stands before all else of a machine without a warm sensor
+    """
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     why = _why(document) if "patterns" in document else []
@@ -95,7 +100,8 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
               for t in document["tests"]), roles(document["roles"]),
              *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    return Answer(f"{plain['warning']} {document['words']}".strip(), parts, more, rest)
+    words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"]]
+    return Answer(" ".join(filter(None, words)), parts, more, rest)
 
 
 def tests(records: Sequence[Mapping[str, Any]]) -> Grid:
