@@ -12,7 +12,7 @@ from typing import Any
 
 COLDEST, HOTTEST = -100.0, 3000.0  # degC: no test bench is colder; copper, steel and insulation are gone before
 TINY = 1e-12  # stands for "above zero" where a number divides
-LEAST_J_K = 1e-6  # a thousandth of a thermocouple's bead; a node that stores nothing has no capacity at all
+LEAST_J_K = 1e-9  # a millionth of a thermocouple's bead; a node that stores nothing has no capacity at all
 
 
 @dataclass(frozen=True)

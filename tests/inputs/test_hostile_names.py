@@ -31,6 +31,7 @@ from thermoscope.export.document import document, mat
 from thermoscope.export.drive import Compiled
 from thermoscope.export.fmu import description, identifier
 from thermoscope.export.model import Output, Signal, packed
+from validation.case import Reference
 from viz.pages import html
 from viz.viewer.page import render
 
@@ -84,7 +85,7 @@ def model():
     """A network whose every name is hostile, as no file could declare it."""
     net = bare_network("x", {"a": 100.0}, ("room",))
     net = net.extended([node_link(net, "link:x", "link", "a", "room", Fixed(1.0))])
-    one = packed(net, {}, [], [])
+    one = packed(net, {}, Reference(), [])
     state = Output("", Row(np.array([0]), np.ones(1)))
     return replace(
         one, name=NAMES[0], effects=tuple(NAMES), inputs=tuple(Signal(n, n, 0.0, 1.0) for n in NAMES),

@@ -110,7 +110,7 @@ def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> 
 def scene_of(case: Case) -> Scene:
     """What the case's tests record; an input counts when every test that is fitted or chosen with has it."""
     tests = case.usable or case.tests
-    inputs = frozenset.union(*(frozenset(t.inputs) for t in tests)) | {"time_s"}
+    inputs = frozenset().union(*(frozenset(t.inputs) for t in tests)) | {"time_s"}
     channels = tuple(dict.fromkeys(c.name for t in tests for c in t.channels))
     return Scene(case.model.network, inputs, channels, tuple(t.name for t in tests))
 
