@@ -564,7 +564,7 @@ def _open_streams() -> None:
 def one_line(fault: Exception) -> str:
     """One line that says what is wrong; the help itself where nothing at all was asked for."""
     if not isinstance(fault, ThermoscopeError | OSError | UsageError):
-        return f"error: {printable(f'{type(fault).__name__}: {fault}')}; not foreseen: --debug shows where"
+        return f"error: {printable(f'{type(fault).__name__}: {fault}')}; a fault of the program: --debug shows where"
     if not isinstance(fault, UsageError):
         return f"error: {printable(message_of(fault))}"
     message, command = fault.format_message().rstrip("."), fault.ctx.command_path if fault.ctx else "thermoscope"

@@ -84,7 +84,7 @@ def test_every_writing_command(tmp_path, i):
         if k < 3 or (i + k) % 2:
             done = answered(words[0], case, *(w.replace("{hot}", hot) for w in words[1:]), cwd=work)
             codes[words] = done.code
-            assert "not foreseen" not in done.err, (words, done.err)
+            assert "a fault of the program" not in done.err, (words, done.err)
             assert done.out.replace("\n", "").isprintable()
             assert done.err.replace("\n", "").isprintable()
     assert codes[WRITES[0]] in (0, 1)
@@ -184,7 +184,7 @@ def test_a_fault_nobody_foresaw_is_one_line(monkeypatch):
     monkeypatch.setattr("thermoscope.commands.explain.effects.quantities", fails)
     done = answered("test", "quantities")
     assert (done.code, done.out) == (2, "")
-    assert done.errors == ["error: ZeroDivisionError: by zero; not foreseen: --debug shows where"]
+    assert done.errors == ["error: ZeroDivisionError: by zero; a fault of the program: --debug shows where"]
     with pytest.raises(ZeroDivisionError):
         answered("test", "quantities", "--debug")
 

@@ -208,7 +208,7 @@ LIMITS = {
     ],
     Shift: [(Shift(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2e-3)],
 }  # fmt: skip
-FILM = TEMPERATURES[5]
+FILM = next(law for law in TEMPERATURES if isinstance(law, FilmTable))
 STILL = FILM.at(0.0, 80.0)
 # temperature law -> [(law, hot, cold, its value)] in degC
 TEMPERATURE_LIMITS = {
