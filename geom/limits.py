@@ -59,7 +59,7 @@ class Limit:
                              f"limit '{self.name}', raised by {self.variable}={self.most * 10}")  # fmt: skip
 
 
-BYTES = Limit("bytes", 2**29, "bytes", "of a recording, as it is in memory: a day of 50 channels at 1 Hz is a tenth of that")
+BYTES = Limit("bytes", 2**29, "bytes", "of a recording in memory: a day of 50 channels at 1 Hz is a tenth of that")
 ROWS = Limit("rows", 5_000_000, "rows", "of a recording, empty ones counted: 50 days at 1 Hz, an hour at 1 kHz")
 COLUMNS = Limit("columns", 10_000, "columns", "of a recording: the largest loggers have some hundreds")
 CELLS = Limit("cells", 50_000_000, "cells", "of a recording, rows times columns: 400 MB as numbers")

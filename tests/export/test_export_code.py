@@ -88,7 +88,8 @@ def test_films_by_reynolds_number(kind):
     time = np.linspace(0.0, 3600.0, 61)
     air = 30.0 + 60.0 * np.sin(time / 700.0)
     given = Record(time, {"flow": 0.5 + 0.6 * np.cos(time / 300.0)}, {"air": air}, 20.0)
-    assert difference(Compiled(packed(network, {}, reference_of(network, [Recorded(given)]), states(network))), network, given, {}) < AGREES_K
+    reference = reference_of(network, [Recorded(given)])
+    assert difference(Compiled(packed(network, {}, reference, states(network))), network, given, {}) < AGREES_K
 
 
 def test_a_table_that_begins_below_zero_minds_the_sign():
