@@ -83,13 +83,13 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     """K - dq/dT (n, n) W/K at temperatures z."""
     n, every = len(network.states), assembly(network)
     m, at = multipliers(network, values), {name: np.array([float(u)]) for name, u in inputs.items()}
-    coefficient = np.array([
+    strength = np.array([
         m.get(p.name, 1.0)
         * (coefficient(p.law, at, _T(p.hot, z), _T(p.cold, z)) if p.touches else float(np.mean(p.law.factor(at))))
         for p in every.patterns
     ])  # fmt: skip
-    G = every.matrix(coefficient)[:, :n]
-    for s, c in zip(network.sources, coefficient[len(network.links) :], strict=True):
+    G = every.matrix(strength)[:, :n]
+    for s, c in zip(network.sources, strength[len(network.links) :], strict=True):
         if slope_1_K := loss_slope(s.law.temperature, _T(s.probe, z)):
             slope = c * slope_1_K * s.weights
             np.subtract.at(G, (s.index[:, None], s.probe.index[None, :]), np.outer(slope, s.probe.weights))

@@ -17,7 +17,6 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from validation.yardstick.records import Columns, Record
 
@@ -161,6 +160,8 @@ def nonnegative(A: Array, b: Array) -> Array:
 
     With fewer equations than unknowns SciPy's solver writes beyond its memory, so zeros are equations too.
     """
+    from scipy.optimize import nnls  # loads for a fifth of a second; what was learnt before is kept
+
     scale = np.linalg.norm(A, axis=0)
     alive = scale > 1e-12 * max(float(scale.max(initial=0.0)), 1e-300)
     x = np.zeros(A.shape[1])

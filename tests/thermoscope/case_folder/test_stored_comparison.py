@@ -57,10 +57,10 @@ def test_whatever_decides_a_comparison_changes_its_key(folder, monkeypatch):
     file = settings.path / "case.toml"
     file.write_text(file.read_text() + "\n# another\n")
     keys.append(result_key(folder))
-    content._code.cache_clear()
+    content.code_digest.cache_clear()
     monkeypatch.setattr(content, "_modules", lambda rooms: iter([file]))
     keys.append(result_key(folder))
-    content._code.cache_clear()
+    content.code_digest.cache_clear()
     assert len(set(keys)) == len(keys) == 7
 
 
