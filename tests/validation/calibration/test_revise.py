@@ -127,6 +127,7 @@ def test_comparison_document():
         "limit_K",
         "u_input_K",
         "u_numeric_K",
+        "fitted_rmse_K",
         "verdict",
     } == set(row)
 

@@ -64,7 +64,7 @@ def test_a_limit_holds_at_the_hottest_point_and_that_of_a_mean_at_the_mean():
     V = np.column_stack([np.ones(3), [-1.0, 0.0, 1.0]])
     shapes = Shapes({"coil": PartShape(np.arange(3), None, V, np.array([0.25, 0.5, 0.25]), np.array([0, 1]))})
     net = replace(net, recovery=shapes)
-    op = operation(net, (), {"current_A": 50.0, "air": AIR})
+    op = operation(net, {}, {"current_A": 50.0, "air": AIR})
     rows = {"coil": net.places["coil"].mean}
     for name, conductance in (("coil", 1.0 / (1.0 / G + 1.0 / k)), ("coil.mean", G)):
         limits = places({name: 120.0}, rows, net.identities)
