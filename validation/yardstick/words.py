@@ -44,6 +44,8 @@ def warning(yard: Yardstick, comparison: Comparison) -> str:
 
 def _rest(yard: Yardstick, comparison: Comparison, error: float, others: Mapping[str, float]) -> str:
     """How much a better model would gain, and where."""
+    if not others:
+        return ""
     kind = min(others, key=lambda k: others[k])
     if error <= WORTH * others[kind]:
         return ""

@@ -100,6 +100,13 @@ def test_gaps_in_a_sensor_are_not_errors(sound, measure):
     assert other.hold_out["free_network"] == pytest.approx(measure.hold_out["free_network"], rel=0.1)
 
 
+def test_held_out_tests_of_other_sensors_say_nothing(sound, measure):
+    other = tuple(replace(c, name=f"other {c.name}") for c in sound.tests[2].channels)
+    apart = yardstick(replace(sound, tests=(*sound.tests[:2], replace(sound.tests[2], channels=other))))
+    assert not apart.hold_out
+    assert apart.errors["persistence"] > 0.0
+
+
 def test_where_nothing_may_be_fitted_there_is_no_yardstick(sound):
     unseen = tuple(replace(t, role="hold-out") for t in sound.tests)
     assert yardstick(replace(sound, tests=unseen)) is None
