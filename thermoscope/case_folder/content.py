@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geom.plugins import plugins
 from lumped.condensation.recovery import Shapes
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
+    from validation.case import Test
 
+Array = NDArray[np.float64]
 ROOMS = ("geom", "fem", "lumped", "validation", "thermoscope")  # packages that decide what a model tells
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to
 
@@ -32,13 +35,18 @@ def case_key(folder: Folder) -> str:
     for file in files:
         if file is not None and Path(file).is_file():
             content.update(Path(file).read_bytes())
-    for test in folder.case.tests:
-        for array in (test.time, *test.inputs.values(), *test.boundaries.values(), *(c.y for c in test.channels)):
-            content.update(np.ascontiguousarray(array).tobytes())
+    for array in recorded_arrays(folder.case.tests):
+        content.update(np.ascontiguousarray(array).tobytes())
     if folder.built is not None:
         content.update(repr(folder.built.machine.sections).encode())
         content.update(np.ascontiguousarray(folder.built.mesh.points).tobytes())
     return content.hexdigest()[:20]
+
+
+def recorded_arrays(tests: Iterable[Test]) -> Iterator[Array]:
+    """Times, inputs, boundaries and readings of tests."""
+    for test in tests:
+        yield from (test.time, *test.inputs.values(), *test.boundaries.values(), *(c.y for c in test.channels))
 
 
 def result_key(folder: Folder, *rooms: str) -> str:

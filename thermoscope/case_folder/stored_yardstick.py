@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope.caches import cache_folder, recalled_result, store_result
-from thermoscope.case_folder.content import code_digest
+from thermoscope.case_folder.content import code_digest, recorded_arrays
 from validation.case import Case
 from validation.comparison.compare import Comparison
 from validation.yardstick.terms import Term
@@ -23,7 +23,7 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison) -> dict[s
     """What plain models leave beside a model, for a document; empty where the tests teach nothing."""
     if yard is None:
         return {}
-    words = {of.__name__: of(yard, comparison) for of in (sentence, warning)}
+    words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), **words}}
 
 
@@ -49,8 +49,8 @@ def _key(case: Case) -> str:
     content = hashlib.sha256(code_digest("validation"))
     content.update(case.model.network.C.tobytes())
     for test in case.tests:
-        content.update(repr((test.name, test.role, [(c.name, c.place) for c in test.channels])).encode())
-        for table in ({"": test.time}, test.inputs, test.boundaries, {c.name: c.y for c in test.channels}):
-            for name, values in table.items():
-                content.update(name.encode() + np.ascontiguousarray(values, float).tobytes())
+        channels = [(c.name, c.place) for c in test.channels]
+        content.update(repr((test.name, test.role, [*test.inputs], [*test.boundaries], channels)).encode())
+    for array in recorded_arrays(case.tests):
+        content.update(np.ascontiguousarray(array, float).tobytes())
     return content.hexdigest()[:20]

@@ -20,11 +20,11 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
+from geom.text import visible
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Task
-
-from geom.text import visible
 
 Progress = Callable[[str], None]
 FILE = "stages.json"

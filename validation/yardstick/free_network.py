@@ -11,7 +11,7 @@ Source: the integral form of sparse identification (Schaeffer and McCalla 2017),
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -64,29 +64,17 @@ def integral(time: Array, y: Array) -> Array:
     return np.vstack([np.zeros(y.shape[1]), np.cumsum(steps, axis=0)])
 
 
-@dataclass(frozen=True)
-class Triangle:
-    """The windows of some records for one sensor, turned into a triangle that has the same normal equations."""
-
-    R: Array
-
-    @staticmethod
-    def of(A: Array) -> Triangle:
-        return Triangle(np.asarray(np.linalg.qr(A, mode="r"), float))
-
-
-def windows(record: Record, n: int, others: Array, form: Form) -> Array:
-    """(n_row, n_term + 1): the integrals of all terms of sensor n over each window, and its rise, last.
-
-    others (n_time, n_other) degC
-    """
-    x, y = link_factors(record.u, form.powers), loss_factors(record.u)
-    flow = (others - record.T[:, [n]])[:, :, None] * x[:, None, :]
-    whole = integral(record.time, np.hstack([flow.reshape(len(x), -1), y]))
+def windows(record: Record, columns: Columns, form: Form) -> Iterator[Array]:
+    """Sensor by sensor (n_row, n_term + 1): the integrals of all its terms over each window, and its rise, last."""
+    x, heat = link_factors(record.u, form.powers), integral(record.time, loss_factors(record.u))
+    others = np.column_stack([record.T[:, columns.steady], record.boundary])
     h = record.rows(form.window)
     begin = np.arange(0, len(x) - h, max(h // 4, 1))
-    begin = begin[record.read[begin, n] & record.read[begin + h, n]]
-    return np.column_stack([whole[begin + h] - whole[begin], record.T[begin + h, n] - record.T[begin, n]])
+    for T, read in zip(record.T.T, record.read.T, strict=True):
+        flow = (others - T[:, None])[:, :, None] * x[:, None, :]
+        whole = np.column_stack([integral(record.time, flow.reshape(len(x), -1)), heat, T])
+        some = begin[read[begin] & read[begin + h]]
+        yield whole[some + h] - whole[some]
 
 
 @dataclass(frozen=True)
@@ -128,19 +116,22 @@ def linear_run(time: Array, A: Array, s: Array, start: Array) -> Array:
 
 @dataclass(frozen=True)
 class NetworkLessons:
-    """What each fold of records teaches under a form: per fold and sensor a triangle.  Any choice is one fit."""
+    """What each fold of records teaches under a form.  Any choice of folds is one fit.
+
+    normal : per fold and sensor (n_term + 1, n_term + 1), its windows' products, see `windows`
+    """
 
     form: Form
     columns: Columns
-    parts: Sequence[Sequence[Triangle]]
+    normal: Sequence[Sequence[Array]]
 
     @staticmethod
     def of(folds: Sequence[Sequence[Record]], columns: Columns, form: Form) -> NetworkLessons:
-        def taught(fold: Sequence[Record], n: int) -> Triangle:
-            others = [np.column_stack([r.T[:, columns.steady], r.boundary]) for r in fold]
-            return Triangle.of(np.vstack([windows(r, n, o, form) for r, o in zip(fold, others, strict=True)]))
+        def taught(fold: Sequence[Record]) -> list[Array]:
+            each = zip(*(windows(record, columns, form) for record in fold), strict=True)
+            return [sum((A.T @ A for A in tables), np.zeros(())) for tables in each]
 
-        return NetworkLessons(form, columns, [[taught(f, n) for n in range(len(columns.sensors))] for f in folds])
+        return NetworkLessons(form, columns, [taught(fold) for fold in folds])
 
     def fit(self, lessons: Sequence[int]) -> FreeNetwork:
         """The network learnt from some folds."""
@@ -149,25 +140,25 @@ class NetworkLessons:
         where = np.append(steady, k + np.arange(len(self.columns.boundaries)))
         links, sources = np.zeros((k, k + len(self.columns.boundaries), factors)), []
         for n in range(k):
-            R = np.vstack([self.parts[i][n].R for i in lessons])
-            a = nonnegative(R[:, :-1], R[:, -1])
+            N = np.sum([self.normal[i][n] for i in lessons], axis=0)
+            a = nonnegative(N[:-1, :-1], N[:-1, -1])
             links[n, where] = a[: bodies * factors].reshape(bodies, factors)
             links[n, n] = 0.0
             sources.append(a[bodies * factors :])
         return FreeNetwork(self.form, links, np.array(sources))
 
 
-def nonnegative(A: Array, b: Array) -> Array:
-    """The least squares of A x = b with x >= 0; a column of zeros gets 0.
+def nonnegative(AA: Array, Ab: Array) -> Array:
+    """The least squares of A x = b with x >= 0, from A'A and A'b; a column of zeros gets 0.
 
     Active sets on the normal equations of columns of length one (Bro and de Jong 1997). SciPy's solver of the same
-    problem ends the process on some of these tables (1.17), so it is the reference of the test and not used here.
+    problem ends the process on some of these tables (1.17), so it is not used.
     """
-    scale = np.linalg.norm(A, axis=0)
+    scale = np.sqrt(np.diag(AA))
     alive = scale > 1e-12 * max(float(scale.max(initial=0.0)), 1e-300)
-    x = np.zeros(A.shape[1])
-    unit = A[:, alive] / scale[alive]
-    x[alive] = _active_set(unit.T @ unit + RIDGE * np.eye(unit.shape[1]), unit.T @ b) / scale[alive]
+    x, size = np.zeros(len(scale)), scale[alive]
+    unit = AA[np.ix_(alive, alive)] / np.outer(size, size)
+    x[alive] = _active_set(unit + RIDGE * np.eye(size.size), Ab[alive] / size) / size
     return x
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from validation.comparison.compare import ChannelError, Comparison, pooled
@@ -31,27 +29,25 @@ def sentence(yard: Yardstick, comparison: Comparison) -> str:
     each = ", ".join(f"{NAMES[kind]} {K:.2f} K" for kind, K in others.items())
     if not yard.hold_out:
         return f"Fitted tests {error:.2f} K; each predicted from the others by {each}."
-    return f"Held out {error:.2f} K; {each}.{_rest(yard, comparison, error, others)}"
+    return f"Held out {error:.2f} K; {each}.{_rest(yard, comparison, error)}"
 
 
 def warning(yard: Yardstick, comparison: Comparison) -> str:
     """What is to be said before all else of a model that knows less than none; "" of any other."""
     error, none = model_error(yard, comparison), yard.errors.get("persistence", np.inf)
-    if error <= none:
+    if not error > none:
         return ""
     return f"Worse than no model at all: {error:.2f} K, where a guess of no change leaves {none:.2f} K."
 
 
-def _rest(yard: Yardstick, comparison: Comparison, error: float, others: Mapping[str, float]) -> str:
+def _rest(yard: Yardstick, comparison: Comparison, error: float) -> str:
     """How much a better model would gain, and where."""
-    if not others:
+    if not error > WORTH * yard.best_K:
         return ""
-    kind = min(others, key=lambda k: others[k])
-    if error <= WORTH * others[kind]:
-        return ""
+    kind = min(yard.errors, key=lambda k: np.nan_to_num(yard.errors[k], nan=np.inf))
     gain = {
         name: pooled([c for c in scoped(yard, comparison) if c.channel == name]) - of[kind]
         for name, of in yard.sensors.items()
     }
     most = max(gain, key=lambda name: gain[name])
-    return f" About {error - others[kind]:.1f} K is still to be learnt, most of it at {most}."
+    return f" About {error - yard.best_K:.1f} K is still to be learnt, most of it at {most}."

@@ -64,10 +64,15 @@ class Yardstick:
         """The errors to hold a model's against: of the held-out tests where there are any."""
         return self.hold_out or self.left_out
 
+    @property
+    def best_K(self) -> float:
+        """The least of these errors (K); NaN where all ran away."""
+        return min(filter(np.isfinite, self.errors.values()), default=float("nan"))
+
     def document(self) -> dict:
         """As `yardstick` in the document of a comparison."""
         return {
-            **_errors_in(self.errors),
+            **_errors_in({**self.errors, "best": self.best_K}),
             "over": "hold-out" if self.hold_out else "left out in turn",
             "left_out": _errors_in(self.left_out),
             "tests": [{"name": name, **_errors_in(of)} for name, of in self.tests.items()],
@@ -84,12 +89,11 @@ def _errors_in(of: Mapping[str, float]) -> dict[str, float | None]:
 @one_blas_thread
 def yardstick(case: Case) -> Yardstick | None:
     """The plain models of a case; None where nothing can be learnt: no sensor, no test to fit, or too few rows."""
-    fitted = [t for t in case.tests if t.role != "hold-out"]
-    columns = table_columns(fitted, case.tests)
+    columns = table_columns(case.usable, case.tests)
     if not columns.sensors:
         return None
-    step = row_step(fitted, columns)
-    records = _parted([table_record(t, columns, step) for t in fitted])
+    step = row_step(case.usable, columns)
+    records = _parted([table_record(t, columns, step) for t in case.usable])
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
     unseen = [r for r in unseen if r.read.any()]  # one of other sensors says nothing about these
     if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
@@ -101,8 +105,8 @@ def yardstick(case: Case) -> Yardstick | None:
         "black_box": _best(_black_boxes(folds, columns), folds),
         "free_network": _best(_free_networks(folds, columns), folds),
     }
-    every = range(len(folds))
-    errors = {kind: [*left, *(_error(fit(every), r) for r in unseen)] for kind, (fit, left) in which.items()}
+    models = {kind: fit(range(len(folds))) for kind, (fit, _) in which.items()}
+    errors = {kind: [*left, *(_error(models[kind], r) for r in unseen)] for kind, (_, left) in which.items()}
 
     def pooled(rows: Sequence[int], columns: Sequence[int] | slice = slice(None)) -> dict[str, float]:
         return {kind: _rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}

@@ -15,7 +15,6 @@ from typing import Any
 
 from geom.disk_cache import atomic_write
 from validation.comparison.uncertainty import RULE
-from validation.yardstick.yardstick import KINDS
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -94,8 +93,7 @@ def _cards(r: Report) -> str:
 
 def best_plain_K(comparison: Document) -> float | None:
     """The least error (K) that a plain model leaves; None where none could be learnt."""
-    yard = comparison.get("yardstick", {})
-    return min((yard[f"{kind}_K"] for kind in KINDS if yard.get(f"{kind}_K") is not None), default=None)
+    return comparison.get("yardstick", {}).get("best_K")
 
 
 def _error(r: Report) -> str:

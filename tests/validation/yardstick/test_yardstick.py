@@ -127,7 +127,7 @@ def test_what_is_not_negative_is_as_close_as_scipy_finds(rows, terms):
     if terms > 2:
         A[:, 1] = A[:, 0]
     b = A @ np.maximum(rng.standard_normal(terms), 0.0) + rng.standard_normal(rows)
-    found = nonnegative(A, b)
+    found = nonnegative(A.T @ A, A.T @ b)
     assert found.min(initial=0.0) >= 0.0
     if terms:
         scale = np.linalg.norm(A, axis=0)
