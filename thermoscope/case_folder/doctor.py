@@ -22,12 +22,12 @@ from thermoscope.case_folder.recording_checks import (
 )
 from thermoscope.recordings.sheet import Column
 from thermoscope.recordings.tables import standing_still
+from thermoscope.recordings.units import ROOM_F, ROOM_K
 
 Array = NDArray[np.float64]
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least
-ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 SCALED_C = 60.0  # warmer at rest is no room and no machine in it
 NEAR_F = 18.0  # degF between the sensors of such a machine
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has

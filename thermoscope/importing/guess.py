@@ -31,11 +31,10 @@ from thermoscope.importing.words import (
 )
 from thermoscope.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
 from thermoscope.recordings.tables import LARGEST
-from thermoscope.recordings.units import QUANTITIES, converted
+from thermoscope.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
 
 Array = NDArray[np.float64]
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
-ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
@@ -97,7 +96,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     every = [_component(g, axis_of(source.labels[g.column]), axes, target) for g in every]
-    return single([_in_fahrenheit(source, g, every) for g in every] if not kelvin else every, target)
+    return single(every if kelvin else _in_fahrenheit(source, every), target)
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -160,19 +159,21 @@ def _component(g: Guess, axis: str, axes: set[str], target: Target) -> Guess:
     return replace(g, feeds=f"{axis}_A") if g.feeds and both else g
 
 
-def _in_fahrenheit(source: Source, g: Guess, every: Sequence[Guess]) -> Guess:
-    """A temperature whose room and all others start where rooms do in Fahrenheit.
+def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
+    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
+    hot = {g.column: g for g in every
+           if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}  # fmt: skip
+    starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
+    rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
+    alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F
+    if not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts.values()):
+        return every
+    return [_fahrenheit(source, g, bool(rooms)) if g.column in hot else g for g in every]
 
-    Without a unit in the header it is read so; a unit in the header is law, and doubted aloud.
-    """
-    hot = [o for o in every if o.quantity == "temperature" and o.unit == "degC" and (o.place or not o.used)]
-    starts = [v[0] for o in hot if (v := (r := in_memory(source, o))[np.isfinite(r)]).size]
-    rooms = [v[0] for o in hot if Role.AMBIENT in roles_of(source.labels[o.column])[:1]
-             and (v := (r := in_memory(source, o))[np.isfinite(r)]).size]  # fmt: skip
-    alike = len(starts) > 1 and np.ptp(starts) < ALIKE_F
-    if g not in hot or not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts):
-        return g
-    if not rooms:
+
+def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
+    """Without a unit in the header it is read so; a unit in the header is law, and doubted aloud."""
+    if not beside_room:
         return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
     if source.units[g.column]:
         return replace(g, doubt=f"{source.units[g.column]} in its header, Fahrenheit by its values?")

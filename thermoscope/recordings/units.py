@@ -48,6 +48,7 @@ MEMORY_UNIT = {
     "share": "% where the input's name ends in _percent, else 0 to 1",
 }  # what memory holds
 
+ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 LONGEST = 40  # characters
 _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any
