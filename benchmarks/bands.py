@@ -25,7 +25,8 @@ from hidden.truth.change import NOTHING
 from hidden.user import case_of
 
 from lumped.model.network import Row
-from validation import Case, calibrate
+from measured.case import Case
+from validation import calibrate
 from validation.bands import Place, bands, parameter_posterior
 
 FIRST_SEED = {"dev": 900_000, "test": 950_000}  # none of the other benchmarks' machines

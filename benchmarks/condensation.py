@@ -30,9 +30,9 @@ from condensed.points import Pair, Point
 
 from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
+from lumped.build.network_size import NetworkSize, smallest_network
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from thermoscope.verification.network_size import NetworkSize, smallest_network
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}

@@ -28,9 +28,9 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
+from measured.case import Case, Channel, Model, Test
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
-from validation.case import Case, Channel, Model, Test
 from validation.comparison.linearisation import segments
 from validation.inference.evidence import calibrated_case, candidates
 from validation.inference.score import gram

@@ -32,8 +32,8 @@ from fem.solvers.solve import Fluids, Solver
 from fem.solvers.streams import Stream, cut, flowing
 from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
+from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients
-from thermoscope.pipeline import field_of
 
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}

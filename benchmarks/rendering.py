@@ -31,7 +31,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison

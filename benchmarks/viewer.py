@@ -38,7 +38,7 @@ import numpy as np
 
 from geom import build_mesh, load_machine
 from lumped.model.network import Row
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh

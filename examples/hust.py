@@ -24,9 +24,9 @@ import numpy as np
 from thermoscope.case_folder.folder import find_case, load_case
 from thermoscope.case_folder.history import History, load_history, save_history
 from thermoscope.commands.model.revise import recorded
-from thermoscope.files import write_whole
+from thermoscope.geom.storage import write_whole
+from thermoscope.measured.case import Case
 from thermoscope.validation import diagnose
-from thermoscope.validation.case import Case
 from thermoscope.validation.comparison.compare import Comparison, pooled
 from thermoscope.validation.parameters.unknowns import with_model
 from thermoscope.validation.revision import revise

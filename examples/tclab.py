@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from thermoscope.case_folder.folder import find_case, load_case
-from thermoscope.files import write_whole
+from thermoscope.geom.storage import write_whole
 from thermoscope.validation.revision.improvement import Improvement, Step, Supervisor, best, improve, leading
 
 

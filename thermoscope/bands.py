@@ -13,17 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.storage import cache_folder
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
 from lumped.transfer.laws import CLOCK
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from measured.case import RUNNING, Recorded, Test
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.posterior import rows_read
-from validation.case import RUNNING, Recorded, Test
 from validation.counting import counted
 
 Array = NDArray[np.float64]
@@ -129,7 +130,7 @@ def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
     The readings' own uncertainty (1 sigma of the sheet) counts with it.
     """
-    from thermoscope.verification.error_budget import model_of
+    from validation.comparison.error_budget import model_of
     from validation.comparison.predict import record
 
     of, places = posterior_of(folder, progress), _places(named_rows(model_of(folder)[0], folder))

@@ -8,17 +8,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
-from thermoscope.files import write_whole
+from geom.storage import write_whole
 
 Result = TypeVar("Result")
 MOST_FILES = 50  # results of one kind: every step of a model and every new version of the code makes another
 MOST_BYTES = 300_000_000  # of one kind: a machine's page is 1 MB, with long tests and many revisions some ten
-
-
-def cache_folder() -> Path:
-    """Where meshes and bases are kept: $THERMOSCOPE_CACHE, else a folder of the user's."""
-    home = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    return Path(os.environ.get("THERMOSCOPE_CACHE", Path(home) / "thermoscope"))
 
 
 def recalled_result(file: Path, read: Callable[[Path], Result]) -> Result | None:

@@ -13,7 +13,7 @@ from typing import Any
 
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from thermoscope.extras import EXTRAS, lacking
+from thermoscope.parts import EXTRAS, lacking
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"

@@ -11,12 +11,12 @@ from typing import Annotated, Any
 import typer
 
 from geom.errors import ThermoscopeError
-from thermoscope.caches import cache_folder
+from geom.storage import cache_folder
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import grouped, narrowed, old_name
 from thermoscope.console.terminal import ranges_as_notes
-from thermoscope.extras import NEEDS, explained, required
 from thermoscope.files import STOPPED, checked_out, checked_target, message_of, printable
+from thermoscope.parts import NEEDS, explained, required
 
 app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",

@@ -2,38 +2,15 @@
 
 from __future__ import annotations
 
-import errno
-import os
-import re
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from geom.errors import InputError
+from geom.storage import CURES
 from geom.text import visible
+from measured.input_folders import CASE, within_inputs
 
-CASE = "case.toml"
 STOPPED = 130  # exit code of what the user stopped, as shells have it
-INPUTS = ("tests", "cycles")  # folders of a case
 LONGEST_WORD = 300  # characters of a word in a message: longer than most paths
-CURES = {errno.ENAMETOOLONG: "a shorter name", errno.ELOOP: "a file, not a link to itself"}
-YOUNG_S = 5.0  # a folder may be made and not yet locked
-
-
-def write_whole(path: Path, text: str | bytes) -> Path:
-    """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
-    from geom.disk_cache import atomic_write  # loads NumPy, which help does without
-
-    try:
-        with atomic_write(path) as partial:
-            partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "backslashreplace"))
-    except OSError as fault:
-        right = "a folder you may write to, with room in it"
-        raise InputError(
-            f"cannot be written: {fault.strerror}", str(path), CURES.get(fault.errno or 0, right)
-        ) from None
-    return path
 
 
 def checked_result(path: Path) -> Path:
@@ -42,46 +19,6 @@ def checked_result(path: Path) -> Path:
         if (place.exists() or place.is_symlink()) and not kind(place):
             raise InputError(f"is no {right}", str(place), f"a {right} for results: move it away or delete it")
     return path
-
-
-@contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Only one process at a time in here. The lock is on the folder: no file is left, and it ends with its owner.
-
-    Systems without such locks (Windows, some network drives) go without: a stale writer is still refused.
-    """
-    try:
-        import fcntl
-    except ImportError:
-        yield
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        with suppress(OSError):
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(handle)
-
-
-def abandoned(folder: Path, name: re.Pattern[str]) -> list[Path]:
-    """Folders of such a name that were `locked` once and whose process is gone; none where there are no locks."""
-    try:
-        import fcntl
-    except ImportError:
-        return []
-    out = []
-    for path in (p for p in folder.iterdir() if name.fullmatch(p.name) and p.is_dir() and not p.is_symlink()):
-        if time.time() - path.stat().st_mtime < YOUNG_S:
-            continue
-        handle = os.open(path, os.O_RDONLY)
-        try:
-            with suppress(OSError):
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                out.append(path)
-        finally:
-            os.close(handle)
-    return out
 
 
 def message_of(fault: Exception) -> str:
@@ -114,12 +51,6 @@ def checked_target(target: str | None) -> str | None:
 def _is_document(path: Path) -> bool:
     with path.open("rb") as file:
         return file.read(64).lstrip()[:1] in (b"{", b"")
-
-
-def within_inputs(path: Path) -> bool:
-    """Does a path lie where a case keeps its inputs?"""
-    whole = path.absolute()
-    return any(p.name in INPUTS and (p.parent / CASE).exists() for p in (whole, *whole.parents))
 
 
 def checked_out(out: Path | None) -> Path | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES
+from measured.recordings.units import MEMORY_UNIT, QUANTITIES
 from validation.effects.registry import kinds
 
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "quantities.md"

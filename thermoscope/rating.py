@@ -14,11 +14,11 @@ from geom.errors import InputError
 from lumped.model.network import Network, Row
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import suggestion
+from measured.recordings.csv_file import read_csv
+from measured.recordings.data_table import as_number
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import named_rows
-from thermoscope.recordings.csv_file import read_csv
-from thermoscope.recordings.data_table import as_number
-from thermoscope.verification.error_budget import model_of
+from validation.comparison.error_budget import model_of
 from validation.parameters.unknowns import standing_reference
 from validation.rating.hot_spots import MEAN, hot_spots
 from validation.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
-    from validation.case import AddedEffect, Case, Channel, Model, Test
     from validation.comparison.compare import Comparison, compare
     from validation.diagnosis.diagnose import diagnose
     from validation.effects import Effect, Scene, catalogue, effect, kinds
@@ -18,16 +17,11 @@ if TYPE_CHECKING:
     from validation.revision.revise import Revision, add, calibrate, remove
 
 _HOME = {
-    "AddedEffect": "validation.case",
-    "Case": "validation.case",
-    "Channel": "validation.case",
     "Comparison": "validation.comparison.compare",
     "Diagnosis": "validation.inference.result",
     "Effect": "validation.effects",
-    "Model": "validation.case",
     "Revision": "validation.revision.revise",
     "Scene": "validation.effects",
-    "Test": "validation.case",
     "add": "validation.revision.revise",
     "calibrate": "validation.revision.revise",
     "catalogue": "validation.effects",
@@ -38,16 +32,11 @@ _HOME = {
     "remove": "validation.revision.revise",
 }
 __all__ = [
-    "AddedEffect",
-    "Case",
-    "Channel",
     "Comparison",
     "Diagnosis",
     "Effect",
-    "Model",
     "Revision",
     "Scene",
-    "Test",
     "add",
     "calibrate",
     "catalogue",

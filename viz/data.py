@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours

@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
+from lumped.build.crosscheck import FLOOR
+from lumped.build.fixed_coefficients import FixedCoefficients, rated
+from lumped.build.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
 from lumped.model.network import Array, Network
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
-from thermoscope.verification.crosscheck import FLOOR
-from thermoscope.verification.fixed_coefficients import FixedCoefficients, rated
 
 EARLY = 2  # steps of 10 s that are left out
 

@@ -13,10 +13,10 @@ from peers.field import peak_gib
 
 from fem.solvers.solve import Solver
 from geom import build_mesh, load_machine
+from lumped.build.network_size import FINE
+from lumped.build.pipeline import Meshing, Prepared, field_of, reduced
 from lumped.machine.motor import nominal_coefficients
 from lumped.machine.zones import motor_zones
-from thermoscope.pipeline import Meshing, Prepared, field_of, reduced
-from thermoscope.verification.network_size import FINE
 
 Row = dict[str, Any]
 

@@ -13,13 +13,13 @@ import numpy as np
 
 from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import coupled, film_columns
+from lumped.build.crosscheck import coefficients, fluid_nodes
+from lumped.build.load_cases import rated_watts
+from lumped.build.network_size import NetworkSize
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
 from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
-from thermoscope.verification.crosscheck import coefficients, fluid_nodes
-from thermoscope.verification.load_cases import rated_watts
-from thermoscope.verification.network_size import NetworkSize
 
 Floats = np.ndarray
 WARM = 20.0  # K, of a coolant's inlet over the surroundings in the third load case

@@ -12,7 +12,8 @@ from hidden.odds import unordered
 from hidden.truth.archetype import measured
 from hidden.truth.candidate_tests import CANDIDATE_TESTS, carried_out
 from hidden.user import test_of
-from validation import Case, Revision, add, calibrate
+from measured.case import Case
+from validation import Revision, add, calibrate
 from validation.inference.evidence import candidates
 from validation.planning.separability import DECISIVE
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from validation import Case, diagnose
+from measured.case import Case
+from validation import diagnose
 
 
 def answer(case: Case, plan: bool = True) -> dict:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation import Case
+from measured.case import Case
 from validation.comparison.linearisation import Segment
 from validation.inference.evidence import Evidence, calibrated_case, candidates, refit, scored, starts
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from hidden.odds import brier, in_set, nats, surely_another
-from validation.doubt import TEMPER
+from measured.doubt import TEMPER
 
 Pair = tuple[Mapping[str, Any], Mapping[str, Any]]
 Temper = tuple[float, float]

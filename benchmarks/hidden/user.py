@@ -12,9 +12,9 @@ from hidden.kinds import KINDS
 from hidden.truth.archetype import Archetype, Edit, Record
 from lumped.declarations.network import read_network
 from lumped.model.network import Network
-from validation.case import Case, Channel, Model, Test
+from lumped.model.sites import ambient, faces
+from measured.case import Case, Channel, Model, Test
 from validation.effects.registry import effect
-from validation.effects.sites import ambient, faces
 
 MACHINES = Path(__file__).parent / "machines"
 SIGMA_K = 0.5

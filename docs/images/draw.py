@@ -12,7 +12,7 @@ import viz
 from fem.matrices.material import Conductivity
 from geom import load_machine
 from lumped import Record, balance
-from thermoscope.pipeline import Built, build
+from lumped.build.pipeline import Built, build
 from viz.machine.parts import exploded, regions
 
 HERE = Path(__file__).parent

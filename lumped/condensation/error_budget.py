@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from lumped.model.network import Array, Row
+
+if TYPE_CHECKING:
+    pass
 
 
 @dataclass(frozen=True)
@@ -51,3 +56,12 @@ class ErrorBudget:
 
     def document(self) -> list[dict[str, Any]]:
         return [p.document() for p in self.places]
+
+
+@dataclass(frozen=True)
+class MonitoredPlaces:
+    """Where a budget looks. rows : sensor -> row over the network's z; points : sensor -> (part, xyz m) where known."""
+
+    rows: Mapping[str, Row]
+    places: Mapping[str, str]
+    points: Mapping[str, Array]

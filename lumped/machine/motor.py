@@ -2,7 +2,7 @@
 
     films, contacts = nominal_coefficients(machine, faces, contact_names)  # what the condensation is centred on
     condensed = reduce(field, films, contacts, fluids(machine), boundaries(machine), ...).network()
-    network = motor_network(machine, condensed)          # or thermoscope.pipeline.build(machine).network: all of it
+    network = motor_network(machine, condensed)          # or lumped.build.pipeline.build(machine).network: all of it
 
 What comes out, for every family and for imported machines alike (the machine file decides, no names do):
 

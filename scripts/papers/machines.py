@@ -12,17 +12,17 @@ from scipy.stats import t as student
 
 from geom import load_machine
 from lumped.model.network import Network
+from measured.case import Case, Test
 from scripts.papers.page import Row, Section
 from thermoscope.case_folder.folder import Folder, load_case
 from thermoscope.case_folder.runs import readings
+from validation.bases.base_heat import BaseHeat, base_heat
+from validation.bases.which_base import Hypothesis, base_hypotheses
 from validation.calibration.calibrate import calibrated
-from validation.case import Case, Test
 from validation.parameters.unknowns import working
 from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
-from validation.procedure.reduction.base_heat import BaseHeat, base_heat
 from validation.procedure.reduction.transfer import Transfer, end_errors, transferred
 from validation.procedure.reduction.two_paths import TwoPaths, of_test
-from validation.procedure.reduction.which_base import Hypothesis, base_hypotheses
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 BASE_TESTS = ("wood", "plate", "bench")

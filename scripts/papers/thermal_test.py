@@ -7,16 +7,16 @@ from functools import cache
 import numpy as np
 
 from geom import load_machine
+from measured.electrical.meters import OHMMETER, VOLTMETER, Meter, Range
+from measured.electrical.propagation import PropagatedUncertainty, propagate
+from measured.electrical.readings import COPPER, NDFEB, Winding, magnet_rise
+from measured.electrical.switch_off import Cooling, exponentials, rule_150, semilog_at
 from scripts.papers.figures import figure_1, figure_2, figures_3_and_9
 from scripts.papers.machines import bases, circuits, constructive, machines, repeated, table_two, wrong_base
 from scripts.papers.page import Row, Section, page
 from validation.procedure.factors.factorial import full
 from validation.procedure.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
 from validation.procedure.factors.sensitivity import Ranking, morris, sobol
-from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter, Range
-from validation.procedure.measuring.propagation import PropagatedUncertainty, propagate
-from validation.procedure.measuring.readings import COPPER, NDFEB, Winding, magnet_rise
-from validation.procedure.measuring.switch_off import Cooling, exponentials, rule_150, semilog_at
 from viz.figures.screening import screened
 
 TITLE = "Thermal Test Procedure and Analytical Model Calibration Method for Electrical Machines"

@@ -10,8 +10,8 @@ from condensation import after_step, energy, over_loads, put, unbalanced
 from condensed.points import Pair
 
 from geom import load_machine
+from lumped.build.network_size import smallest_network
 from lumped.condensation.reduction_error import Errors
-from thermoscope.verification.network_size import smallest_network
 
 pytestmark = pytest.mark.heavy
 

@@ -20,9 +20,9 @@ from hidden.truth.draw import Draw
 from hidden.truth.faults import bias, swapped
 from hidden.user import case_of
 
+from lumped.model.sites import solids
 from validation import add, calibrate
 from validation.effects import kinds
-from validation.effects.sites import solids
 from validation.effects.streams.flow import flows
 
 pytestmark = pytest.mark.heavy

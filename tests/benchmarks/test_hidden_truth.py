@@ -20,7 +20,7 @@ from hidden.truth.readings import lagged
 from hidden.user import network_of
 from scipy.integrate import solve_ivp
 
-from validation.case import Test
+from measured.case import Test
 from validation.planning.candidate_tests import candidate_tests
 
 TRUTH = Path(__file__).parents[2] / "benchmarks" / "hidden" / "truth"

@@ -12,9 +12,9 @@ from paper_pages import differences
 from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
+from validation.bases.which_base import declared_base, on_base, which_base, wrong_bases
 from validation.procedure.measuring.repeats import repeats
 from validation.procedure.reduction.transfer import end_errors
-from validation.procedure.reduction.which_base import declared_base, on_base, which_base, wrong_bases
 
 pytestmark = pytest.mark.heavy
 GAP = "k.liner-gap"

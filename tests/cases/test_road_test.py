@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import pytest
 
 import validation
-from thermoscope import pipeline
+from lumped.build import pipeline
 from thermoscope.case_folder import folder as case_folder
 from thermoscope.demo import demo
 

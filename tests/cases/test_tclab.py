@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 from lumped.integration.simulate import simulate
+from measured.case import AddedEffect
 from thermoscope.case_folder.folder import load_case
 from validation.calibration.calibrate import minimise
-from validation.case import AddedEffect
 from validation.comparison.compare import compare
 from validation.comparison.predict import record
 from validation.parameters.unknowns import with_model, working

@@ -1,6 +1,6 @@
 """The page's table of doubt is the code's."""
 
-from validation.doubt import markdown
+from measured.doubt import markdown
 
 
 def test_table_of_doubt_is_current(root):

@@ -21,7 +21,7 @@ from geom.machine_file import machine_from
 from lumped.integration.audit import audit
 from lumped.integration.simulate import Record, simulate
 from lumped.machine.losses import ASSUMED_W
-from thermoscope.pipeline import build
+from lumped.build.pipeline import build
 
 machine = machine_from({"machine": {"name": "rod", "family": "rod"}, "geometry": {"rod": {"length_mm": 100.0}}})
 network = build(machine, size_m=0.02).network
@@ -36,8 +36,8 @@ print(json.dumps({"parts": {p.name: p.role for p in machine.parts}, "end": run.y
 RECORDING = (
     HOUSE
     + """
-from thermoscope.recordings.formats import read_recording
-from thermoscope.importing.source import read_source
+from measured.recordings.formats import read_recording
+from measured.importing.source import read_source
 
 file = Path(sys.argv[1]) / "bench.acme"
 np.array([[k, 10.0, 20.0 + k] for k in range(5)], "<f4").tofile(file)
@@ -49,8 +49,8 @@ print(json.dumps({"columns": table.columns, "last": last, "units": source.units}
 SENSOR = (
     HOUSE
     + """
-from thermoscope.recordings.sheet import read_sheet
-from thermoscope.recordings.tables import load_table
+from measured.recordings.sheet import read_sheet
+from measured.recordings.tables import load_table
 
 columns = {
     "pt": {"quantity": "pt1000", "unit": "kohm", "place": "winding"},

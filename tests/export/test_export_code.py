@@ -16,11 +16,11 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Row
 from lumped.transfer.coolant import glycol
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, Linear, Table
+from measured.case import Reference
 from thermoscope.commands.use.export import export
 from thermoscope.export.c_code import c_files
 from thermoscope.export.drive import AGREES_K, Compiled, difference
 from thermoscope.export.model import Output, packed
-from validation.case import Reference
 from validation.parameters.reference import reference_of
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -12,6 +12,7 @@ from small_case import small_case
 from test_export_code import curved, states
 
 from lumped.integration.simulate import initial_state, simulate
+from measured.case import Reference
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.use.export import export
 from thermoscope.console.terminal import plain
@@ -21,8 +22,7 @@ from thermoscope.export.document import document, mat
 from thermoscope.export.drive import AGREES_K, sampled, signals_of
 from thermoscope.export.fmu import fmu
 from thermoscope.export.model import exported, packed
-from thermoscope.verification.error_budget import model_of
-from validation.case import Reference
+from validation.comparison.error_budget import model_of
 from validation.comparison.predict import record
 
 fmpy = pytest.importorskip("fmpy")

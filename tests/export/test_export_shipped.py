@@ -17,7 +17,7 @@ from thermoscope.export.document import document
 from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled, signals_of
 from thermoscope.export.fmu import sources
 from thermoscope.export.model import exported
-from thermoscope.verification.error_budget import model_of
+from validation.comparison.error_budget import model_of
 from validation.comparison.predict import record
 from validation.observer.process import Process
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from measured.recordings.sheet import load_sheet
 from simulated.fleet import DRIFT_YEAR, written
 from thermoscope.case_folder.folder import load_case
 from thermoscope.monitoring.fleet import Reader, Recording
-from thermoscope.recordings.sheet import load_sheet
 from validation.fleet import Statistics, UnitHistory, population
 
 pytestmark = pytest.mark.heavy

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 pytestmark = pytest.mark.heavy
-ROOMS = ["geom", "fem", "lumped", "validation", "viz", "thermoscope"]
+ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope"]
 
 
 def run(root, *command):

@@ -174,7 +174,7 @@ LOSSES = {
 
 @pytest.mark.parametrize(("declared", "words"), LOSSES.values(), ids=LOSSES)
 def test_losses_of_a_machine_are_checked_before_it_is_meshed(tmp_path, monkeypatch, declared, words):
-    monkeypatch.setattr("thermoscope.pipeline.build_mesh", lambda *given: pytest.fail("it was meshed"))
+    monkeypatch.setattr("lumped.build.pipeline.build_mesh", lambda *given: pytest.fail("it was meshed"))
     text = (ROOT / "cases/pmsm-bases/machine.toml").read_text()
     (tmp_path / "mine.toml").write_text(text.replace("[losses.", f"[losses]\nx = {declared}\n[losses.", 1))
     for command in ("model build", "model crosscheck", "use rate --limit winding=155"):

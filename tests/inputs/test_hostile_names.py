@@ -24,6 +24,7 @@ from lumped.declarations.network import load_network
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
 from lumped.transfer.laws import Fixed
+from measured.case import Reference
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
 from thermoscope.console.answer import Answer, Grid, printed, within
 from thermoscope.console.terminal import give, notes
@@ -31,7 +32,6 @@ from thermoscope.export.document import document, mat
 from thermoscope.export.drive import Compiled
 from thermoscope.export.fmu import description, identifier
 from thermoscope.export.model import Output, Signal, packed
-from validation.case import Reference
 from viz.pages import html
 from viz.viewer.page import render
 

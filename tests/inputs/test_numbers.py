@@ -13,8 +13,8 @@ from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.declarations.network import load_network, read_network
 from lumped.schemas.bounds import KEYS, UNITS, Bounds, bounds
+from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.cycle import load_cycle
-from thermoscope.recordings.sheet import read_sheet
 
 NO_NUMBER = {
     "nan": math.nan, "inf": math.inf, "huge": 10**400, "-1e300": -1e300, "word": "12", "true": True, "list": [[1.0]],

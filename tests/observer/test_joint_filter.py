@@ -9,8 +9,8 @@ from watched import run
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
-from validation.case import Channel, Test
-from validation.doubt import USUAL
+from measured.case import Channel, Test
+from measured.doubt import USUAL
 from validation.observer.constants import Constants, with_motion
 from validation.observer.joint_filter import JointFilter, _Terms
 from validation.observer.process_noise import ProcessNoise

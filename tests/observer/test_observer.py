@@ -11,10 +11,10 @@ from lumped.integration.record import Record
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
 from lumped.transfer.laws import Fixed
+from measured.case import Channel
 from thermoscope.case_folder.folder import load_case
-from thermoscope.verification.error_budget import model_of
 from validation.bands import parameter_posterior
-from validation.case import Channel
+from validation.comparison.error_budget import model_of
 from validation.observer import ProcessNoise, observer
 from validation.observer.observer import CORRELATION_S
 from validation.observer.process import Process, bodies_of

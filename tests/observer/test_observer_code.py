@@ -12,13 +12,13 @@ from small_case import small_case
 from watched import run
 
 from geom.errors import InputError
+from measured.case import Reference
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.export.model import Output
 from thermoscope.export.observer_code import MOST_BYTES, observer_files, observer_model
-from thermoscope.verification.error_budget import model_of
 from validation.bands import parameter_posterior
-from validation.case import Reference
+from validation.comparison.error_budget import model_of
 from validation.observer import ProcessNoise, observer
 from validation.observer.process import Process, bodies_of
 from validation.observer.process_noise import of_doubt

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.verification.error_budget import model_of
+from validation.comparison.error_budget import model_of
 from validation.comparison.predict import predict
 from validation.observer.learning import design_of, over, taught, unsettled
 from validation.observer.process import bodies_of

@@ -4,10 +4,10 @@ import numpy as np
 
 from fem.solvers.snapshots import Basis
 from geom import Machine
+from lumped.build.pipeline import Prepared
 from lumped.condensation.condensed import network_in
 from lumped.machine.motor import boundaries, fluids, motor_network
 from lumped.model.network import Network
-from thermoscope.pipeline import Prepared
 
 
 def means_only(ready: Prepared, machine: Machine | None = None) -> Network:

@@ -7,7 +7,7 @@ from playground import SENSORS, network, row, stand
 
 from lumped.model.network import Link, Place, Row
 from lumped.transfer.laws import Fixed
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 from validation.effects import Scene
 
 

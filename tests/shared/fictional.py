@@ -3,7 +3,7 @@
 import numpy as np
 
 from lumped.model.network import Row
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 from viz.data import Comparison
 
 LIMIT_K = 1.0  # of every sensor: two deviations of its reading

@@ -4,7 +4,7 @@ import numpy as np
 
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.transfer.laws import Fixed
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 
 P, G, C, SIGMA = 50.0, 2.0, 4000.0, 0.3
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.transfer.laws import Constant, Fixed, InputPower, Linear, Power
-from validation.case import Case, Channel, Model, Test
+from measured.case import Case, Channel, Model, Test
 
 NODES = {  # heat capacity J/K
     "shaft": 14e3, "rotor": 70e3, "winding.armature": 25e3, "commutator": 10e3, "yoke": 90e3, "poles": 60e3,

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from lumped.integration.simulate import Record, simulate
-from validation.case import Case, Channel, Model, Test
+from measured.case import Case, Channel, Model, Test
 from validation.effects import effect
 from validation.effects.time_window import Event
 

@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 
-ROOMS = ["geom", "fem", "lumped", "validation", "viz", "thermoscope"]
-FORBIDDEN = {"fem", "lumped", "validation", "viz", "thermoscope"}
+ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope"]
+FORBIDDEN = {"fem", "lumped", "measured", "validation", "viz", "thermoscope"}
 
 
 def imported(path):

@@ -12,8 +12,8 @@ from geom import import_step, load_machine
 from geom.errors import InputError
 from geom.limits import LIMITS, PAGE, page
 from geom.meshing.mesher import COARSE, build_mesh
-from thermoscope.importing.source import read_source
-from thermoscope.recordings.formats import read_recording
+from measured.importing.source import read_source
+from measured.recordings.formats import read_recording
 
 HEADER = "time_s,T_winding,air\n"
 ROWS = [[float(k), 20.0 + k, 20.0] for k in range(40)]
@@ -86,7 +86,7 @@ MEASURED = """
 import sys
 from pathlib import Path
 from geom.errors import InputError
-from thermoscope.importing.source import read_source
+from measured.importing.source import read_source
 try:
     print(read_source(Path(sys.argv[1])).rows)
 except InputError as fault:

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from geom.errors import InputError
 from geom.escapes import csv_lines
+from geom.storage import write_whole
+from measured.recordings.formats import stem_of
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.settings import Entry
-from thermoscope.files import write_whole
-from thermoscope.recordings.formats import stem_of
 from validation.effects import effect
 from validation.effects.during import During
 from validation.effects.time_window import event, holds

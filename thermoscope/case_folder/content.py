@@ -17,11 +17,11 @@ from geom.plugins import plugins
 from lumped.condensation.recovery import Shapes
 
 if TYPE_CHECKING:
+    from measured.case import Test
     from thermoscope.case_folder.folder import Folder
-    from validation.case import Test
 
 Array = NDArray[np.float64]
-ROOMS = ("geom", "fem", "lumped", "validation", "thermoscope")  # packages that decide what a model tells
+ROOMS = ("geom", "fem", "lumped", "measured", "validation", "thermoscope")  # packages that decide what a model tells
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to
 
 

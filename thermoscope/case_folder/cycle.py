@@ -26,10 +26,10 @@ from lumped.model.network import Network
 from lumped.schemas.reader import Table, suggestion
 from lumped.sources.losses import CopperLoss
 from lumped.transfer.laws import Law
-from thermoscope.recordings.consistency import is_amount
-from thermoscope.recordings.grid import LEAST, bridged
-from thermoscope.recordings.sheet import read_sheet
-from thermoscope.recordings.tables import load_table
+from measured.recordings.consistency import is_amount
+from measured.recordings.grid import LEAST, bridged
+from measured.recordings.sheet import read_sheet
+from measured.recordings.tables import load_table
 
 Array = NDArray[np.float64]
 WINDING, MAGNET, CAGE = "winding", "magnet", "cage"

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
+from measured.recordings.sheet import Column
+from measured.recordings.tables import standing_still
+from measured.recordings.units import ROOM_F, ROOM_K
 from thermoscope.case_folder.recording_checks import (
     LEAST_READINGS,
     OFFSET_K,
@@ -20,9 +23,6 @@ from thermoscope.case_folder.recording_checks import (
     Patient,
     first_readings,
 )
-from thermoscope.recordings.sheet import Column
-from thermoscope.recordings.tables import standing_still
-from thermoscope.recordings.units import ROOM_F, ROOM_K
 
 Array = NDArray[np.float64]
 RATES = 10.0  # times the rows of another test

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from geom.constants import NORMAL_95
 from lumped.integration.simulate import simulate
 from lumped.model.network import Parameter
+from measured.case import Channel, Test
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import readings
 from validation.calibration.model_error import with_doubts
-from validation.case import Channel, Test
 from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing

@@ -13,25 +13,25 @@ from geom.errors import InputError
 from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
+from measured.case import Case, LowFidelity, Reference, Test
+from measured.recordings.formats import recording
+from measured.recordings.readings import read_test, rows_of
+from measured.recordings.sheet import Sheet, load_sheet
+from measured.recordings.tables import Samples, load_table
+from measured.sensors.sampling import SampleStep
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.history import History, checked_values, load_history
 from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
-from thermoscope.recordings.formats import recording
-from thermoscope.recordings.readings import read_test, rows_of
-from thermoscope.recordings.sheet import Sheet, load_sheet
-from thermoscope.recordings.tables import Samples, load_table
-from validation.case import Case, LowFidelity, Reference, Test
 from validation.counting import counted
-from validation.measurement.sampling import SampleStep
 from validation.parameters.unknowns import case_reference, matching, standing, working
 
 if TYPE_CHECKING:
     from geom import Machine
+    from lumped.build.pipeline import Built
     from lumped.condensation.error_budget import ErrorBudget
     from thermoscope.case_folder.stored_comparison import StoredComparison
-    from thermoscope.pipeline import Built
     from validation.comparison.compare import Comparison
     from validation.yardstick.yardstick import Yardstick
 
@@ -64,7 +64,7 @@ class Folder:
     @cached_property
     def budgets(self) -> Mapping[str, ErrorBudget]:
         """Test -> what mesh, condensation and time steps may put wrong in the model's numbers; computed once."""
-        from thermoscope.verification.error_budget import budgets_of
+        from validation.comparison.error_budget import budgets_of
 
         return budgets_of(self, self.case.tests) if self.stored is None else self.stored.budgets
 
@@ -98,8 +98,8 @@ class Folder:
         """Channel -> the largest error that counts as agreement (K); of this test alone unless all are compared."""
         if "compared" in vars(self) or self.stored is not None:
             return self.compared.limits[test.name]
-        from thermoscope.verification.error_budget import budgets_of
         from validation.comparison.compare import judged_error, physical
+        from validation.comparison.error_budget import budgets_of
 
         case = self.case
         budget = self.budgets if "budgets" in vars(self) else budgets_of(self, [test])
@@ -251,7 +251,7 @@ def network_of(settings: Settings, progress: Progress) -> tuple[Network, Built |
         from lumped.declarations.network import load_network
 
         return load_network(settings.network), None
-    from thermoscope.pipeline import build
+    from lumped.build.pipeline import build
 
     machine = load_machine_file(settings.machine)  # type: ignore[arg-type]
     built = build(machine, progress=progress, axial_m=settings.axial_m)

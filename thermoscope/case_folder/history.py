@@ -11,10 +11,10 @@ import tomlkit
 
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from geom.storage import locked, write_whole
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import Table, suggestion
-from thermoscope.files import locked, write_whole
-from validation.case import AddedEffect, Model, Reference, SignalReference
+from measured.case import AddedEffect, Model, Reference, SignalReference
 from validation.parameters.unknowns import measured
 
 ACTIONS = ("calibrate", "add", "remove", "answer", "step back")

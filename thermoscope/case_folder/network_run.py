@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.integration.balance import balance
-from validation.case import Case, Test
+from measured.case import Case, Test
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing
 

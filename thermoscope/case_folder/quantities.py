@@ -9,8 +9,8 @@ import numpy as np
 
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
-from thermoscope.recordings.sheet import Sheet
-from validation.case import Reference, Test
+from measured.case import Reference, Test
+from measured.recordings.sheet import Sheet
 
 
 def with_quantities(

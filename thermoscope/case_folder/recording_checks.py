@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import ZERO_C
-from thermoscope.recordings.sheet import Sheet
-from thermoscope.recordings.tables import Samples
+from measured.recordings.sheet import Sheet
+from measured.recordings.tables import Samples
 
 Array = NDArray[np.float64]
 FIRST = 5  # readings that say where a column starts

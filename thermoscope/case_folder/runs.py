@@ -13,15 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.storage import cache_folder
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from measured.case import Case, Channel, Test
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
-from validation.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During

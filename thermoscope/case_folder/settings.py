@@ -10,9 +10,9 @@ from geom.description.names import LONGEST, checked_name
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.reader import Table, excerpt, suggestion
-from thermoscope.recordings.formats import stem_of
-from validation.case import Role
-from validation.doubt import USUAL, Doubt, widened
+from measured.case import Role
+from measured.doubt import USUAL, Doubt, widened
+from measured.recordings.formats import stem_of
 
 ROLES = ("calibrate", "validate", "hold-out")
 
@@ -32,7 +32,7 @@ class Entry:
 class Settings:
     """case.toml.  machine or network is set, the other None;  free : globs of what calibration may move, () for all
 
-    model_K : slow misfit (K) the model is not expected to get right, see validation.case.Channel
+    model_K : slow misfit (K) the model is not expected to get right, see measured.case.Channel
     sample_s : coarsest step (s) at which tests are looked at; None: as coarse as their sensors do not feel
     axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
     kinds : of effects that a diagnosis looks for, None for all;  starts, seed : of a calibration, see Search

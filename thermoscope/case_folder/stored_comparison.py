@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.storage import cache_folder
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from validation.comparison.compare import ChannelError, Comparison, TestError, compare, physical
 from validation.comparison.predict import predict

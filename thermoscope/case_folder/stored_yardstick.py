@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from geom.storage import cache_folder
+from measured.case import Case
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import code_digest, recorded_arrays
-from validation.case import Case
 from validation.comparison.compare import Comparison
 from validation.yardstick.terms import Term
 from validation.yardstick.words import model_error, sentence, warning

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from geom.description.names import file_stem
 from geom.escapes import csv_lines
+from geom.storage import write_whole
 from geom.text import visible
-from thermoscope.files import write_whole
-from thermoscope.recordings.data_table import rows_of
+from measured.recordings.data_table import rows_of
 
 if TYPE_CHECKING:
+    from measured.case import Test
     from thermoscope.case_folder.folder import Folder
-    from validation.case import Test
 
 Worksheet = Mapping[str, Sequence[Any] | NDArray[Any]]  # column -> its cells
 UNREADABLE = str.maketrans("[]:*?/\\'", "________")  # what Excel forbids in the name of a worksheet, or at its ends

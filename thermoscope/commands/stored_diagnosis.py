@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from geom.limits import BYTES
+from geom.storage import write_whole
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import PACKAGE
 from thermoscope.console.terminal import notes, plain
-from thermoscope.files import checked_result, write_whole
+from thermoscope.files import checked_result
 
 NAME = "diagnosis.json"
 SEAL = "sha256"

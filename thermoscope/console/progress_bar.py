@@ -262,7 +262,7 @@ def _line(message: str) -> None:
 
 
 def _file() -> Path:
-    from thermoscope.caches import cache_folder
+    from geom.storage import cache_folder
 
     return cache_folder() / FILE
 

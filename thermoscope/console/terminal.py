@@ -12,10 +12,10 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+from geom.storage import write_whole
 from geom.text import visible
 from thermoscope.console.answer import Answer, Grid, printed, to_stdout
 from thermoscope.console.progress_bar import Progress, progress
-from thermoscope.files import write_whole
 
 STDOUT = "-"
 __all__ = [

@@ -31,8 +31,8 @@ COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random
 
 def coarse_network(machine: Machine, progress: Progress) -> Network:
     """Seconds; from the cache where it was made before."""
+    from lumped.build.pipeline import prepared, reduced
     from lumped.machine.motor import motor_network
-    from thermoscope.pipeline import prepared, reduced
 
     ready = prepared(machine, SIZE_M, 48, progress, across=ACROSS)
     return motor_network(machine, reduced(ready, COARSE).network(max_states=COARSE.max_states))

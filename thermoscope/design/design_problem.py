@@ -15,6 +15,7 @@ from geom.errors import InputError
 from lumped.machine.motor import boundaries, fluids, rated_inputs
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
+from measured.recordings.sheet import Sheet, load_sheet
 from thermoscope.bands import posterior_of
 from thermoscope.case_folder.cycle import find_cycle
 from thermoscope.case_folder.folder import Folder, Progress
@@ -23,9 +24,8 @@ from thermoscope.case_folder.settings import Settings
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.machine_keys import FLOWS, MachineFile
 from thermoscope.rating import places, usual_point
-from thermoscope.recordings.sheet import Sheet, load_sheet
-from thermoscope.verification.error_budget import model_of
 from validation.bands.at_rest import AtRest
+from validation.comparison.error_budget import model_of
 from validation.comparison.predict import thermal
 from validation.optimisation.driven import GAINS, Driven
 from validation.optimisation.electrics import electrics_of, wanted_inputs

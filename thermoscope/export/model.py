@@ -15,14 +15,14 @@ from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from lumped.numerics.terms import Terms
 from lumped.schemas.reader import suggestion
+from measured.case import RUNNING, Reference
+from measured.recordings.units import QUANTITIES
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import mean_rows, sensors
 from thermoscope.export.products import Product, Sum
 from thermoscope.export.tables import Ranges, factors
-from thermoscope.recordings.units import QUANTITIES
-from thermoscope.verification.error_budget import model_of
-from validation.case import RUNNING, Reference
 from validation.comparison.compare import errors
+from validation.comparison.error_budget import model_of
 from validation.parameters.unknowns import standing_reference
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ from geom.escapes import c_comment
 from lumped.model.network import Network
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.sources.loss_measured import MeasuredLoss
+from measured.case import Channel, Reference
+from measured.doubt import TEMPER, USUAL
 from thermoscope.export.c_code import RUNTIME, c_files, ints, joined, reals
 from thermoscope.export.model import Model, Output, packed
-from validation.case import Channel, Reference
-from validation.doubt import TEMPER, USUAL
 from validation.effects.build import heat
 from validation.observer import hypotheses as tests_of
 from validation.observer import sensor_faults as faults

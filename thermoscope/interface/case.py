@@ -11,13 +11,13 @@ from geom.errors import InputError
 from geom.text import counted, table
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
-from thermoscope.extras import explained
+from thermoscope.parts import explained
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from lumped.model.network import Network
-    from validation.case import Test
+    from measured.case import Test
     from validation.comparison.compare import Comparison
     from validation.effects.base import Effect
     from validation.inference.result import Diagnosis

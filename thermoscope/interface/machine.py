@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from geom.errors import InputError, NoSolution
 from geom.text import counted, table
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.extras import explained
+from thermoscope.parts import explained
 
 if TYPE_CHECKING:
     import pyvista
 
     from geom import NamedMesh
+    from lumped.build.crosscheck import CrossCheck, PartCheck
+    from lumped.build.pipeline import Built
     from lumped.model.network import Network
-    from thermoscope.pipeline import Built
-    from thermoscope.verification.crosscheck import CrossCheck, PartCheck
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -115,8 +115,8 @@ class Machine:
         inputs : those of `rated`, for example current_A=20, speed_rpm=1450; those that are not given are rated
         Raises InputError for an unknown input, and where the machine does not settle: at a rating for an hour, say.
         """
+        from lumped.build.crosscheck import crosscheck
         from lumped.machine.losses import loss_shares
-        from thermoscope.verification.crosscheck import crosscheck
 
         unknown = sorted(set(inputs) - set(self.rated))
         if unknown:

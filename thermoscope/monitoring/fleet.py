@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.transfer.laws import RUNNING
+from measured.case import Case, Channel, Test
+from measured.recordings.formats import stem_of
+from measured.recordings.sheet import Sheet
 from thermoscope.case_folder.folder import Progress
 from thermoscope.monitoring.live_rows import Rows, open_stream, table_of, together
-from thermoscope.recordings.formats import stem_of
-from thermoscope.recordings.sheet import Sheet
-from validation.case import Case, Channel, Test
 from validation.fleet import Statistics, UnitHistory, statistics
 
 Array = NDArray[np.float64]

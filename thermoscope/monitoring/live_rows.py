@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
-from thermoscope.recordings.sheet import Column, Sheet
-from thermoscope.recordings.units import converted
+from measured.recordings.sheet import Column, Sheet
+from measured.recordings.units import converted
 
 Array = NDArray[np.float64]
 TOGETHER = 500  # rows of a file that are read at once

@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from geom.storage import cache_folder
 from lumped.integration.record import Record
 from lumped.schemas.reader import suggestion
 from lumped.transfer.laws import CLOCK, RUNNING
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from measured.case import Channel
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.monitoring.live_rows import Rows
-from thermoscope.verification.error_budget import model_of
-from validation.case import Channel
+from validation.comparison.error_budget import model_of
 from validation.observer import Observer
 from validation.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
 from validation.observer.process import bodies_of

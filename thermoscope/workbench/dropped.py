@@ -12,14 +12,14 @@ from aiohttp import BodyPartReader, MultipartReader, web
 
 from geom.description.names import cut_short, file_stem
 from geom.errors import InputError
+from measured.importing.aligned import Recording
+from measured.importing.cells import number
+from measured.importing.dialogue import Dialogue
+from measured.importing.draft import Draft, missing_boundaries, missing_inputs, squares_of, test_name
+from measured.importing.guess import assigned, guesses
+from measured.importing.target import Target, target_of
 from thermoscope.commands.test.new import drafts_of, model_of_case, read_recording, save_case
 from thermoscope.console.terminal import Progress
-from thermoscope.importing.aligned import Recording
-from thermoscope.importing.cells import number
-from thermoscope.importing.dialogue import Dialogue
-from thermoscope.importing.draft import Draft, missing_boundaries, missing_inputs, squares_of, test_name
-from thermoscope.importing.guess import assigned, guesses
-from thermoscope.importing.target import Target, target_of
 
 if TYPE_CHECKING:
     from lumped.model.network import Network

@@ -14,7 +14,7 @@ from geom.errors import ThermoscopeError
 
 Tell = Callable[[str], None]
 PRELOAD = [
-    "thermoscope.workbench.steps", "thermoscope.pipeline", "thermoscope.commands.model.revise",
+    "thermoscope.workbench.steps", "lumped.build.pipeline", "thermoscope.commands.model.revise",
     "validation.diagnosis.diagnose", "validation.revision.revise", "thermoscope.case_folder.error_field",
     "thermoscope.case_folder.network_run", "viz.viewer.page", "thermoscope.kernels", "pyvista", "matplotlib",
 ]  # fmt: skip

@@ -10,10 +10,10 @@ import numpy as np
 
 from lumped.integration.steady import steady
 from lumped.model.network import Network, Row
+from measured.case import Test
+from measured.sensors.operators import head
 from validation.bands.posterior import ParameterPosterior
-from validation.case import Test
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
-from validation.measurement.operators import head
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from geom.constants import NORMAL_95
 from lumped.model.multipliers import values_of
 from lumped.model.network import Row
+from measured.case import Channel, Test
+from measured.sensors.operators import head
 from validation.bands.posterior import ParameterPosterior, acting
-from validation.case import Channel, Test
 from validation.comparison.linearisation import stretch
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import Watch
-from validation.measurement.operators import head
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

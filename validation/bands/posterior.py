@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter, Row
+from measured.case import Case, Test
+from measured.doubt import Doubt
+from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import CachedSegments, Fit, minimise, with_model_error
 from validation.calibration.model_error import with_cores, with_doubts
-from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.moved_inputs import FLOWS, moved_inputs
-from validation.doubt import Doubt
-from validation.measurement.operators import of_measurement
 from validation.parameters.unknowns import nuisances, working
 from validation.threads import one_blas_thread
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
+from measured.case import Test
+from measured.doubt import USUAL, Doubt
 from validation.calibration.model_error import ModelError, model_error
-from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
-from validation.doubt import USUAL, Doubt
-from validation.measurement.noise import Noise, first_noise, fit_noise
+from validation.noise import Noise, first_noise, fit_noise
 from validation.parameters.unknowns import Unknowns
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
 from lumped.model.network import Parameter
+from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit
-from validation.measurement.operators import of_measurement
 from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]

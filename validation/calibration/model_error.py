@@ -1,6 +1,6 @@
 """What a network of this kind gets wrong, as columns: the change of every reading by one deviation of each doubt.
 
-The lines of `validation.doubt` that no calibrated parameter stands for are linear here: a machine that is not quite the
+The lines of `measured.doubt` that no calibrated parameter stands for are linear here: a machine that is not quite the
 model reads y + D d with d ~ N(0, 1). Marginalised, D D' is the covariance of the model error, correlations between
 sensors and tests included, without a draw: Bayesian approximation error (Kaipio and Somersalo 2005, chapter 5.8).
 """
@@ -19,12 +19,12 @@ from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperature
-from validation.case import Channel, Test
+from measured.case import Channel, Test
+from measured.doubt import USUAL, Doubt
+from measured.sensors.operators import lag, setting
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.predict import heat_model, record
-from validation.doubt import USUAL, Doubt
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
-from validation.measurement.operators import lag, setting
 from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.threads import side_by_side
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geom.errors import InputError
-from validation.case import Case
+from measured.case import Case
 from validation.comparison.compare import Comparison, compare, errors, pooled
 
 RANGE = (0.25, 4.0)  # of a factor: beyond, the model has another fault than this one

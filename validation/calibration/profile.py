@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from measured.case import Test
 from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
 from validation.calibration.intervals import Profile
-from validation.case import Test
 from validation.parameters.unknowns import Unknowns, to_value
 
 Array = NDArray[np.float64]

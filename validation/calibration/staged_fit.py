@@ -11,9 +11,9 @@ import numpy as np
 from geom.errors import InputError
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
+from measured.case import Case, Test
+from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
-from validation.case import Case, Test
-from validation.measurement.operators import of_measurement
 from validation.parameters.unknowns import Unknowns, working
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum

@@ -12,11 +12,11 @@ from geom.errors import ThermoscopeError
 from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
-from validation.case import Case, Channel, Test
+from measured.case import Case, Channel, Test
+from measured.doubt import USUAL, Doubt
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.counting import counted
-from validation.doubt import USUAL, Doubt
 from validation.parameters.unknowns import measured, standing
 
 Budget = Mapping[str, float]

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from lumped.integration.compiled import FIT
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
-from validation.case import Channel, Test
+from measured.case import Channel, Test
+from measured.doubt import USUAL
+from measured.sensors.blocks import INSTANTS, Blocks, groups
 from validation.comparison.predict import Watch
-from validation.doubt import USUAL
-from validation.measurement.blocks import INSTANTS, Blocks, groups
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

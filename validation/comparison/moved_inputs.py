@@ -9,8 +9,8 @@ import numpy as np
 
 from lumped.model.network import Network
 from lumped.model.quantities import AIR, LIQUID
-from validation.case import Test
-from validation.doubt import Doubt
+from measured.case import Test
+from measured.doubt import Doubt
 
 FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid"}
 

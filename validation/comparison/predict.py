@@ -16,19 +16,9 @@ from lumped.integration.compiled import READINGS, Precision
 from lumped.integration.simulate import Record, Run, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
-from validation.case import Test
+from measured.case import Test
+from measured.sensors.operators import OPERATORS, SHIFTS, Memory, Stretch, head, moved, setting, shifted, stretch_of
 from validation.effects.time_window import IN, lasts
-from validation.measurement.operators import (
-    OPERATORS,
-    SHIFTS,
-    Memory,
-    Stretch,
-    head,
-    moved,
-    setting,
-    shifted,
-    stretch_of,
-)
 
 Array = NDArray[np.float64]
 MOVING = tuple(f"{kind}:" for kind in SHIFTS)

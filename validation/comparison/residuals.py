@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.special import gammaincc, kolmogorov
 
 from geom.constants import NORMAL_95
-from validation.case import Test
+from measured.case import Test
+from measured.sensors.blocks import groups
 from validation.comparison.linearisation import Segment
-from validation.measurement.blocks import groups
 
 Array = NDArray[np.float64]
 LAGS = 20  # usual for the test of Ljung and Box; more lose power

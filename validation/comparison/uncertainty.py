@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from geom.errors import ThermoscopeError
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network
-from validation.case import Test
+from measured.case import Test
+from measured.doubt import USUAL, Doubt
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import predict, record, thermal
-from validation.doubt import USUAL, Doubt
 
 Array = NDArray[np.float64]
 COVERAGE = 2.0  # standard uncertainties: 95 %

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from lumped.model.sites import ambient
 from validation.effects import Effect, Scene, kinds
-from validation.effects.sites import ambient
 
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "input.factor")  # where the catalogue has them

@@ -14,16 +14,16 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.sites import neighbours
+from measured.case import Case, Test
+from measured.doubt import FORM, PRIOR, USUAL
 from validation.calibration.calibrate import no_progress
-from validation.case import Case, Test
 from validation.conditions.candidate_conditions import single_test_effects, temporary_effects
 from validation.conditions.hat_functions import Interval, hat_scores
 from validation.conditions.refine import TimedEvent, columns, refined, repeats
 from validation.conditions.windows import ALIKE, distinct, stretches, worth
-from validation.doubt import FORM, PRIOR, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
-from validation.effects.sites import neighbours
 from validation.effects.time_window import Event, event
 from validation.inference.evidence import Evidence, extended_prior, projected
 from validation.inference.missing_heat import MissingHeat, Scan

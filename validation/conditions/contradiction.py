@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from lumped.model.network import Network, Parameter
+from measured.case import Test
+from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
-from validation.case import Test
 from validation.inference.evidence import extended_prior, projected
 from validation.inference.score import per_test, score
-from validation.measurement.operators import head
 from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]

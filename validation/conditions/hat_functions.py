@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from measured.case import Test
+from measured.doubt import FORM, SIZES, USUAL
 from validation.calibration.model_error import nodes
-from validation.case import Test
-from validation.doubt import FORM, SIZES, USUAL
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence, extended_prior, projected

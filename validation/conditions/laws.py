@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from measured.doubt import PRIOR, RARE
 from validation.conditions.refine import columns
-from validation.doubt import PRIOR, RARE
 from validation.effects import extended
 from validation.effects.above import KIND, Above
 from validation.inference.evidence import Evidence, extended_prior, projected

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import USUAL
+from measured.doubt import USUAL
 from validation.effects import Effect
 from validation.effects.during import During
 from validation.effects.time_window import event

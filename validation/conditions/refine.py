@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from lumped.model.multipliers import parameter_values
-from validation.case import Test
+from measured.case import Test
+from measured.doubt import SIZES, USUAL
 from validation.comparison.linearisation import Segment, segments
 from validation.conditions.windows import ways
-from validation.doubt import SIZES, USUAL
 from validation.effects import Effect, extended
 from validation.effects.during import During
 from validation.effects.time_window import Event, Span

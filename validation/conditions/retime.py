@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.multipliers import parameter_values
+from measured.case import Test
 from validation.calibration.calibrate import Fit
-from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.conditions.refine import GRID_POINTS, around, joined
 from validation.effects import Effect, extended

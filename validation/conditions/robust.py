@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from measured.case import Test
+from measured.doubt import USUAL
 from validation.calibration.calibrate import Fit
-from validation.case import Test
-from validation.doubt import USUAL
 from validation.inference.evidence import Evidence, continuation, under
-from validation.measurement.noise import START, Level, Noise
+from validation.noise import START, Level, Noise
 
 
 def quiet_fit(fit: Fit, tests: Sequence[Test]) -> Fit:

@@ -8,8 +8,10 @@ from types import MappingProxyType
 
 import numpy as np
 
+from measured.case import Case
+from measured.sensors.faults import PlainFaults, broken_channels, without
+from validation.bases.which_base import base_hypotheses, wrong_bases
 from validation.calibration.calibrate import no_progress
-from validation.case import Case
 from validation.conditions.conditional_effects import conditions, reach
 from validation.conditions.contradiction import contradiction
 from validation.conditions.laws import laws
@@ -48,9 +50,7 @@ from validation.inference.refits import NOWHERE, WarmFits, finely, noise_of_refi
 from validation.inference.result import Diagnosis
 from validation.inference.several import further
 from validation.inference.steadiness import steady
-from validation.measurement.faults import PlainFaults, broken_channels, without
-from validation.measurement.noise import Noise
-from validation.procedure.reduction.which_base import base_hypotheses, wrong_bases
+from validation.noise import Noise
 from validation.threads import one_blas_thread, side_by_side
 
 Progress = Callable[[str], None]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from measured.case import Case
 from validation.calibration.calibrate import no_progress
-from validation.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.linearisation import segments
 from validation.comparison.residuals import Pattern, patterns

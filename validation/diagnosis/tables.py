@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from geom.constants import NORMAL_95
+from measured.case import Case, Test
+from measured.doubt import USUAL
+from measured.sensors.faults import PlainFaults
+from validation.bases.which_base import Hypothesis as Base
 from validation.calibration.calibrate import Fit, InnerProduct
-from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.conditions.events import possible_events
 from validation.conditions.question import best_question
-from validation.doubt import USUAL
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.inference.decision import Decision
@@ -25,11 +27,9 @@ from validation.inference.posterior import Hypothesis, Posterior, inclusion, pro
 from validation.inference.refits import laplace
 from validation.inference.remainder import remainder
 from validation.inference.result import Candidate, Decided, DetectionLimit, Diagnosis, Odds, Verdict
-from validation.measurement.faults import PlainFaults
 from validation.planning.competing_models import CompetingModels
 from validation.planning.experiments import next_tests
 from validation.planning.sensors import next_sensors
-from validation.procedure.reduction.which_base import Hypothesis as Base
 
 Array = NDArray[np.float64]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed

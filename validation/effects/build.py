@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
+from lumped.model.sites import faces
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw, Wrapped
-from validation.effects.sites import faces
 
 HOUR = 3600.0
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.transfer.laws import CLOCK, Law
-from validation.doubt import USUAL
+from measured.doubt import USUAL
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
 from validation.effects.time_window import IN, Event, TimeWindow, event

@@ -15,7 +15,7 @@ from geom.errors import InputError
 from lumped.transfer.laws import CLOCK, RUNNING, Inputs
 
 if TYPE_CHECKING:
-    from validation.case import Test
+    from measured.case import Test
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]

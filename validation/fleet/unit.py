@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
+from measured.case import Case, Test
 from validation.calibration.calibrate import minimise
-from validation.case import Case, Test
 from validation.parameters.unknowns import standing_reference, to_coordinate, working
 
 Array = NDArray[np.float64]

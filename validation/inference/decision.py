@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import COSTS
+from measured.doubt import COSTS
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import Hypothesis, inclusion, probabilities
 from validation.inference.result import Verdict

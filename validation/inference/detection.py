@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import PRIOR, nats_worth
+from measured.doubt import PRIOR, nats_worth
 from validation.inference.evidence import Evidence
 from validation.inference.posterior import prior_shares
 from validation.inference.score import one_size

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, NoSolution
 from lumped.model.multipliers import parameter_values, values_of
 from lumped.model.network import Network, Parameter
+from measured.case import Case, Test
 from validation.calibration.calibrate import (
     CachedSegments,
     Fit,
@@ -24,11 +25,10 @@ from validation.calibration.calibrate import (
     no_progress,
     with_model_error,
 )
-from validation.case import Case, Test
 from validation.comparison.linearisation import Segment, reach, segments
 from validation.effects import Effect, catalogue, extended
 from validation.inference.score import Gram, Score, gram, grams, score, total
-from validation.measurement.noise import Noise, fit_noise
+from validation.noise import Noise, fit_noise
 from validation.parameters.reference import effect_sizes
 from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, widened, working
 

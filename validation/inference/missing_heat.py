@@ -18,17 +18,17 @@ from scipy.linalg import block_diag
 from scipy.special import logsumexp
 
 from lumped.model.network import Network, Parameter
+from lumped.model.sites import solids
 from lumped.transfer.laws import Fixed, Inputs
+from measured.case import Test
+from measured.doubt import FORM
+from measured.sensors.blocks import INSTANTS
 from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import ModelError, nodes
-from validation.case import Test
 from validation.comparison.linearisation import Segment, segments
-from validation.doubt import FORM
 from validation.effects.build import Shaped, heat, power_scale
-from validation.effects.sites import solids
 from validation.inference.score import Gram, gram
-from validation.measurement.blocks import INSTANTS
-from validation.measurement.noise import Noise
+from validation.noise import Noise
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network
+from measured.case import Case, Test
 from validation.calibration.calibrate import calibrated, no_progress
-from validation.case import Case, Test
 from validation.comparison.predict import predict
 from validation.effects import extended
 from validation.inference.evidence import with_members

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from measured.doubt import PRIOR, RARE, SIZES, temper
 from validation.calibration.calibrate import Fit
-from validation.doubt import PRIOR, RARE, SIZES, temper
 from validation.effects import Effect
 from validation.effects.above import Above
 from validation.effects.during import During

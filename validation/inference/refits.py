@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from geom.errors import NoSolution
+from measured.doubt import SIZES
 from validation.calibration.calibrate import Fit, no_progress, residual_noise
-from validation.doubt import SIZES
 from validation.inference.evidence import (
     Evidence,
     evidence_of,
@@ -27,7 +27,7 @@ from validation.inference.evidence import (
 )
 from validation.inference.posterior import Hypothesis, probabilities, weights
 from validation.inference.score import log_sign_gain
-from validation.measurement.noise import Noise
+from validation.noise import Noise
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from geom.text import table
 from validation.inference.missing_heat import MissingHeat
 
 if TYPE_CHECKING:
+    from validation.bases.which_base import Hypothesis
     from validation.conditions.contradiction import Contradiction
-    from validation.procedure.reduction.which_base import Hypothesis
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
 Decided = Literal["named", "group", "no", "cannot-tell"]

@@ -16,7 +16,7 @@ from scipy.linalg import block_diag
 from scipy.special import log_ndtr
 
 from validation.comparison.linearisation import Segment
-from validation.measurement.noise import Noise
+from validation.noise import Noise
 
 Array = NDArray[np.float64]
 

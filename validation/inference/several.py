@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from measured.case import Case
+from measured.doubt import PRIOR
 from validation.calibration.calibrate import no_progress
-from validation.case import Case
-from validation.doubt import PRIOR
 from validation.effects.during import During
 from validation.inference.evidence import Evidence, scored
 from validation.inference.posterior import Hypothesis, prior_shares, singles, weights

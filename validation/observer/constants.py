@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from lumped.model.network import Link, Network, Parameter, Row
 from lumped.model.quantities import AIR, LIQUID
 from lumped.transfer.laws import Fixed, InputPower
+from measured.case import Channel, Test
+from measured.doubt import Doubt
+from measured.sensors.operators import head
 from validation.calibration.model_error import neighbours
-from validation.case import Channel, Test
-from validation.doubt import Doubt
 from validation.effects.build import copy_link
-from validation.measurement.operators import head
 from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.doubt import PRIOR, USUAL, temper
+from measured.doubt import PRIOR, USUAL, temper
 
 Array = NDArray[np.float64]
 FORGETS_S = 1800.0  # half an hour: a motor's own time constant

@@ -24,9 +24,9 @@ from lumped.model.network import Row
 from lumped.transfer.laws import CONSTANT, TemperatureLaw
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import temperature_value
-from validation.case import Channel, Test
+from measured.case import Channel, Test
+from measured.doubt import USUAL
 from validation.comparison.predict import record
-from validation.doubt import USUAL
 from validation.observer.constants import Constants
 from validation.observer.process import Process
 from validation.observer.process_noise import ProcessNoise, thinned

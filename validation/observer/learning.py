@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Parameter
+from measured.case import Case, Channel, Test
+from measured.doubt import Doubt
 from validation.bands.posterior import ParameterPosterior, parameter_posterior
-from validation.case import Case, Channel, Test
 from validation.comparison.predict import record, thermal
-from validation.doubt import Doubt
 from validation.observer.constants import Constants, Sensor, with_motion
 from validation.observer.joint_filter import JointFilter
 from validation.observer.observer import Observer, Sample, observer

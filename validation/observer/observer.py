@@ -12,8 +12,8 @@ from scipy.special import ndtr
 from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
 from lumped.model.network import Row
-from validation.case import Channel
-from validation.doubt import USUAL
+from measured.case import Channel
+from measured.doubt import USUAL
 from validation.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, hypotheses
 from validation.observer.kalman import Filter, begun
 from validation.observer.process import Driven, Process

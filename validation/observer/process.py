@@ -23,7 +23,7 @@ from lumped.integration.record import Record
 from lumped.model.network import Network, Row
 from lumped.numerics.instant import instant
 from lumped.transfer.ranges import within_silence
-from validation.case import Channel
+from measured.case import Channel
 
 Array = NDArray[np.float64]
 GAMMA = 1.0 - sqrt(0.5)  # L-stable

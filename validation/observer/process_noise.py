@@ -19,11 +19,11 @@ from lumped.model.multipliers import multipliers, slopes, values_of
 from lumped.model.network import Network, Parameter
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import separated, turned
+from measured.case import Test
+from measured.sensors.operators import head
 from validation.bands.posterior import ParameterPosterior, acting
-from validation.case import Test
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import record, thermal
-from validation.measurement.operators import head
 
 Array = NDArray[np.float64]
 INSTANTS = 100  # of a test: heat turns slowly

@@ -28,7 +28,7 @@ from lumped.transfer.laws import (
     Wrapped,
 )
 from lumped.transfer.ranges import within_silence
-from validation.doubt import USUAL, Doubt
+from measured.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
 Array = NDArray[np.float64]

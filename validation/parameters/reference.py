@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
 from lumped.transfer.laws import CLOCK, Law
-from validation.case import Reference, SignalReference, Test
+from measured.case import Reference, SignalReference, Test
 
 Array = NDArray[np.float64]
 LOADS = ("current", "torque")  # quantities that grow with the load

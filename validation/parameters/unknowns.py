@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from lumped.transfer.laws import Law
-from validation.case import Case, Channel, Model, Reference, Test
-from validation.doubt import USUAL, Doubt
+from measured.case import Case, Channel, Model, Reference, Test
+from measured.doubt import USUAL, Doubt
+from measured.sensors.operators import of_measurement
 from validation.effects import Effect, Scene, effect, extended
 from validation.effects.sensors.input_offset import Shift
-from validation.measurement.operators import of_measurement
 from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from geom.description.roles import Role
 from lumped.model.network import Network
-from validation.case import Test
-from validation.effects.sites import role
+from lumped.model.sites import role
+from measured.case import Test
 
 Array = NDArray[np.float64]
 OVERLOAD = 1.3  # of the root mean square current, for as long as a winding takes to follow

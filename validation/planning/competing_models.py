@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from validation.calibration.calibrate import Fit
-from validation.measurement.noise import Noise
+from validation.noise import Noise
 
 
 @dataclass(frozen=True)

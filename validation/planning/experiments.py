@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geom.errors import ThermoscopeError
 from lumped.model.multipliers import values_of
-from validation.case import Test
+from measured.case import Test
 from validation.comparison.linearisation import segments
 from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment

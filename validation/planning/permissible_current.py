@@ -23,9 +23,9 @@ from geom.errors import NoSolution
 from lumped.integration.compiled import Precision
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Row
-from validation.case import Test
+from lumped.model.sites import solids
+from measured.case import Test
 from validation.comparison.predict import heat_model, record
-from validation.effects.sites import solids
 from validation.inference.result import CurrentLevel
 from validation.planning.candidate_tests import Experiment, candidate_tests, inputs_measuring
 from validation.threads import side_by_side

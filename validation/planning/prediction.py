@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
+from measured.case import Test
 from validation.calibration.calibrate import CachedSegments, Fit, minimise
 from validation.calibration.model_error import ModelError, model_error
-from validation.case import Test
 from validation.comparison.linearisation import segments
 from validation.comparison.predict import predict
 from validation.inference.evidence import Evidence, with_members

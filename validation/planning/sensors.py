@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.model.network import Network, Place
-from validation.case import Channel, Test
+from lumped.model.sites import outside, turns
+from measured.case import Channel, Test
 from validation.comparison.linearisation import Segment, segments
-from validation.effects.sites import outside, turns
 from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import Gram
-from validation.measurement.noise import Noise
+from validation.noise import Noise
 from validation.planning.competing_models import CompetingModels
 from validation.planning.prediction import Plan, refitted_gains, widened_error
 from validation.planning.separability import separable_pairs, separation

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from measured.case import Case
 from validation.calibration.calibrate import no_progress
-from validation.case import Case
 from validation.comparison.compare import Comparison, errors
 from validation.diagnosis.diagnose import diagnose
 from validation.effects import effect

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError, ThermoscopeError
 from lumped.model.network import Network
+from measured.case import Case, Model, Test
 from validation.calibration.calibrate import no_progress
-from validation.case import Case, Model, Test
 from validation.comparison.predict import predict
 from validation.inference.result import CurrentLevel
 from validation.parameters.unknowns import standing

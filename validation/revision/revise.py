@@ -11,17 +11,17 @@ from geom.errors import InputError
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
+from measured.case import AddedEffect, Case, Model, Test
+from measured.sensors.faults import broken_channels, without
+from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
-from validation.case import AddedEffect, Case, Model, Test
 from validation.comparison.compare import Comparison, errors
 from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.time_window import checked, lasts
-from validation.measurement.faults import broken_channels, without
-from validation.measurement.operators import of_measurement
 from validation.parameters.unknowns import FREE, case_reference, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
 from validation.threads import one_blas_thread

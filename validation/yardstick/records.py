@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.case import Test
+from measured.case import Test
 
 Array = NDArray[np.float64]
 MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.case import Case
+from measured.case import Case
 from validation.yardstick.free_network import FreeNetwork, link_factors, loss_factors, loss_names
 from validation.yardstick.records import Columns, Record
 

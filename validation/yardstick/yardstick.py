@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.case import Case
+from measured.case import Case
 from validation.threads import one_blas_thread
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, NetworkLessons

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from validation.case import Channel
+    from measured.case import Channel
 
 
 @paper.styled

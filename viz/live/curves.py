@@ -15,7 +15,7 @@ from viz.live.style import as_text, faded, figure, plain
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-    from validation.case import Channel
+    from measured.case import Channel
 
 
 def channel_of(comparison: Comparison, name: str) -> Channel:

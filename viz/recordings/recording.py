@@ -31,7 +31,7 @@ from viz.rendering.visibility import covered, obstacle
 if TYPE_CHECKING:
     import rerun as rr
 
-    from validation.case import Channel
+    from measured.case import Channel
 
 Array = NDArray[np.float64]
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is

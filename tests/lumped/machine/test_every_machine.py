@@ -6,9 +6,9 @@ from bare_networks import means_only
 from distinct_machines import DISTINCT
 
 from geom import load_machine
+from lumped.build.pipeline import prepared
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
-from thermoscope.pipeline import prepared
 
 pytestmark = pytest.mark.heavy
 TIME = np.arange(0.0, 3600.0, 30.0)

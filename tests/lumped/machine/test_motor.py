@@ -6,12 +6,12 @@ from inside_parts import point_in
 
 from geom import load_machine
 from geom.errors import InputError
+from lumped.build.crosscheck import coefficients, crosscheck, steady_state
+from lumped.build.pipeline import build
 from lumped.condensation.reduction import Recipe
 from lumped.integration.simulate import Record, simulate
 from lumped.machine.settings import Losses, contact_coefficients, read
 from lumped.transfer.terms_value import coefficient
-from thermoscope.pipeline import build
-from thermoscope.verification.crosscheck import coefficients, crosscheck, steady_state
 
 POINT = {"current_A": 200.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
 

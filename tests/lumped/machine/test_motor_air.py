@@ -10,6 +10,8 @@ from geom import Machine, load_machine
 from geom.description.geometry import NO_FEATURES
 from geom.errors import InputError
 from geom.machine_file import machine_from
+from lumped.build.crosscheck import coefficients
+from lumped.build.pipeline import prepared
 from lumped.circuits.hydraulics import pressure_drop
 from lumped.integration.steady import steady
 from lumped.machine.air import fan_shares
@@ -17,8 +19,6 @@ from lumped.machine.films import surroundings
 from lumped.machine.motor import operating_point
 from lumped.model.network import Network
 from lumped.transfer.properties import air
-from thermoscope.pipeline import prepared
-from thermoscope.verification.crosscheck import coefficients
 
 WAYS = ("airgap", "air.interpolar", "air.ducts")
 POINT = {"current_A": 150.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}

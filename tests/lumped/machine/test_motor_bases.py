@@ -9,12 +9,12 @@ from bare_networks import means_only
 from geom import library, load_machine
 from geom.errors import InputError
 from geom.machine_file import machine_from
+from lumped.build.pipeline import build, prepared
 from lumped.condensation.reduction import Recipe
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.machine.bases import Switched
-from thermoscope.pipeline import build, prepared
 
 LOAD = {"current_A": 8.0, "speed_rpm": 0.0}
 FEW = Recipe(tolerance=0.02, shifts=(), random_points=0)  # learned at the machine's own coefficients, where it is used

@@ -10,6 +10,7 @@ from bare_networks import means_only
 from geom import library, load_machine
 from geom.errors import InputError
 from geom.machine_file import machine_from
+from lumped.build.pipeline import prepared
 from lumped.integration.steady import steady
 from lumped.machine.coolant import channel_of, cooling_of
 from lumped.machine.films import surroundings
@@ -23,7 +24,6 @@ from lumped.machine.shapes import fins_of
 from lumped.machine.zones import motor_zones
 from lumped.model.multipliers import multipliers
 from lumped.transfer.terms_value import coefficient, temperature_value
-from thermoscope.pipeline import prepared
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
 

@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 from small_case import measured, write_csv
 
-from thermoscope import pipeline
+from lumped.build import pipeline
 from thermoscope.case_folder import folder as case_folder
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import before_last, comparison_of, readings

@@ -13,8 +13,8 @@ from small_case import small_case
 
 from geom.disk_cache import recalled
 from lumped.condensation.basis_cache import BasisCache, Centre
+from measured.importing.case_files import folder_whole
 from thermoscope import caches
-from thermoscope.importing.case_files import folder_whole
 
 pytestmark = pytest.mark.heavy
 
@@ -193,7 +193,7 @@ def test_what_a_killed_new_left_goes_with_the_next(tmp_path, monkeypatch, cache)
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from thermoscope.importing.case_files import folder_whole
+from measured.importing.case_files import folder_whole
 with folder_whole(Path("made")) as partial:
     (partial / "case.toml").write_text("half")
     os.kill(os.getpid(), getattr(signal, sys.argv[1]))

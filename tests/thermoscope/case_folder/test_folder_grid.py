@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from thermoscope.recordings.grid import averaged, bridged, rms
+from measured.recordings.grid import averaged, bridged, rms
 
 
 def test_mean_of_what_lies_around_each_instant():

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from geom.errors import InputError
+from geom.storage import write_whole
 from lumped.model.network import Parameter
 from thermoscope.case_folder.history import History, Revision, checked_values, load_history, save_history
-from thermoscope.files import write_whole
 
 FIRST = Revision(0, "calibrate", values={"link.a": 1.25}, intervals={"link.a": (1.0, 1.5)}, rmse_K={"t": (3.0, 2.0)})
 SECOND = Revision(

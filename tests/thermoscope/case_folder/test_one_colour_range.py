@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import viz
+from lumped.build import pipeline
 from lumped.condensation.reduction import Recipe
-from thermoscope import pipeline
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import History, Revision
 from thermoscope.case_folder.runs import by_interest, fields, stored_range, temperature_range

@@ -5,9 +5,9 @@ import pytest
 
 from geom.errors import InputError
 from lumped.declarations.network import read_network
+from measured.case import Test
+from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.quantities import with_quantities
-from thermoscope.recordings.sheet import read_sheet
-from validation.case import Test
 
 NETWORK = {
     "network": {"name": "n", "boundaries": ["room"]},

@@ -3,9 +3,9 @@
 import pytest
 
 from geom.errors import InputError
+from measured.doubt import USUAL
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.model.calibrate import calibrate
-from validation.doubt import USUAL
 from validation.inference.evidence import candidates
 
 

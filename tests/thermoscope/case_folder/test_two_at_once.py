@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
+from geom.storage import locked
 from thermoscope.case_folder.history import load_history
-from thermoscope.files import locked
 
 # The second command begins to write only after the first has: each waits for the other before it saves.
 MEETING = """

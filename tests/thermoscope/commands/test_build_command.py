@@ -8,9 +8,9 @@ from PIL import Image
 
 from geom import Machine, load_machine, read_vtu
 from geom.machine_file import machine_from
+from lumped.build.pipeline import build as pipeline
 from lumped.condensation.reduction import Recipe
 from thermoscope.commands.model import build as command
-from thermoscope.pipeline import build as pipeline
 
 pytestmark = pytest.mark.heavy
 
@@ -38,7 +38,7 @@ def coarse(tmp_path_factory):
     usual = command.load_machine_file
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
-        patch.setattr("thermoscope.pipeline.wound", lambda machine, part: False)  # linear windings: a smaller field
+        patch.setattr("lumped.build.pipeline.wound", lambda machine, part: False)  # linear windings: a smaller field
         patch.setattr(command, "load_machine_file", lambda path: small(path.name) if path.name in FEW else usual(path))
         patch.setattr(command, "built_from", lambda m, accuracy, tell: (pipeline(m, 0.1, 36, TINY), None))
         pictures = command.pictures  # one family is enough

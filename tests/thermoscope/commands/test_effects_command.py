@@ -4,9 +4,9 @@ import json
 
 import pytest
 
+from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 from thermoscope.commands.explain.effects import effects, quantities
 from thermoscope.quantities_page import PAGE, page
-from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 from validation.effects.base import Effect
 from validation.effects.registry import kinds
 

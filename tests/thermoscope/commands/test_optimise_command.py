@@ -13,13 +13,13 @@ from geom import load_machine
 from geom.description.reading import read_geometry
 from geom.errors import InputError
 from geom.families import families
+from lumped.build.pipeline import build
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.cli import app
 from thermoscope.commands.use.optimise import read_bounds
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.design_problem import temperatures_of
 from thermoscope.design.machine_keys import MachineFile, machine_file_text
-from thermoscope.pipeline import build
 from validation.optimisation.space import Space
 
 EFFORT = ("--population", "12", "--generations", "4")
@@ -162,7 +162,7 @@ def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
     ],
 )
 def test_options_are_checked_before_anything_is_meshed(thermoscope, tmp_path, monkeypatch, arguments, words):
-    monkeypatch.setattr("thermoscope.pipeline.build", lambda *_, **__: pytest.fail("meshed"))
+    monkeypatch.setattr("lumped.build.pipeline.build", lambda *_, **__: pytest.fail("meshed"))
     said = thermoscope("use", "optimise", "series-dc-100kw-jacket-one", *arguments, "--out", tmp_path / "designs")
     assert said.code == 2
     assert words in said.err

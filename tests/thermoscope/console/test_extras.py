@@ -8,7 +8,7 @@ from importlib.metadata import distribution
 
 import pytest
 
-from thermoscope.extras import EXTRAS
+from thermoscope.parts import EXTRAS
 
 PYPI = {"skfem": "scikit-fem", "PIL": "pillow",
         "imageio_ffmpeg": "imageio-ffmpeg", "rerun": "rerun-sdk", "nptdms": "npTDMS", "OCP": "cadquery",

@@ -9,8 +9,8 @@ from one_body import LOSS, measured, one_node
 from playground import Truth, wind
 
 from lumped.model.network import Parameter
+from measured.case import AddedEffect
 from validation.calibration.calibrate import minimise
-from validation.case import AddedEffect
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.parameters.unknowns import Unknowns

@@ -8,11 +8,11 @@ from one_body import FILM, LOSS, MASS, G, P, measured, one_node
 
 from geom.errors import InputError
 from lumped.model.network import Parameter
+from measured.case import Case, Model
 from validation.calibration.calibrate import minimise
 from validation.calibration.intervals import estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, fit_stages
-from validation.case import Case, Model
 from validation.parameters.unknowns import Unknowns, working
 from validation.revision.revise import calibrate
 

@@ -10,11 +10,11 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed
+from measured.case import Case, Channel, Model, Test
+from measured.doubt import USUAL
 from validation.bands import Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.at_rest import AtRest
-from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import thermal
-from validation.doubt import USUAL
 from validation.revision.revise import calibrate
 
 G, P, C, HOURS = 2.0, 60.0, 4000.0, 10.0

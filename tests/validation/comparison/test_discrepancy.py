@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from one_body import LOSS, G, P, measured, one_node
 
-from validation.case import Case, Model
+from measured.case import Case, Model
+from measured.doubt import USUAL
 from validation.comparison.compare import compare
 from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
 from validation.diagnosis.discrepancy import discrepancies
-from validation.doubt import USUAL
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))

@@ -8,8 +8,8 @@ from everything import machine, warm_test
 from one_body import measured, one_node
 
 from lumped.model.network import Parameter
+from measured.sensors.operators import lag
 from validation.comparison.predict import Watch, predict
-from validation.measurement.operators import lag
 from validation.parameters.unknowns import nuisances
 
 TIME = np.arange(0.0, 600.0, 10.0)

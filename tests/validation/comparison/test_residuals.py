@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from one_body import FILM, LOSS, MASS, measured, one_node
 
+from measured.sensors.blocks import Blocks, groups
 from validation.comparison import linearisation
-from validation.measurement.blocks import Blocks, groups
 
 FREE = (LOSS, FILM, MASS)
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from one_body import measured, one_node
 
+from measured.case import Case, Model
+from measured.doubt import USUAL, widened
 from thermoscope.workbench import tables
 from thermoscope.workbench.appearance import Appearance
-from validation.case import Case, Model
 from validation.comparison.compare import Comparison as Errors
 from validation.comparison.compare import channel_error, compare, errors
 from validation.comparison.uncertainty import COVERAGE, RULE
-from validation.doubt import USUAL, widened
 from viz.colours import LIGHT, VERMILION
 from viz.data import Comparison, sensors
 from viz.figures.curves import residuals, wrongness

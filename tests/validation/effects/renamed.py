@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from lumped.declarations.network import read_network
 from lumped.model.quantities import USUAL
-from validation.case import Case, Channel, Model, Test
+from measured.case import Case, Channel, Model, Test
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "parameters", "boundaries", "inputs")
 SHARES = ("of", "at", "wall", "acts_on")  # tables whose keys are names

@@ -10,8 +10,8 @@ from two_bodies import LID, OPEN, bench, two_bodies
 
 from geom.errors import InputError
 from lumped.integration.simulate import Record, simulate
+from measured.case import Case, Channel, Model, Test
 from validation import diagnose
-from validation.case import Case, Channel, Model, Test
 from validation.comparison.predict import predict
 from validation.conditions.hat_functions import Path, hat_scores
 from validation.conditions.refine import around, repeats
@@ -227,9 +227,9 @@ def test_nothing_is_no_event():
 
 
 def test_an_answer_counts_as_its_odds_of_being_right():
+    from measured.doubt import USUAL
     from validation.conditions.question import answered, information
     from validation.diagnosis.diagnose import infer
-    from validation.doubt import USUAL
     from validation.inference.posterior import probabilities
 
     post = infer(bench((("noon", ((0.0, 5980.0),)),), 0.6), ["convection.constant"])

@@ -13,12 +13,12 @@ from lumped.integration.balance import balance
 from lumped.model.network import Source
 from lumped.transfer.laws import InputPower
 from lumped.transfer.terms_value import temperature_value
+from measured.sensors.operators import setting
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects import catalogue, effect, kinds
 from validation.effects.above import Above
 from validation.effects.during import During
 from validation.effects.sensors.input_fault import InputFault
-from validation.measurement.operators import setting
 
 KINDS = kinds()
 SHARED = {

@@ -8,8 +8,8 @@ import pytest
 from playground import Truth, network, wind
 
 from geom.errors import InputError
+from measured.sensors.faults import broken_channels
 from validation import diagnose
-from validation.measurement.faults import broken_channels
 
 pytestmark = pytest.mark.heavy
 

@@ -3,8 +3,8 @@
 import pytest
 
 from geom.constants import NORMAL_95
+from measured.doubt import TABLE
 from validation.diagnosis.tables import interval
-from validation.doubt import TABLE
 from validation.effects.registry import kinds
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from two_bodies import bench
 
+from measured.case import Case, Test
 from validation import diagnose
-from validation.case import Case, Test
 
 
 def cut(test: Test, at: int) -> tuple[Test, Test]:

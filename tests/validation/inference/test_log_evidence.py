@@ -28,7 +28,7 @@ from validation.inference.posterior import Hypothesis, averaged, pairs, probabil
 from validation.inference.refits import WEIGHT, between, refitted, shares, weighty_refits
 from validation.inference.score import total
 from validation.inference.several import further
-from validation.measurement.noise import Level, Noise
+from validation.noise import Level, Noise
 
 NAMES = ("convection@flange.right", "loss.constant@poles", "loss.constant@bearing.left", "sensor.bias@yoke")
 

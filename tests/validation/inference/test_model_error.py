@@ -9,13 +9,13 @@ from playground import Truth, network
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower
+from measured.case import Test
+from measured.doubt import USUAL
+from measured.sensors.operators import lag
 from validation.calibration.calibrate import InnerProduct, minimise
 from validation.calibration.model_error import alone, joints, jumps, lumping_errors, model_error, with_doubts
-from validation.case import Test
 from validation.comparison.linearisation import segments
-from validation.doubt import USUAL
-from validation.measurement.noise import first_noise
-from validation.measurement.operators import lag
+from validation.noise import first_noise
 from validation.parameters.unknowns import working
 
 

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 from playground import Truth, network, wind
 
 from lumped.transfer.laws import Fixed
+from measured.case import LowFidelity
 from validation import diagnose
-from validation.case import LowFidelity
 from validation.comparison.linearisation import segments
 from validation.diagnosis.diagnose import infer
 from validation.effects import extended

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from validation.comparison.linearisation import Segment
-from validation.measurement.noise import GRID, fit_noise
+from validation.noise import GRID, fit_noise
 
 TIME = np.arange(0.0, 3600.0, 20.0)
 

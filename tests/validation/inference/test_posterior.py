@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from geom.errors import InputError
-from validation.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
+from measured.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
 from validation.effects import effect
 from validation.inference.decision import SURE, decide
 from validation.inference.detection import smallest

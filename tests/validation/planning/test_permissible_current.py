@@ -7,7 +7,7 @@ import pytest
 from playground import network, stand
 
 from lumped.integration.simulate import simulate
-from validation.case import Test
+from measured.case import Test
 from validation.comparison.predict import record
 from validation.planning.candidate_tests import candidate_tests
 from validation.planning.permissible_current import (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from playground import Truth, network, steps
 
-from validation.case import Case, Model
+from measured.case import Case, Model
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts

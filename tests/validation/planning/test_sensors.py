@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from playground import SENSORS, Truth, network
 
-from validation.case import Case, Model
+from measured.case import Case, Model
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, refit, scored, starts
 from validation.planning.competing_models import CompetingModels, deviance_difference

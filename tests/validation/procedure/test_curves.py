@@ -7,7 +7,7 @@ import pytest
 
 from lumped.model.build import bare_network, node_link, node_row, node_source
 from lumped.transfer.laws import Fixed
-from validation.case import Case, Channel, Model, Test
+from measured.case import Case, Channel, Model, Test
 from validation.procedure.measuring.curves import alike, constant, curve, curves
 from validation.procedure.measuring.warming import eq8
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from validation.case import Channel
-from validation.case import Test as CaseTest
+from measured.case import Channel
+from measured.case import Test as CaseTest
 from validation.procedure.measuring.assemblies import assemblies, assembly, worst
 from validation.procedure.measuring.repeats import normalised_error, pooled_curves, repeats
 from validation.procedure.measuring.warming import eq8, equilibrium, fit_eq8

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from two_bodies import bench
 
-from validation.case import Test
+from measured.case import Test
 from validation.yardstick.free_network import nonnegative
 from validation.yardstick.yardstick import KINDS, yardstick
 

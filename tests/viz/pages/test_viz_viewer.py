@@ -21,7 +21,7 @@ from viz.viewer.page import Earlier, document, machine_document, render, tempera
 
 pytestmark = pytest.mark.heavy
 LARGEST = 1e6  # bytes of a page
-CASE_MESH_M = 0.06  # size of the elements of a case, see thermoscope.pipeline.build
+CASE_MESH_M = 0.06  # size of the elements of a case, see lumped.build.pipeline.build
 
 
 def paced(nodes, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from small_motor import motor
 
 from lumped.model.network import Row
-from validation.case import Channel, Test
+from measured.case import Channel, Test
 from viz import split
 from viz.data import Comparison
 from viz.viewer.error_map import ErrorMap

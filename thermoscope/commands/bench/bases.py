@@ -12,7 +12,7 @@ from thermoscope.console.terminal import give, progress
 
 def bases(case: str, target: str | None) -> int:
     """Exit code 1 when the readings of a test exclude the base that its sheet says."""
-    from validation.procedure.reduction.which_base import which_base
+    from validation.bases.which_base import which_base
 
     with progress() as tell:
         folder = open_case(case, tell)

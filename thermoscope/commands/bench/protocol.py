@@ -42,16 +42,16 @@ from typing import Any
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.reader import Table
+from measured.electrical.meters import OHMMETER, VOLTMETER
+from measured.electrical.propagation import PropagatedUncertainty, Reading
+from measured.electrical.readings import COPPER, NDFEB
+from measured.recordings.data_table import pairs
+from measured.recordings.electrical import meter_of, saturation_of
+from measured.recordings.formats import read_recording, recording
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from thermoscope.recordings.data_table import pairs
-from thermoscope.recordings.electrical import meter_of, saturation_of
-from thermoscope.recordings.formats import read_recording, recording
-from validation.procedure.measuring.meters import OHMMETER, VOLTMETER
-from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
 from validation.procedure.measuring.protocol import Cold, Hot, Protocol, Record
 from validation.procedure.measuring.protocol import protocol as judged
-from validation.procedure.measuring.readings import COPPER, NDFEB
 
 Pairs = tuple[tuple[float, float], ...]
 

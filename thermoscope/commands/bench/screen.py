@@ -13,7 +13,7 @@ from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, progress
-from thermoscope.extras import required
+from thermoscope.parts import required
 
 if TYPE_CHECKING:
     from geom import Machine

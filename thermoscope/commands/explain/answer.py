@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from geom.errors import InputError
+from measured.case import Test
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.case import Test
 from validation.effects import kinds
 from validation.effects.time_window import checked, event
 

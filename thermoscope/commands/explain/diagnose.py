@@ -37,8 +37,8 @@ def diagnose(case: str, target: str | None, older: bool = False) -> int:
 def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
     """What is missing in an open case, and the document of it, which is kept in the case's out/."""
     from lumped.condensation.error_budget import ErrorBudget
-    from thermoscope.verification.error_budget import documents
     from validation import diagnose as search
+    from validation.comparison.error_budget import documents
 
     checked_diagnosis(folder)
     budgets = folder.budgets

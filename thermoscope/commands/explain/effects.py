@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lumped.model.quantities import INPUTS
+from measured.recordings.units import MEMORY_UNIT, QUANTITIES
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
-from thermoscope.recordings.units import MEMORY_UNIT, QUANTITIES
 
 if TYPE_CHECKING:
     from validation.effects.base import Effect, Scene

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from geom import Machine
     from geom.meshing.mesh import NamedMesh
     from geom.solids.surfaces import CadCheck
+    from lumped.build.network_size import NetworkSize
+    from lumped.build.pipeline import Built
     from thermoscope.console.terminal import Progress
-    from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import NetworkSize
 
 ERRORS = ("mean", "hot", "point")
 
@@ -72,9 +72,9 @@ def built_from(
     source: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
 ) -> tuple[Built, NetworkSize | None]:
     """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
+    from lumped.build.network_size import accurate_network
+    from lumped.build.pipeline import build as usual
     from lumped.machine.bases import on_all
-    from thermoscope.pipeline import build as usual
-    from thermoscope.verification.network_size import accurate_network
 
     if accuracy is None:
         return usual(on_all(source), size_m, progress=tell), None

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from geom.errors import ThermoscopeError
 from geom.escapes import csv_lines
+from geom.storage import write_whole
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, notes, plain, progress
-from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
+    from lumped.build.network_size import NetworkSize
+    from lumped.build.pipeline import Built
     from thermoscope.console.terminal import Progress
-    from thermoscope.pipeline import Built
-    from thermoscope.verification.network_size import NetworkSize
 
 HOT = 200.0  # degC, what insulation bears
 MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
@@ -26,7 +26,7 @@ MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
     """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
-    from thermoscope.verification.network_size import accurate_network
+    from lumped.build.network_size import accurate_network
 
     source = load_machine_file(Path(machine))
     folder = out or Path("out") / source.name
@@ -40,10 +40,10 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
 
 def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
+    from lumped.build.analytical_checks import analytical_checks
+    from lumped.build.crosscheck import crosscheck as compare
+    from lumped.build.local_laws import with_local_laws
     from lumped.machine.losses import loss_shares
-    from thermoscope.verification.analytical_checks import analytical_checks
-    from thermoscope.verification.crosscheck import crosscheck as compare
-    from thermoscope.verification.local_laws import with_local_laws
 
     tell("field against network")
     point = bearable(built)
@@ -77,8 +77,8 @@ def bearable(built: Built) -> dict[str, float]:
 
     Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
     """
+    from lumped.build.crosscheck import steady_state
     from lumped.machine.motor import rated_inputs
-    from thermoscope.verification.crosscheck import steady_state
 
     point = rated_inputs(built.machine)
     means = [i for i, state in enumerate(built.network.states) if "#" not in state]

@@ -33,7 +33,7 @@ def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
 
 
 def _sampled(steps: Steps) -> list[Grid | str]:
-    from validation.measurement.sampling import SampleStep, sampled
+    from measured.sensors.sampling import SampleStep, sampled
 
     return [sampled({name: SampleStep(**step) for name, step in steps.items()})] if steps else []
 

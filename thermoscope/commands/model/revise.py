@@ -9,6 +9,7 @@ from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
+from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
@@ -18,7 +19,6 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
-from validation.measurement.faults import broken_channels
 
 if TYPE_CHECKING:
     from validation.revision import revise

@@ -16,10 +16,10 @@ from thermoscope.case_folder.runs import at_instant, before_last, by_interest, f
 from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from thermoscope.extras import required
+from thermoscope.parts import required
 
 if TYPE_CHECKING:
-    from validation.case import Case, Test
+    from measured.case import Case, Test
     from viz.data import Sensor
 
 FRAMES = 44  # of one run of the test: with two runs eight seconds

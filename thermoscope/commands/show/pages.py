@@ -14,6 +14,8 @@ import numpy as np
 
 from geom.description.names import file_stem
 from geom.errors import MissingDependency
+from measured.case import Case, Test
+from measured.sensors.sampling import sampled
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.case_folder.runs import (
@@ -34,8 +36,6 @@ from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, progress
-from validation.case import Case, Test
-from validation.measurement.sampling import sampled
 
 if TYPE_CHECKING:
     from viz.data import Comparison
@@ -66,7 +66,7 @@ def report(case: str, out: Path | None, target: str | None) -> int:
 def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
     from thermoscope.case_folder.stored_yardstick import yardstick_document
-    from thermoscope.verification.error_budget import documents
+    from validation.comparison.error_budget import documents
     from viz.pages.report import Report, write_report
 
     tell("running the model and its error budget")

@@ -16,6 +16,7 @@ from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.schemas.reader import suggestion
+from measured.case import Case, Test
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import (
@@ -32,12 +33,11 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
-from validation.case import Case, Test
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
-    from thermoscope.pipeline import Built
+    from lumped.build.pipeline import Built
     from viz.figures.flows import Heat
     from viz.rendering.nodes import SplitMesh
 
@@ -208,7 +208,7 @@ def _mesh(s: Subject, png: Path) -> None:
 
 
 def _flux(s: Subject, png: Path) -> None:
-    from thermoscope.pipeline import conductivity_of
+    from lumped.build.pipeline import conductivity_of
     from viz import flux_arrows
 
     machine = s.built.machine

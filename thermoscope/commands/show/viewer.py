@@ -13,7 +13,9 @@ from typing import Any
 from geom.description.names import file_stem
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
-from thermoscope.caches import cache_folder, recalled_result, store_result
+from geom.storage import cache_folder
+from measured.case import Test
+from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
@@ -33,8 +35,7 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
-from thermoscope.extras import required
-from validation.case import Test
+from thermoscope.parts import required
 from validation.parameters.unknowns import standing
 from validation.threads import side_by_side
 

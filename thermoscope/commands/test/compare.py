@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
+from measured.recordings.readings import UNSEEN
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.files import STOPPED
-from thermoscope.recordings.readings import UNSEEN
 from validation.comparison.uncertainty import RULE
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def compare(case: str, target: str | None, why: bool = False, sure: bool | None 
 
 def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
     """What is known of a comparison that the user stopped; no document, which others would take for the whole."""
-    from thermoscope.verification.error_budget import documents
+    from validation.comparison.error_budget import documents
 
     document = {**so_far.document(), "error_budget": documents(folder.budgets), **sampling(folder)}
     give(document, None, lambda: answer(document, called))
@@ -59,7 +59,7 @@ def compared(
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import of_tests, wanted
     from thermoscope.case_folder.stored_yardstick import yardstick_document
-    from thermoscope.verification.error_budget import documents
+    from validation.comparison.error_budget import documents
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets

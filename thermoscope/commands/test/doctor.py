@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
+from measured.recordings.readings import read_test
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.folder import find_case, network_of, patient_of
 from thermoscope.case_folder.history import load_history
@@ -13,7 +14,6 @@ from thermoscope.case_folder.recording_checks import Finding
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, progress
-from thermoscope.recordings.readings import read_test
 
 
 def doctor(case: str, target: str | None) -> int:

@@ -14,23 +14,23 @@ import numpy as np
 
 from geom.errors import InputError
 from geom.escapes import toml_value
+from geom.storage import write_whole
 from lumped.machine.losses import ASSUMED
 from lumped.schemas.reader import suggestion
+from measured.importing.aligned import Recording, common, grouped, shift
+from measured.importing.case_files import folder_whole, write_case
+from measured.importing.cells import number
+from measured.importing.clock import Clock, clock_of
+from measured.importing.dialogue import Dialogue
+from measured.importing.draft import Draft, test_name
+from measured.importing.guess import Guess, assigned, guesses
+from measured.importing.source import Source, read_source, signature
+from measured.importing.starter import place_of, starter, unplaced
+from measured.importing.target import Target, target_of
+from measured.recordings.grid import LONGEST_S
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.extras import message as missing_extra
-from thermoscope.files import write_whole
-from thermoscope.importing.aligned import Recording, common, grouped, shift
-from thermoscope.importing.case_files import folder_whole, write_case
-from thermoscope.importing.cells import number
-from thermoscope.importing.clock import Clock, clock_of
-from thermoscope.importing.dialogue import Dialogue
-from thermoscope.importing.draft import Draft, test_name
-from thermoscope.importing.guess import Guess, assigned, guesses
-from thermoscope.importing.source import Source, read_source, signature
-from thermoscope.importing.starter import place_of, starter, unplaced
-from thermoscope.importing.target import Target, target_of
-from thermoscope.recordings.grid import LONGEST_S
+from thermoscope.parts import message as missing_extra
 
 if TYPE_CHECKING:
     from lumped.model.network import Network
@@ -145,8 +145,8 @@ def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress)
 
 def _machine(machine: str, tell: Progress) -> Model:
     from geom import library
+    from lumped.build.pipeline import build
     from thermoscope.case_folder.folder import load_machine_file
-    from thermoscope.pipeline import build
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
     if any(source.name == ASSUMED for source in network.sources):
@@ -230,10 +230,10 @@ def drafts_of(
 
 def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
     """Write the case, read it as compare would, draw its columns; the document of the command."""
+    from measured.recordings.readings import read_test
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
     from thermoscope.case_folder.settings import read_settings
-    from thermoscope.recordings.readings import read_test
 
     with folder_whole(folder) as partial:
         tell("writing the case")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency, ThermoscopeError
+from geom.storage import write_whole
 from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.workbook import tables, write_csvs, write_xlsx
@@ -16,7 +17,6 @@ from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import Progress, give, notes, plain, progress
 from thermoscope.export.compilers import compiler, here
-from thermoscope.files import write_whole
 
 if TYPE_CHECKING:
     from thermoscope.export.model import Model
@@ -94,7 +94,7 @@ def _observer(
     from thermoscope.export.model import outputs
     from thermoscope.export.observer_code import observer_files, observer_model
     from thermoscope.monitoring.observing import chosen, designed
-    from thermoscope.verification.error_budget import model_of
+    from validation.comparison.error_budget import model_of
     from validation.parameters.unknowns import standing_reference
 
     with progress() as tell:
@@ -128,7 +128,7 @@ def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, floa
 
     from thermoscope.export.drive import AGREES_K, Compiled, difference, sampled
     from thermoscope.export.model import reach_of
-    from thermoscope.verification.error_budget import model_of
+    from validation.comparison.error_budget import model_of
     from validation.comparison.predict import record
 
     tell("holding the code against the simulation")

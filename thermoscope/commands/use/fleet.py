@@ -14,11 +14,11 @@ from geom.constants import NORMAL_95
 from geom.errors import InputError
 from lumped.integration.ensemble import dask_cluster
 from lumped.schemas.reader import suggestion
+from measured.recordings.sheet import load_sheet
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import give, progress
 from thermoscope.monitoring.fleet import STEP_S, Reader, histories, recordings
-from thermoscope.recordings.sheet import load_sheet
 from validation.fleet import Population, population
 from validation.fleet.population import DIFFERS
 from validation.threads import one_blas_thread

@@ -12,6 +12,7 @@ import numpy as np
 from geom.description.names import file_stem
 from geom.errors import InputError
 from geom.escapes import csv_lines
+from geom.storage import write_whole
 from thermoscope.commands.use.export import read_limits
 from thermoscope.commands.use.rate import case_or_machine, once, read_at
 from thermoscope.console.answer import Answer, Grid
@@ -19,7 +20,6 @@ from thermoscope.console.terminal import give, notes, progress
 from thermoscope.design.condensations import Condensations
 from thermoscope.design.design_problem import DesignRequest, checked_request, design_problem
 from thermoscope.design.machine_keys import MachineFile, machine_file_text, short_key
-from thermoscope.files import write_whole
 from validation.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from validation.optimisation.search import METHODS, Design, Effort, pareto_set
 

@@ -15,6 +15,7 @@ import numpy as np
 from geom.errors import InputError
 from geom.escapes import toml_value
 from lumped.correlations import RangeWarning
+from measured.recordings.data_table import as_number
 from thermoscope.bands import posterior_of, wanted
 from thermoscope.case_folder.folder import Folder, find_case
 from thermoscope.case_folder.runs import before_last
@@ -27,7 +28,6 @@ from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.rating import Rated, RatingRequest, rated_model
 from thermoscope.rating_rows import derated, load_of, point, row
-from thermoscope.recordings.data_table import as_number
 from validation.parameters.unknowns import standing_reference
 from validation.rating.envelope import DUTIES, rated, until
 from validation.rating.holding_map import holding_times

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from geom.description.names import file_stem
 from geom.errors import InputError, ThermoscopeError
 from geom.escapes import csv_lines
+from geom.storage import write_whole
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
@@ -28,7 +29,6 @@ from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import Progress, give, notes, progress
-from thermoscope.files import write_whole
 from validation.bands import Bands, ParameterPosterior
 
 Array = NDArray[np.float64]
@@ -84,7 +84,7 @@ def _ran(
     posterior: ParameterPosterior | None,
 ) -> dict[str, Any]:  # fmt: skip
     tell(f"running {cycle.name}")
-    from thermoscope.verification.error_budget import error_budgets
+    from validation.comparison.error_budget import error_budgets
     from validation.comparison.predict import thermal
 
     network = cycle.on(network)

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
     """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
-    from validation.measurement.operators import observe, setting
+    from measured.sensors.operators import observe, setting
 
     if not folder.case.tests:
         return T

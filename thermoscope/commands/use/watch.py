@@ -14,20 +14,20 @@ from numpy.typing import NDArray
 from geom.constants import NORMAL_95
 from geom.errors import InputError
 from geom.escapes import csv_lines
+from geom.storage import write_whole
 from lumped.integration.record import Record
 from lumped.integration.simulate import initial_state
+from measured.case import Channel
+from measured.recordings.formats import stem_of
+from measured.recordings.sheet import load_sheet
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.console.answer import Answer, Grid
 from thermoscope.console.terminal import STDOUT, give, progress, say
-from thermoscope.files import write_whole
 from thermoscope.monitoring.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
 from thermoscope.monitoring.observing import chosen, designed, joined, record_of, started
-from thermoscope.recordings.formats import stem_of
-from thermoscope.recordings.sheet import load_sheet
-from thermoscope.verification.error_budget import model_of
-from validation.case import Channel
+from validation.comparison.error_budget import model_of
 from validation.observer import Observer, Sample
 from validation.observer.learning import Design
 from validation.observer.process import Process

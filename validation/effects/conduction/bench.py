@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import boundaries, outside, solids, touches, turns
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import boundaries, outside, solids, touches, turns
 
 
 def free(network: Network, part: str) -> list[str]:

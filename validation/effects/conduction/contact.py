@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Link, Network
+from lumped.model.sites import across_gap, model_links, solids
 from lumped.transfer.laws import CONSTANT
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import across_gap, model_links, solids
 
 
 def joints(network: Network) -> list[Link]:

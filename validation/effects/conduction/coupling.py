@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
+from lumped.model.sites import near_pairs
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange
-from validation.effects.sites import near_pairs
 
 
 @dataclass(frozen=True)

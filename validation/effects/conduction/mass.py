@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
+from lumped.model.sites import solids
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import solids
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import ambient, boundaries, turning, with_role
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import exchange
-from validation.effects.sites import ambient, boundaries, turning, with_role
 
 STEEL_W_M_K, STEEL_J_M3_K = 50.0, 3.6e6  # carbon steel, within 3 % of the table of materials
 THICK, SHORT = 0.4, 1.0  # most of a rotor's diameter that a shaft has, least length of it in its own diameters

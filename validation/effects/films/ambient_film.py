@@ -4,10 +4,10 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 from lumped.model.network import Network
+from lumped.model.sites import ambient, outside
 from lumped.transfer.laws import Law
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import ambient, outside
 
 
 @dataclass(frozen=True)

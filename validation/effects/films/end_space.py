@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import faces, fluids
 from lumped.transfer.laws import InputPower
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import films
-from validation.effects.sites import faces, fluids
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
+from lumped.model.sites import AXLE, outside, role, turns
 from lumped.transfer.laws import InputPower, Law
 from validation.effects.base import Scene
 from validation.effects.films.ambient_film import AmbientFilm
-from validation.effects.sites import AXLE, outside, role, turns
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import across_air, faces, fluids, solids, turns
 from lumped.transfer.laws import InputPower
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange, films
-from validation.effects.sites import across_air, faces, fluids, solids, turns
 
 
 def gaps(network: Network) -> list[str]:

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
+from lumped.model.sites import ambient, turning
 from lumped.transfer.laws import InputPower, Law
 from validation.effects.base import Scene
 from validation.effects.films.ambient_film import AmbientFilm
-from validation.effects.sites import ambient, turning
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from lumped.model.sites import outside
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
-from validation.effects.sites import outside
 
 
 @dataclass(frozen=True)

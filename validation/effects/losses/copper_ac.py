@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from geom.constants import ALPHA_CU
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import heated, role, windings
 from lumped.transfer.laws import Conductivity, Law, WithTemperature
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
-from validation.effects.sites import heated, role, windings
 
 
 @dataclass(frozen=True)

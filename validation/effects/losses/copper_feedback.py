@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 from geom.constants import ALPHA_CU
 from lumped.model.network import Network, Source
+from lumped.model.sites import windings
 from lumped.sources.losses import EDDY
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_source
-from validation.effects.sites import windings
 
 REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
 UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes about: in a winding it is copper's

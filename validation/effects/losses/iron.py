@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from lumped.model.sites import cores, heated
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
-from validation.effects.sites import cores, heated
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Network
+from lumped.model.sites import cores, heated
 from lumped.transfer.laws import Fixed, Inputs, Law
 from validation.effects.base import Scene
 from validation.effects.build import Shaped
 from validation.effects.losses.added_loss import AddedLoss
-from validation.effects.sites import cores, heated
 
 SLOWEST_HZ = 500.0  # no inverter switches more slowly; on its way from 0 a recorded frequency passes below
 

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from lumped.model.sites import turning
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
 from validation.effects.losses.copper_ac import AcCopper
-from validation.effects.sites import turning
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from lumped.model.sites import heated, windings
 from validation.effects.base import Scene
 from validation.effects.losses.added_loss import AddedLoss
-from validation.effects.sites import heated, windings
 
 
 @dataclass(frozen=True)

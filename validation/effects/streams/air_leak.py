@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Link, Network
+from lumped.model.sites import cell, model_links
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.sites import cell, model_links
 
 
 def streams(network: Network) -> list[Link]:

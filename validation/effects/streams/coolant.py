@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
+from lumped.model.sites import boundaries, fluids, neighbours, solids, washed
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
-from validation.effects.sites import boundaries, fluids, neighbours, solids, washed
 
 
 def coolants(network: Network) -> list[str]:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Network
+from lumped.model.sites import model_links
 from lumped.transfer.laws import RUNNING, Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link
-from validation.effects.sites import model_links
 from validation.effects.streams.flow import flows
 
 PARTS = (25, 50, 75)  # percent of the test after which it may have stopped

@@ -6,10 +6,10 @@ import numpy as np
 
 from geom.description.roles import Role
 from lumped.model.network import Link, Network
+from lumped.model.sites import boundaries, cell, model_links, part_of
 from lumped.transfer.laws import Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import HOUR, Shaped, copy_link
-from validation.effects.sites import boundaries, cell, model_links, part_of
 
 
 def films(network: Network, part: str) -> list[Link]:

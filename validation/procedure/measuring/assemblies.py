@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.case import Test
+from measured.case import Test
 from validation.procedure.measuring.warming import equilibrium
 
 Array = NDArray[np.float64]

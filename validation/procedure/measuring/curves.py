@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from validation.case import Case, Channel, Test
+from lumped.model.sites import ambient
+from measured.case import Case, Channel, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
-from validation.effects.sites import ambient
 from validation.parameters.unknowns import standing
 from validation.procedure.measuring.assemblies import Assembly, assemblies, worst
 from validation.procedure.measuring.repeats import Repeats, repeats

@@ -12,10 +12,10 @@ from typing import Any, Literal
 import numpy as np
 
 from geom.errors import InputError
-from validation.procedure.measuring.meters import OHMMETER, VOLTMETER, Meter
-from validation.procedure.measuring.propagation import PropagatedUncertainty, Reading
-from validation.procedure.measuring.readings import COPPER, NDFEB, Magnets, Saturation, Winding
-from validation.procedure.measuring.switch_off import Cooling, Extrapolated, all_ways, allowed_delay
+from measured.electrical.meters import OHMMETER, VOLTMETER, Meter
+from measured.electrical.propagation import PropagatedUncertainty, Reading
+from measured.electrical.readings import COPPER, NDFEB, Magnets, Saturation, Winding
+from measured.electrical.switch_off import Cooling, Extrapolated, all_ways, allowed_delay
 from validation.procedure.measuring.warming import equilibrium
 
 State = Literal["done", "to do", "refused", "doubtful"]

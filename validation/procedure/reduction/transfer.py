@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.case import Case
+from measured.case import Case
 from validation.comparison.compare import physical
 from validation.comparison.predict import predict
 from validation.parameters.unknowns import standing, with_model

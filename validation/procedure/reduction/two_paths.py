@@ -18,7 +18,7 @@ from lumped.integration.steady import Steady, steady
 from lumped.model.network import Network, Source
 from lumped.transfer.laws import Conductivity, Constant, Linear
 from lumped.transfer.terms_value import temperature_value
-from validation.case import Case, Test
+from measured.case import Case, Test
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model
 from validation.parameters.unknowns import standing

@@ -1,0 +1,77 @@
+"""Files written whole or not at all, one writer at a time, and the folder of what is kept."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from geom.errors import InputError
+
+CURES = {errno.ENAMETOOLONG: "a shorter name", errno.ELOOP: "a file, not a link to itself"}
+YOUNG_S = 5.0  # a folder may be made and not yet locked
+
+
+def write_whole(path: Path, text: str | bytes) -> Path:
+    """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
+    from geom.disk_cache import atomic_write  # loads NumPy, which help does without
+
+    try:
+        with atomic_write(path) as partial:
+            partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "backslashreplace"))
+    except OSError as fault:
+        right = "a folder you may write to, with room in it"
+        raise InputError(
+            f"cannot be written: {fault.strerror}", str(path), CURES.get(fault.errno or 0, right)
+        ) from None
+    return path
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Only one process at a time in here. The lock is on the folder: no file is left, and it ends with its owner.
+
+    Systems without such locks (Windows, some network drives) go without: a stale writer is still refused.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def abandoned(folder: Path, name: re.Pattern[str]) -> list[Path]:
+    """Folders of such a name that were `locked` once and whose process is gone; none where there are no locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return []
+    out = []
+    for path in (p for p in folder.iterdir() if name.fullmatch(p.name) and p.is_dir() and not p.is_symlink()):
+        if time.time() - path.stat().st_mtime < YOUNG_S:
+            continue
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            with suppress(OSError):
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                out.append(path)
+        finally:
+            os.close(handle)
+    return out
+
+
+def cache_folder() -> Path:
+    """Where meshes and bases are kept: $THERMOSCOPE_CACHE, else a folder of the user's."""
+    home = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
+    return Path(os.environ.get("THERMOSCOPE_CACHE", Path(home) / "thermoscope"))

@@ -1,0 +1,118 @@
+"""A field and its network with the same coefficients, losses and streams, all of them fixed: what each answers.
+
+Temperatures are rises over the surroundings (K): of a field's unknowns, then of its fluids.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.matrices.assembly import FieldModel
+from fem.solvers.snapshots import random_coefficients
+from fem.solvers.solve import Solver, coupled, film_columns
+from geom import Machine
+from lumped.build.crosscheck import coefficients, fluid_nodes
+from lumped.build.load_cases import rated_watts
+from lumped.condensation.linear import linear, unit_load
+from lumped.condensation.recovery import Shapes
+from lumped.machine.losses import place_of
+from lumped.machine.motor import rated_inputs
+from lumped.model.network import Array, Network
+
+STEPS = ((10.0, 6), (60.0, 9), (600.0, 10))  # s, number: a step of loss from a minute to two hours
+
+
+@dataclass(frozen=True)
+class FixedCoefficients:
+    """films, contacts (W/m2/K); watts : part -> W; fluids with the matrix of their streams (W/K) and their heat (W)."""
+
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    watts: Mapping[str, float]
+    fluids: tuple[str, ...]
+    streams: Array
+    heat: Array
+
+    def moved(self, spread: float, seed: int = 0) -> FixedCoefficients:
+        """The same with every film and contact times spread ** U(-1, 1)."""
+        rng = np.random.default_rng(seed)
+        return replace(
+            self,
+            films=random_coefficients(self.films, spread, rng),
+            contacts=random_coefficients(self.contacts, spread, rng),
+        )
+
+    def of_field(self, field: FieldModel) -> Array:
+        """(n + n_fluid,) steady."""
+        factor = Solver(field).factor(field.stiffness(self.films, self.contacts))
+        return self._together(factor, self._load(field), *self._fluids(field))
+
+    def steps_of_field(self, field: FieldModel) -> Iterator[Array]:
+        """(n + n_fluid,) after each of STEPS of backward Euler from rest."""
+        solver, K, T = Solver(field), field.stiffness(self.films, self.contacts), np.zeros(field.n)
+        for dt, count in STEPS:
+            factor = solver.factor(K, 1 / dt)
+            for _ in range(count):
+                out = self._together(factor, self._load(field) + field.M @ T / dt, *self._fluids(field))
+                T = out[: field.n]
+                yield out
+
+    def of_network(self, network: Network, field: FieldModel) -> Array:
+        """(n + n_fluid,) steady, as recovered from the network's states."""
+        system = linear(network, self.films, self.contacts)
+        x = self._together(np.linalg.inv(system.A).__matmul__, *self._on(network, field))
+        return self._recovered(network, x)
+
+    def steps_of_network(self, network: Network, field: FieldModel) -> Iterator[Array]:
+        """The same after each step."""
+        system, (b, B, G) = linear(network, self.films, self.contacts), self._on(network, field)
+        x = np.zeros(len(b))
+        for dt, count in STEPS:
+            inverse = np.linalg.inv(system.A + np.diag(system.C) / dt)
+            for _ in range(count):
+                out = self._together(inverse.__matmul__, b + system.C * x / dt, B, G)
+                x = out[: len(b)]
+                yield self._recovered(network, out)
+
+    def _together(self, inverse: Callable[[Array], Array], b: Array, B: Array, G: Array) -> Array:
+        x, u = coupled(inverse, b[:, None], B, G, self.heat[:, None])
+        return np.concatenate([x[:, 0], u[:, 0]])
+
+    def _load(self, field: FieldModel) -> Array:
+        return field.losses(self.watts)
+
+    def _fluids(self, field: FieldModel) -> tuple[Array, Array]:
+        B, D = film_columns(field, self.films, self.fluids)
+        return B, D + self.streams
+
+    def _on(self, network: Network, field: FieldModel) -> tuple[Array, Array, Array]:
+        """Load, film columns and the fluids' matrix on a network's solid states."""
+        system = linear(network, self.films, self.contacts)
+        load = sum((q * unit_load(network, p, system.solid) for p, q in self.watts.items()), np.zeros(len(system.C)))
+        columns = [list(system.fluid).index(network.column(name)) for name in self.fluids]
+        return load, system.B[:, columns], self._fluids(field)[1]
+
+    def _recovered(self, network: Network, x: Array) -> Array:
+        shapes, states = network.recovery, np.zeros(len(network.states))
+        assert isinstance(shapes, Shapes)
+        solid = len(x) - len(self.fluids)
+        fluids = {network.column(name) for name in self.fluids}
+        states[[i for i in range(len(states)) if i not in fluids]] = x[:solid]
+        return np.concatenate([shapes.field(states), x[solid:]])
+
+
+def rated(
+    machine: Machine, network: Network, films: Mapping[str, float], contacts: Mapping[str, float]
+) -> FixedCoefficients:
+    """The rated point of a machine, its windings at their reference temperature, whole parts heated."""
+    watts, fluids = dict(rated_watts(machine, network)), fluid_nodes(network)
+    streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
+    heat = np.array([watts.pop(name, 0.0) for name in fluids])
+    whole: dict[str, float] = {}
+    for place, q in watts.items():
+        part = place_of(network, place).part
+        whole[part] = whole.get(part, 0.0) + q
+    return FixedCoefficients(films, contacts, whole, fluids, streams, heat)

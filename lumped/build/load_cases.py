@@ -1,0 +1,48 @@
+"""What a network is checked with while it is built: the rated losses and fluids of the machine, and draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fem.solvers.solve import coupled, film_columns
+from geom import Machine
+from lumped.build.crosscheck import coefficients, fluid_nodes
+from lumped.build.pipeline import means_network
+from lumped.condensation.linear import linear, unit_load
+from lumped.condensation.reduction import Reduction
+from lumped.condensation.reduction_error import LoadCases, random_load_cases
+from lumped.machine.losses import loss_watts
+from lumped.machine.motor import rated_inputs
+from lumped.model.network import Network
+
+
+def load_cases(machine: Machine, reduction: Reduction) -> LoadCases:
+    """The losses of the rated point with its fluids, and variations of them, as the guard applies them."""
+    whole = means_network(machine, reduction)
+    rated = rated_watts(machine, whole)
+    return random_load_cases(
+        list(reduction.zones), list(reduction.washing), rated, fluid_rises(machine, reduction, whole, rated)
+    )
+
+
+def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
+    """Watts per part or zone at the rated point, windings at their reference temperature."""
+    return loss_watts(machine, network, rated_inputs(machine))
+
+
+def fluid_rises(
+    machine: Machine, reduction: Reduction, network: Network, rated: Mapping[str, float]
+) -> dict[str, float]:
+    """fluid -> K over the surroundings at the rated losses and the reduction's coefficients, as a network has it."""
+    fluids, zones = fluid_nodes(network), list(reduction.zones)
+    system = linear(network, reduction.films, reduction.contacts)
+    load = sum(rated.get(zone, 0.0) * unit_load(network, zone, system.solid) for zone in zones)
+    columns = [list(system.fluid).index(network.column(name)) for name in fluids]
+    streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
+    G = film_columns(reduction.field, reduction.films, fluids)[1] + streams
+    fluid_losses = np.array([[rated.get(fluid, 0.0)] for fluid in fluids])
+    inverse = np.linalg.inv(system.A)
+    _, u = coupled(lambda y: inverse @ y, np.reshape(load, (-1, 1)), system.B[:, columns], G, fluid_losses)
+    return dict(zip(fluids, u[:, 0].tolist(), strict=True))

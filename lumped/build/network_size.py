@@ -1,0 +1,119 @@
+"""A network as small as the wish allows: error against number of states, checked at points it has not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from geom import Machine
+from lumped.build.load_cases import load_cases
+from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
+from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepared, reduced, silent
+from lumped.condensation.greedy_enrichment import Enrichment, Size, enrich
+from lumped.condensation.reduction import Recipe, Reduction
+from lumped.condensation.reduction_error import Accuracy
+from lumped.machine.bases import on_all
+from lumped.machine.motor import motor_network
+from lumped.machine.zones import motor_zones
+
+# Finer than a case's own: every accuracy that may be asked is cut out of it.
+FINE = Recipe(tolerance=0.01, random_points=8, local_points=12, local_states=16)
+ROUNDS = 3  # of learning: each solves the field at new points
+POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
+CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables
+SEGMENTS = 48  # chords per turn
+BYTES = 16_000  # per unknown: snapshots, factor and the points that are learned from; 1.5 GB at 96,000
+SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
+LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
+
+
+@dataclass(frozen=True)
+class NetworkSize:
+    """built : with the network that was kept;  reduction : with the points it learned from;  sizes : the table
+
+    mesh : how it was chosen, and its error; None where it was given
+    """
+
+    built: Built
+    reduction: Reduction
+    limit: Accuracy
+    sizes: tuple[Size, ...]
+    enrichment: Enrichment | None
+    mesh: MeshChoice | None = None
+
+    @property
+    def met(self) -> bool:
+        return (self.enrichment is None or self.enrichment.met) and (self.mesh is None or self.mesh.met)
+
+    def document(self) -> dict[str, Any]:
+        """Errors in percent of a part's own rise, at nominal coefficients and at random ones."""
+        rounds = () if self.enrichment is None else self.enrichment.rounds
+        return {
+            "wish_percent": {"mean": self.limit.mean, "hot": self.limit.hot, "point": self.limit.point},
+            "met": self.met,
+            "states": len(self.built.network.states),
+            "sizes": [size.document() for size in self.sizes],
+            "guard": [r.document() for r in rounds],
+            "mesh": None if self.mesh is None else self.mesh.document(),
+        }
+
+
+def accuracy_of(accuracy: float) -> Accuracy:
+    """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
+    return Accuracy(accuracy / 2, accuracy, accuracy)
+
+
+def accurate_network(
+    machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
+) -> NetworkSize:
+    """Mesh and condensation together within `accuracy` percent of a part's own rise: what the mesh leaves of it, the
+    condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)
+
+    say : how large the meshes are and what they need, before they are solved
+    """
+    first = Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m)
+    points, unknowns = size_of(on_all(machine), first)
+    say(f"first mesh: {points:,} points, {needs(unknowns)}; the finest that is condensed: {needs(MOST_UNKNOWNS)}")
+    mesh = chosen_mesh(on_all(machine), accuracy, first, progress)
+    say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}")
+    how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
+    size = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
+                             axial_m=how.axial_m)  # fmt: skip
+    return replace(size, mesh=mesh)
+
+
+def needs(unknowns: int) -> str:
+    """What a build on so many unknowns takes."""
+    gigabytes, minutes = BYTES * unknowns / 1e9, SECONDS / 60.0 * (unknowns / 1e5) ** FACTOR_ORDER
+    return f"{unknowns:,} unknowns, about {gigabytes:.1f} GB and {max(minutes, 0.1):.1f} min of a core"
+
+
+def smallest_network(
+    machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
+    progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
+    points_each: int = POINTS_EACH, contact_factors: Sequence[float] = CONTACT_FACTORS,
+) -> NetworkSize:  # fmt: skip
+    """Build at several sizes and keep the smallest that is accurate enough; if none is, learn from where it fails.
+
+    points_each : random points, and extreme ones, at which every size is checked;  contact_factors : times all contacts
+    """
+    machine = on_all(machine)
+    ready = prepared(machine, size_m, segments, progress, axial_m, across)
+    progress("what the parts can look like")
+    reduction = reduced(ready, recipe, motor_zones(machine))
+    cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
+    progress("error against number of states")
+    guides = [reduction.random_point(k) for k in range(points_each)]
+    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
+    points += [reduction.joined_point(factor) for factor in contact_factors]
+    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
+    good = [size for size in table if size.met]
+    enrichment = None if good else enrich(reduction, cases, limit, rounds, points, guides, tell=progress)
+    condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
+    last = reduction if enrichment is None else enrichment.reduction
+    built = Built(machine, ready.mesh, motor_network(machine, condensed), ready.meshing)
+    return NetworkSize(built, last, limit, table, enrichment)
+
+
+SIZES = (0, 50, 100, 200, 400)  # 0: the means only

@@ -1,0 +1,146 @@
+"""Errors of mesh and condensation at a machine's rated point, looked at once and kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem.matrices.assembly import FieldModel
+from geom.disk_cache import recalled
+from geom.storage import cache_folder, write_whole
+from lumped.build.fixed_coefficients import FixedCoefficients, rated
+from lumped.build.pipeline import Built, coefficients_on, meshed
+from lumped.condensation.recovery import PartShape, Shapes, locate
+from lumped.machine.bases import on_every_base
+from lumped.model.network import Array, Network, Row
+
+if TYPE_CHECKING:
+    from lumped.condensation.error_budget import MonitoredPlaces
+
+SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what a calibration may do
+HOT = "hot spot of "
+
+
+@dataclass(frozen=True)
+class Rated:
+    """At the rated point: place -> error of mesh and of condensation (K); the hottest rise (K); hot spots' nodes."""
+
+    mesh_K: Mapping[str, float]
+    condensation_K: Mapping[str, float]
+    rise_K: float
+    nodes: Mapping[str, int]
+
+
+def hot_rows(network: Network, rated: Rated) -> dict[str, Row]:
+    """The hot spots as rows over the network's z."""
+    shapes = network.recovery
+    assert isinstance(shapes, Shapes)
+    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in rated.nodes.items()}
+
+
+def _at_node(shape: PartShape, node: int) -> Row:
+    return Row(shape.states, shape.V[node])
+
+
+def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
+    """From the cache, where this network was looked at before in the same places."""
+    file = cache_folder() / f"budget-{_key(built, looks)}.json"
+    cached = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
+    if cached is not None:
+        return cached
+    errors = at_rated_point(built, looks)
+    write_whole(file, json.dumps(vars(errors)))
+    return errors
+
+
+def _key(built: Built, looks: MonitoredPlaces) -> str:
+    shapes = built.network.recovery
+    assert isinstance(shapes, Shapes)
+    content = hashlib.sha256(repr((built.meshing, built.machine.sections, looks.places)).encode())
+    for block, shape in zip(built.field.blocks.values(), shapes.parts.values(), strict=True):
+        content.update(np.ascontiguousarray(block.K.data).tobytes())
+        content.update(np.ascontiguousarray(shape.V).tobytes())
+    for name, xyz in sorted(looks.points.items()):
+        content.update(repr((name, xyz.tolist())).encode())
+    return content.hexdigest()[:20]
+
+
+def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
+    """Mesh: the difference to elements twice as large, which for two meshes is Roache's grid convergence index of
+    order 2 with his factor of 3. Condensation: the largest difference from the field on the same mesh, steady and after
+    a step of loss, at nominal coefficients and at other ones.
+
+    Source: Roache 1994, J. Fluids Eng. 116, 405.
+    """
+    field, network = built.field, on_every_base(built.network)
+    films, contacts = coefficients_on(built.machine, built.mesh)
+    point = rated(built.machine, network, films, contacts)
+    coarse = meshed(built.machine, built.meshing.coarser).field
+    reader, rough = (Reader(f, network, point, looks) for f in (field, coarse))
+    T = point.of_field(field)
+    fine, other = reader.read(T), rough.read(point.of_field(coarse))
+    left = {name: 0.0 for name in fine}
+    for exact, approximation in chain([(T, point.of_network(network, field))], _elsewhere(point, field, network)):
+        for name, off in reader.differences(exact, approximation).items():
+            left[name] = max(left[name], off)
+    nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in point.watts}
+    return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
+
+
+def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
+    """The step of loss, and a steady state at other coefficients; field and network."""
+    yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
+    variant = point.moved(SPREAD)
+    yield variant.of_field(field), variant.of_network(network, field)
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Sensors and hot spots of heated parts in a field's answer (n + n_fluid,)."""
+
+    field: FieldModel
+    network: Network
+    point: FixedCoefficients
+    looks: MonitoredPlaces
+
+    def read(self, T: Array) -> dict[str, float]:
+        """name -> K"""
+        sensors = {name: float(row @ T) for name, row in self.rows.items()}
+        return sensors | {f"{HOT}{p}": float(T[self.field.blocks[p].dofs].max()) for p in self.point.watts}
+
+    def differences(self, one: Array, other: Array) -> dict[str, float]:
+        """name -> K between two answers on the same mesh"""
+        a, b = self.read(one), self.read(other)
+        return {name: abs(a[name] - b[name]) for name in a}
+
+    @property
+    def rows(self) -> dict[str, Array]:
+        return {name: self._row(name, place) for name, place in self.looks.places.items()}
+
+    def _row(self, name: str, place: str) -> Array:
+        out, p = np.zeros(self.field.n + len(self.point.fluids)), self.network.places[place]
+        if name in self.looks.points and p.part in self.field.blocks:
+            block = self.field.blocks[p.part]
+            shape = PartShape(block.points, block.elements, np.zeros((block.n, 0)), block.w, np.zeros(0, np.int64))
+            nodes, weights = locate(shape, self.looks.points[name], p.part)
+            out[block.dofs.start + nodes] = weights
+        elif p.kind == "surface":
+            out[: self.field.n] = self.field.face_mean(self.field.film(place).trace)
+        else:
+            self._add_means(out, p.mean)
+        return out
+
+    def _add_means(self, out: Array, mean: Row) -> None:
+        """A place that is a sum of means of parts and of fluids; shapes of a zone are left out."""
+        for i, weight in zip(mean.index, mean.weights, strict=True):
+            name = self.network.states[i]
+            if name in self.field.blocks:
+                out[: self.field.n] += weight * self.field.mean(name)
+            elif name in self.point.fluids:
+                out[self.field.n + self.point.fluids.index(name)] += weight

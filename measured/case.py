@@ -1,0 +1,264 @@
+"""What the diagnosing code sees of a case: tests, channels, and the model as it stands. No files here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from lumped.integration.record import instants
+from lumped.integration.signals import Signals
+from lumped.model.network import Network, Parameter, Row
+from lumped.transfer.laws import CLOCK, RUNNING
+from measured.doubt import USUAL, Doubt
+
+Array = NDArray[np.float64]
+Role = Literal["calibrate", "validate", "hold-out"]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured temperature of one test.
+
+    name : column name; the same name in several tests is the same physical sensor
+    place : where it sits ("flange.right"); `row` is its linear map from z = [x; u]
+    y : (n_time,) readings (degC), NaN where nothing was read
+    sigma_K : 1-sigma of the reading (calibration and placement)
+    lag_s : time constant of the sensor (s)
+    model_K : slow misfit (K) that a model of this kind is not expected to get right; below it misfit is no evidence
+    """
+
+    name: str
+    place: str
+    row: Row
+    y: Array
+    sigma_K: float = 0.5
+    lag_s: float = 0.0
+    model_K: float = 0.0
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The inputs of a test as they were recorded, in finer steps than it is looked at in.
+
+    time (n,) s;  inputs : name -> (n,);  grid, on_grid : time and inputs of the test that were made of them
+    """
+
+    time: Array
+    inputs: Mapping[str, Array]
+    grid: Array
+    on_grid: Mapping[str, Array]
+
+    def now(self, test: Test) -> dict[str, Array] | None:
+        """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
+        if test.time is not self.grid:
+            return None
+        unchanged = {name for name, u in test.inputs.items() if self.on_grid.get(name) is u}
+        other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in unchanged}
+        return other | {n: self.inputs[n] for n in unchanged}
+
+
+@dataclass(frozen=True)
+class Test:
+    """One test on one time grid.
+
+    time : (n_time,) s, increasing;  inputs : name -> (n_time,)  e.g. "current_A"
+    boundaries : boundary name -> (n_time,) degC
+    initial : degC for the whole machine, or per place
+    role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only predicted)
+    frees : globs of the parameters that this test alone is to fix, before the others are fitted
+    recorded : the inputs in finer steps, where there are any: what the laws are made of
+    """
+
+    name: str
+    role: Role
+    time: Array
+    inputs: Mapping[str, Array]
+    boundaries: Mapping[str, Array]
+    channels: tuple[Channel, ...]
+    initial: float | Mapping[str, float] = 20.0
+    frees: tuple[str, ...] = ()
+    recorded: Recorded | None = None
+    __test__: ClassVar[bool] = False  # its name makes pytest think so
+
+    def __repr__(self) -> str:
+        each = ("inputs", self.inputs), ("boundaries", self.boundaries), ("sensors", [c.name for c in self.channels])
+        columns = "; ".join(f"{what} {', '.join(names) or 'none'}" for what, names in each)
+        return f"<Test '{self.name}' ({self.role}): {instants(self.time)}; {columns}>"
+
+    @cached_property
+    def signals(self) -> Signals:
+        """What the laws of a network may read: inputs, time, and that it is this test."""
+        fine = self.recorded.now(self) if self.recorded else None
+        if self.recorded is None or fine is None:
+            return Signals({**self.inputs, **self._beside(self.time)}, self.time.size)
+        time = self.recorded.time
+        return Signals.recorded({**fine, **self._beside(time)}, time, self.time)
+
+    def _beside(self, time: Array) -> dict[str, Array]:
+        return {CLOCK: time, f"{RUNNING}{self.name}": np.ones_like(time)}
+
+    @property
+    def spread(self) -> float:
+        """What a mean over a sample step adds to the instant, in second differences over the three instants around it.
+
+        1/8 where an input switches there, 1/24 where it does not: 1/12, less where a step holds few readings.
+        """
+        if self.recorded is None or self.recorded.now(self) is None or self.time.size < 3:
+            return 0.0
+        return max(1.0 - (self.step_s / (self.time[1] - self.time[0])) ** 2, 0.0) / 12.0
+
+    @property
+    def step_s(self) -> float:
+        """Usual time between two records of an input (s)."""
+        time = self.recorded.time if self.recorded else self.time
+        return float(np.median(np.diff(time))) if time.size > 1 else 0.0
+
+    def scaled(self, factors: Mapping[str, float]) -> Test:
+        """The test with some inputs multiplied."""
+        inputs = {**self.inputs, **{n: f * np.asarray(self.inputs[n], float) for n, f in factors.items()}}
+        if self.recorded is None:
+            return replace(self, inputs=inputs)
+        fine = {**self.recorded.inputs, **{n: f * self.recorded.inputs[n] for n, f in factors.items()}}
+        sampled = {n: inputs[n] if n in factors else u for n, u in self.recorded.on_grid.items()}
+        return replace(self, inputs=inputs, recorded=replace(self.recorded, inputs=fine, on_grid=sampled))
+
+
+@dataclass(frozen=True)
+class AddedEffect:
+    """An effect that is part of the model: kind@place with the values of its parameters."""
+
+    kind: str
+    place: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}@{self.place}"
+
+
+@dataclass(frozen=True)
+class SignalReference:
+    """An input or a boundary over the tests that a model was fitted to.
+
+    level : root mean square of an input, mean of a boundary (degC);  low, high : its range
+    at_load : its value at the instant of the largest load, mean of a boundary; None where that test does not record it
+    quantity : what it measures, "" where nothing says;  machine : of that quantity it is the machine's
+    """
+
+    level: float
+    low: float
+    high: float
+    at_load: float | None = None
+    quantity: str = ""
+    machine: bool = False
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a model took from the tests of its fits. It stands beside the fitted values, so that tests which come, go or
+    change places later change nothing in the model.
+
+    signals : by input or boundary;  sizes : effect -> mean of what its law multiplies an amplitude by
+    tests : that were fitted;  errors : sensor -> rms error (K) on the strictest role of test, and that role
+    start_C : where the first of these tests started (degC)
+    """
+
+    signals: Mapping[str, SignalReference] = field(default_factory=dict)
+    sizes: Mapping[str, float] = field(default_factory=dict)
+    tests: tuple[str, ...] = ()
+    errors: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    start_C: float | None = None
+
+    @property
+    def levels(self) -> dict[str, float]:
+        """Input -> where a fitted exponent leaves its law as declared; an input that was never used has none."""
+        return {name: one.level for name, one in self.signals.items() if one.level > 0}
+
+    @property
+    def load_point(self) -> dict[str, float]:
+        """Input or boundary -> value at which load counts as 1: of the largest load that the tests reached."""
+        return {name: one.at_load for name, one in self.signals.items() if one.at_load is not None}
+
+
+@dataclass(frozen=True)
+class Model:
+    """The model as it stands: network, effects added, parameter values (those not listed are at their declared value).
+
+    reference : what exponents and effects refer to; None before the first fit
+    """
+
+    network: Network
+    effects: tuple[AddedEffect, ...] = ()
+    values: Mapping[str, float] = field(default_factory=dict)
+    revision: int = 0
+    reference: Reference | None = None
+
+
+@dataclass(frozen=True)
+class LowFidelity:
+    """A smaller network of the same machine, with the same places, links and parameters, for the many runs of a fit.
+
+    of : the network it stands for;  rows : (test, channel) -> where that sensor looks in the smaller one
+    """
+
+    of: Network
+    network: Network
+    rows: Mapping[tuple[str, str], Row]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A model and the tests it is held against.
+
+    doubt : what models of this kind get wrong, the usual table or with lines that the case widens
+    answers : what the user said about a test, an event or a fault: was it so?
+    low : a smaller network of the same machine, where there is one
+    """
+
+    name: str
+    model: Model
+    tests: tuple[Test, ...]
+    nuisances: tuple[Parameter, ...] = ()
+    doubt: Doubt = field(default_factory=lambda: USUAL)
+    answers: Mapping[str, bool] = field(default_factory=dict)
+    low: LowFidelity | None = None
+
+    @property
+    def small(self) -> Case:
+        """The case on its small network, where there is one that knows all its sensors; else as it is."""
+        low = self.low
+        if low is None or low.of is not self.model.network:
+            return self
+        if any((t.name, c.name) not in low.rows for t in self.tests for c in t.channels):
+            return self
+        tests = tuple(
+            replace(t, channels=tuple(replace(c, row=low.rows[t.name, c.name]) for c in t.channels)) for t in self.tests
+        )
+        return replace(self, model=replace(self.model, network=low.network), tests=tests, low=None)
+
+    def training(self) -> Case:
+        """The case without its held-out tests: all that may be fitted, chosen or accepted with. InputError if none."""
+        if not self.usable:
+            raise InputError("has only held-out tests", f"case {self.name!r}", 'role = "calibrate" for at least one')
+        return replace(self, tests=self.usable)
+
+    @property
+    def usable(self) -> tuple[Test, ...]:
+        """The tests that a fit may use: all but the held-out ones."""
+        return tuple(t for t in self.tests if t.role != "hold-out")
+
+    @property
+    def fitted(self) -> tuple[Test, ...]:
+        """The tests that the model was fitted to, as far as they are still there, in the order of then.
+
+        Where nothing says which: those to calibrate with, and with effects in the model those to choose them with.
+        """
+        if self.model.reference is None:
+            return tuple(t for t in self.usable if self.model.effects or t.role == "calibrate")
+        by_name = {t.name: t for t in self.usable}
+        return tuple(by_name[name] for name in self.model.reference.tests if name in by_name)

@@ -1,0 +1,1 @@
+"""Temperatures from electrical readings, and how sure they are."""

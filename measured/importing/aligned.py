@@ -1,0 +1,147 @@
+"""Recorders without a common clock: how far one has to be moved so that the test begins at the same instant in both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from measured.importing.clock import Clock
+from measured.importing.guess import Guess
+from measured.importing.source import Source
+
+Array = NDArray[np.float64]
+EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
+NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble
+WHOLE_S = 10.0  # from where on a test is cut at whole seconds
+STILL = 5  # readings that say where a column starts
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One file: what it holds, its clock, and what its columns are.
+
+    shift_s : to add to its clock so that it agrees with the first file of its test;  how : what that was told by
+    """
+
+    source: Source
+    clock: Clock
+    guesses: list[Guess]
+    shift_s: float = 0.0
+    how: str = ""
+
+    @property
+    def name(self) -> str:
+        return self.source.file.name
+
+    @property
+    def step_s(self) -> float:
+        return float(np.nanmedian(np.diff(self.clock.seconds)))
+
+
+def shift(first: Recording, other: Recording) -> tuple[float, str]:
+    """Seconds to add to the other's clock, and by what. InputError for clocks that never overlap or show no onset."""
+    if first.clock.start is not None and other.clock.start is not None:
+        shift_s = other.clock.start - first.clock.start
+        _overlapping(first, other, shift_s)
+        return shift_s, "both clocks show dates"
+    (a, by), (b, of) = onset(first), onset(other)
+    shift_s = a - b
+    _overlapping(first, other, shift_s)
+    return shift_s, f"onset of '{by}' and '{of}', +- {first.step_s + other.step_s:.2g} s"
+
+
+def common(
+    records: Sequence[Recording], window_s: tuple[float, float | None]
+) -> tuple[tuple[float, float | None], tuple[str, ...]]:
+    """From and to (s from the first row) where all recorders ran, within the window; a note if that is less of it."""
+    first, start, end = records[0], *window_s
+    last = first.clock.end_s
+    ends = [r.clock.end_s + r.shift_s for r in records[1:]]
+    begins = max([start, *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
+    stops = min([last if end is None else min(end, last), *ends])
+    if begins >= stops:
+        raise InputError("the recorders never all run in the part asked for", ", ".join(r.name for r in records),
+                         "--from and --to within all of them")  # fmt: skip
+    cut = begins > start or stops < (last if end is None else min(end, last))
+    if not cut:
+        return window_s, ()
+    if stops - begins > WHOLE_S:
+        begins, stops = float(np.ceil(begins)), float(np.floor(stops))
+    return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
+
+
+def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:
+    end, theirs = first.clock.end_s, other.clock.end_s
+    if shift_s > end or shift_s + theirs < 0.0:
+        late = "after the end" if shift_s > 0 else "before the start"
+        raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(shift_s):.6g} s {late} "
+                         "of it", str(other.source.file),
+                         "two recordings of one test, or one command each")  # fmt: skip
+
+
+def onset(record: Recording) -> tuple[float, str]:
+    """The instant (s) at which the first of its columns begins to change, and which."""
+    onsets = {
+        g.column: at for g in record.guesses
+        if g.quantity and (at := column_onset(record.clock.seconds, record.source.numbers(g.column))) is not None
+    }  # fmt: skip
+    if not onsets:
+        raise InputError("nothing in it begins to change, so it cannot be set beside the other recording",
+                         str(record.source.file), "a clock with dates in both, or a rise that both saw")  # fmt: skip
+    column = min(onsets, key=lambda c: onsets[c])
+    return onsets[column], column
+
+
+def column_onset(time: Array, values: Array) -> float | None:
+    """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
+    finite = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
+    t, y = time[finite], values[finite]
+    if y.size < 4 * STILL:
+        return None
+    away = np.abs(y - np.median(y[:STILL]))
+    noise = 1.4826 * float(np.median(np.abs(np.diff(y)))) / np.sqrt(2.0)
+    reach = float(away.max())
+    if reach <= NOISE_TIMES * noise or reach == 0.0:
+        return None
+    early, later = (_crossing(t, away, max(share * reach, NOISE_TIMES * noise)) for share in (EARLY, LATER))
+    if early <= t[STILL - 1]:
+        return None
+    return max(float(t[0]), early - max(0.0, later - early) * EARLY / (LATER - EARLY))
+
+
+def _crossing(t: Array, away: Array, level: float) -> float:
+    """The first instant at which a column is beyond a level; between two readings by a line, unless it jumps."""
+    i = int(np.flatnonzero(away >= level)[0])
+    if i == 0:
+        return float(t[0])
+    share = (level - away[i - 1]) / (away[i] - away[i - 1])
+    return float(t[i - 1] + share * (t[i] - t[i - 1]))
+
+
+def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> list[list[Recording]]:
+    """Files with the same columns are tests; files with different ones are recorders of one test.
+
+    Two recorders for each of several tests are paired in the order they are given.
+    """
+    groups: list[list[int]] = []
+    for i, kind in enumerate(kinds):
+        home = next((g for g in groups if _alike(kinds[g[0]], kind)), None)
+        if home is None:
+            groups.append([i])
+        else:
+            home.append(i)
+    counts = {len(g) for g in groups}
+    if len(counts) != 1:
+        words = "; ".join(", ".join(records[i].name for i in g) for g in groups)
+        raise InputError(f"files of {len(groups)} recorders, not the same number of each", words,
+                         "one file of each recorder for every test")  # fmt: skip
+    return [[records[g[k]] for g in groups] for k in range(counts.pop())]
+
+
+def _alike(a: frozenset[str], b: frozenset[str]) -> bool:
+    """Do two files have mostly the same columns?"""
+    return len(a & b) > 0.5 * min(len(a), len(b))

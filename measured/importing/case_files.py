@@ -1,0 +1,158 @@
+"""A case folder from drafts: case.toml, tests/NAME.csv with tests/NAME.toml, all of it or nothing."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from uuid import uuid4
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from geom.escapes import toml_key, toml_value
+from geom.storage import abandoned, cache_folder, locked, write_whole
+from geom.text import visible
+from measured.importing.aligned import Recording
+from measured.importing.draft import Draft, sample_of
+from measured.importing.guess import Guess
+from measured.input_folders import within_inputs
+from measured.recordings.data_table import csv_text
+
+TIME = "time_s"
+ROLES = ("calibrate", "validate", "hold-out")
+
+
+@contextmanager
+def folder_whole(folder: Path) -> Iterator[Path]:
+    """A folder to fill that takes its place only when it is complete; gone if anything fails, or the process is told
+    to end. Until then it is in the cache, where that is on the same disk, else hidden beside its place.
+
+    What a killed process left of it counts for nothing, and goes with the next one.
+    """
+    if within_inputs(folder):
+        raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
+    if folder.exists():
+        raise InputError("is there already", str(folder), "--out with the name of a new folder")
+    if not folder.parent.is_dir():
+        raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
+    start = _start_of(folder)
+    for left in abandoned(start.parent, re.compile(rf"{re.escape(start.name)}\.[0-9a-f]{{32}}")):
+        shutil.rmtree(left, ignore_errors=True)
+    partial = start.with_name(f"{start.name}.{uuid4().hex}")
+    with _unwound_by_termination():
+        try:
+            partial.mkdir()
+            with locked(partial):
+                yield partial
+                os.rename(partial, folder)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+
+def _start_of(folder: Path) -> Path:
+    """Where a folder is begun: from there it can be renamed to its place."""
+    cache = cache_folder()
+    with suppress(OSError):
+        cache.mkdir(parents=True, exist_ok=True)
+        if os.access(cache, os.W_OK) and cache.stat().st_dev == folder.absolute().parent.stat().st_dev:
+            return cache / "new"
+    return folder.with_name(f".{folder.name}")
+
+
+@contextmanager
+def _unwound_by_termination() -> Iterator[None]:
+    """A process that is told to end (SIGTERM) unwinds in here, as one that is interrupted does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
+    """model : puts the machine or network into the folder and returns its line of case.toml."""
+    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {toml_value(name)}",
+             model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
+    for draft, role in zip(drafts, roles(len(drafts)), strict=True):
+        lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
+        write_test(folder / "tests", draft)
+    write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
+
+
+def roles(count: int) -> list[str]:
+    """The first test to fit, the last of three or more to hold out, the others to choose with."""
+    if count < 3:
+        return list(ROLES[:count])
+    return ["calibrate", *["validate"] * (count - 2), "hold-out"]
+
+
+def write_test(folder: Path, draft: Draft) -> None:
+    """The recordings as plain CSV, each with its own clock, and the sheet."""
+    for i, record in enumerate(draft.records):
+        write_whole(folder / _file(draft, i), csv_text(readings(record)))
+    write_whole(folder / f"{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
+
+
+def _file(draft: Draft, i: int) -> str:
+    return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
+
+
+def readings(record: Recording) -> dict[str, NDArray[np.float64]]:
+    """Time (s) and all columns of numbers as the file has them; rows without a time of their own are left out."""
+    t = record.clock.seconds
+    keep = np.flatnonzero(np.isfinite(t))
+    keep = keep[np.concatenate([[True], np.diff(t[keep]) > 0])]
+    columns = [g.column for g in record.guesses if g.column != TIME and record.source.is_numeric(g.column)]
+    body = {c: record.source.numbers(c)[keep] for c in columns}
+    return {TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}}
+
+
+def _sheet(draft: Draft) -> Iterator[str]:
+    first = draft.records[0]
+    yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
+    yield from (f"# {note}" for note in draft.notes)
+    description = visible(f"{first.name}, {first.clock.words}")
+    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(description)}",
+                'initial = "first-readings"')  # fmt: skip
+    for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
+        if value:
+            yield f"{name} = {value:g}"
+    yield from _constants("inputs", draft.constants)
+    yield from _constants("boundaries", draft.boundaries)
+    if draft.squares:
+        yield from ("", "[root_sum_square]")
+        yield from (f"{toml_key(n)} = {toml_value(list(of))}" for n, of in draft.squares.items())
+    for i, record in enumerate(draft.records[1:], 1):
+        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {toml_value(_file(draft, i))}",
+                    f'time = "{TIME}"', f"shift_s = {record.shift_s:.6g}   # {record.how}")  # fmt: skip
+    for guess in draft.guesses:
+        yield from _column(guess)
+
+
+def _constants(table: str, values: object) -> Iterator[str]:
+    if isinstance(values, dict) and values:
+        yield from ("", f"[{table}]   # constant: not recorded")
+        yield from (f"{toml_key(name)} = {value:g}" for name, value in values.items())
+
+
+def _column(g: Guess) -> Iterator[str]:
+    """A column's table; of one that is left out a line that says why."""
+    yield ""
+    if not g.used:
+        yield f"# {toml_value(g.column)} is left out: {g.doubt}"
+        return
+    yield f"[columns.{toml_key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    yield f'quantity = "{g.quantity}"'
+    yield f'unit = "{g.unit}"'
+    yield f"place = {toml_value(g.place)}" if g.place else f"input = {toml_value(g.feeds)}"

@@ -1,0 +1,450 @@
+"""The time of a recording, in seconds from its first row, whatever its clock looks like."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime, time, timedelta
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError
+from measured.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
+from measured.importing.source import BINARY, EPOCH, Source
+from measured.importing.words import CLOCKS, VOCABULARY, is_time, tokens
+from measured.recordings.formats import TIME
+from measured.recordings.units import QUANTITIES
+
+Array = NDArray[np.float64]
+INSTANT = re.compile(
+    r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])(?P<b>\d{1,2})[-/.](?P<c>\d{1,2}|\d{4})\.?"
+    r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"
+    r"(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
+    r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
+    r"\s*(?P<zone>Z|UTC|GMT|CET|CEST|MEZ|MESZ|(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?)?"
+)
+POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
+TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
+MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
+MILLISECONDS = ("ms", "msec", "millisecond", "milliseconds", "millisekunden")
+DAY_FIRST = frozenset({"datum", "fecha", "data", "uhrzeit", "zeit", "heure", "zeitstempel", "horodatage"})
+DAY_NAMES = frozenset({"uhrzeit", "heure", "hora", "ora", "day"})  # of a clock on the wall
+DAY_S, HOUR_S = 86400.0, 3600.0
+UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
+# Times by their size: days of spreadsheets and of mathematics programs; ticks of 100 ns since 1601 and since year 1.
+COUNTS = (((3e4, 7e4), DAY_S, "days of a spreadsheet"), ((7e5, 7.7e5), DAY_S, "days since year 0"),
+          ((1.1e17, 1.5e17), 1e-7, "ticks of 100 ns"), ((5.5e17, 7e17), 1e-7, "ticks of 100 ns"))  # fmt: skip
+TIME_UNITS = {**{u: f for u, (f, _) in QUANTITIES["time"].units.items()}, "us": 1e-6, "ns": 1e-9, "day": DAY_S}
+SHARE = 0.9  # of the cells of a column that is a clock
+SAMPLE = 200  # cells that tell what a column is
+LEAST = 3  # rows with a time
+FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
+SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
+MANY = 100  # from one row to the next: more often ms than seconds, but for the steps of buildings
+USUAL_STEPS_S = frozenset({120.0, 180.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, DAY_S})
+SINCE_1904_S, LATEST_S = 2082844800.0, 3e9  # some programs count from 1904: what would be after 2065 is that
+
+
+@dataclass(frozen=True)
+class Clock:
+    """seconds : (rows,) from the first row;  start : s since 1970, None where only a duration is known
+
+    columns : those it was read from;  words : how;  doubt : what is not sure of it, "" for nothing
+    invented : nothing in the file says how far its rows are apart
+    """
+
+    seconds: Array
+    start: float | None
+    columns: tuple[str, ...]
+    words: str
+    doubt: str = ""
+    invented: bool = False
+
+    @property
+    def end_s(self) -> float:
+        """The last instant; rows after it may have no time of their own."""
+        return float(np.nanmax(self.seconds))
+
+
+def clock_of(source: Source, period_s: float | None = None) -> Clock:
+    """period_s : time between rows, where the file has no clock. InputError for times that run back."""
+    clock = None if period_s is not None else _guessed_clock(source)
+    if clock is None or not _runs(clock.seconds):
+        step = period_s or source.period_s or 1.0
+        seconds = step * np.arange(source.rows, dtype=np.float64)
+        still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
+        how = "as the lines before its header say" if source.period_s else "are assumed (--period SECONDS)"
+        doubt = "" if period_s is not None else f"{still}: rows {step:g} s apart {how}"
+        columns = () if clock is None else clock.columns
+        start = source.start if clock is None else clock.start
+        return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
+    return checked(clock, source)
+
+
+def _runs(seconds: Array) -> bool:
+    """Do the times differ at all?"""
+    finite = seconds[np.isfinite(seconds)]
+    return finite.size < LEAST or bool(np.ptp(finite) > 0)
+
+
+def checked(clock: Clock, source: Source) -> Clock:
+    """A clock that never runs back; from zero."""
+    t, where = clock.seconds, f"{source.file} column '{', '.join(clock.columns)}'"
+    finite = np.isfinite(t)
+    if finite.sum() < LEAST:
+        raise InputError("fewer than three rows have a time", where, "a time in every row")
+    t, doubts = t.copy(), [clock.doubt] if clock.doubt else []
+    step = np.diff(t[finite])
+    usual = float(np.median(np.abs(step)))
+    back, hour = np.flatnonzero(step < 0), np.flatnonzero(np.abs(step - HOUR_S - usual) < usual)
+    if (
+        clock.start is not None
+        and back.size == 1
+        and abs(step[back[0]] + HOUR_S - usual) <= max(usual, 1.0) < HOUR_S / 2
+    ):
+        at = np.flatnonzero(finite)[back[0] + 1]
+        t[at:] += HOUR_S
+        doubts.append(f"the clock runs back by an hour in row {at + 1}: taken as the end of summer time")
+    elif back.size:
+        what = f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings"
+        raise InputError(what, where, "rows in the order of time")
+    elif clock.start is not None and hour.size == 1 and usual < HOUR_S / 4 and "without" in clock.words:
+        doubts.append(f"the clock leaps an hour in row {int(hour[0]) + 2}: does summer time begin?")
+    first = float(t[finite][0])
+    start = None if clock.start is None else clock.start + first
+    t, equal = _spread(t - first)
+    return Clock(t, start, clock.columns, clock.words, "; ".join([*doubts, *equal]))
+
+
+def _spread(t: Array) -> tuple[Array, list[str]]:
+    """With rows of one stamp spread evenly up to the next one, and the doubt, where most stamps stand in several rows.
+
+    A clock of minutes beside rows of seconds writes such.
+    """
+    finite = np.flatnonzero(np.isfinite(t))
+    stamps, first, counts = np.unique(t[finite], return_index=True, return_counts=True)
+    repeated = int(finite.size - stamps.size)
+    if not repeated:
+        return t, []
+    if stamps.size < LEAST or np.median(counts) < 2:
+        return t, [f"{repeated} rows have the time of the row before and are left out"]
+    whole = float(np.median(counts[1:-1])) if stamps.size > 3 else float(counts.max())
+    usual, out = float(np.median(np.diff(stamps))), t.copy()
+    for k, (stamp, at, count) in enumerate(zip(stamps, first, counts, strict=True)):
+        late = max(whole - count, 0.0) if k == 0 else 0.0  # the first stamp began before the record
+        out[finite[at : at + count]] = stamp + usual * (late + np.arange(count)) / max(whole, count)
+    out = out - out[finite[0]]
+    return out, [f"{whole:g} rows share each time: taken as evenly spread, {usual / whole:g} s apart"]
+
+
+def _guessed_clock(source: Source) -> Clock | None:
+    """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
+    dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
+    clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock) and c not in dates]
+    with_time = [c for c in dates if _has_time(source.cells[c])]
+    if with_time:
+        result = _instants(source.cells[with_time[0]], (with_time[0],), source.labels[with_time[0]])
+        return _with_ms(source, result)
+    if dates and clocks:
+        texts = [f"{_day(d)} {t}" for d, t in zip(source.cells[dates[0]], source.cells[clocks[0]], strict=True)]
+        result = _instants(texts, (dates[0], clocks[0]), source.labels[dates[0]])
+        return _with_ms(source, result) if np.isfinite(result.seconds).sum() >= LEAST else _of_day(source, clocks[0])
+    if clocks:
+        by_name = [c for c in clocks if is_time(source.labels[c])]
+        return _of_day(source, (by_name or clocks)[0])
+    days = _instants(source.cells[dates[0]], (dates[0],), source.labels[dates[0]]) if dates else None
+    return days if days is not None and _rising(days.seconds) else _numeric(source)
+
+
+def _rising(seconds: Array) -> bool:
+    finite = seconds[np.isfinite(seconds)]
+    return finite.size >= LEAST and bool((np.diff(finite) > 0).all())
+
+
+def _with_ms(source: Source, clock: Clock) -> Clock:
+    """With the milliseconds that some loggers write in a column of their own."""
+    for c in source.cells:
+        if source.labels[c].strip().lower() in MILLISECONDS and source.is_numeric(c):
+            ms = source.numbers(c)
+            if np.nanmin(ms) >= 0 and np.nanmax(ms) < 1000 and not rises(source, c):
+                return replace(clock, seconds=clock.seconds + np.nan_to_num(ms) / 1e3, columns=(*clock.columns, c))
+    return clock
+
+
+def is_instants(source: Source, column: str) -> bool:
+    """Is it a column of dates or times of day?"""
+    return _mostly(source.cells[column], lambda cell: is_date(cell) or is_clock(cell))
+
+
+def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
+    if isinstance(cells, np.ndarray):
+        if cells.dtype.kind in "mM":
+            return bool(test(cells[0].astype("datetime64[us]" if cells.dtype.kind == "M" else "m8[us]").item()))
+        if cells.dtype.kind in "fiub":
+            finite = cells[np.isfinite(cells)][:SAMPLE]
+            return bool(finite.size > 2 and test is is_date and _compact(finite))
+    nonempty = [c for c in cells[:SAMPLE] if c is not None and str(c).strip()]
+    if not isinstance(cells, np.ndarray) and all(isinstance(c, int | float) for c in nonempty):
+        return bool(test is is_date and len(nonempty) > 2 and _compact(np.array(nonempty, float)))
+    return bool(nonempty) and sum(test(c) for c in nonempty) >= SHARE * len(nonempty)
+
+
+def _compact(numbers: Array) -> bool:
+    """20260328120010: instants without signs, which look like numbers; a day alone may be any number."""
+    return all(COMPACT.fullmatch(f"{n:.0f}") for n in numbers)
+
+
+def _has_time(cells: Sequence[Any]) -> bool:
+    if isinstance(cells, np.ndarray):
+        return True
+    return any(
+        c.time() != time(0)
+        if isinstance(c, datetime)
+        else ":" in str(c) or POINTED.search(str(c)) or COMPACT.fullmatch(_digits(c))
+        for c in cells[:SAMPLE]
+        if c is not None
+    )
+
+
+def _digits(cell: Any) -> str:
+    """Its digits, of an instant without signs but a T or a blank."""
+    text = f"{cell:.0f}" if isinstance(cell, float) and np.isfinite(cell) else str(cell).strip()
+    return text[:8] + text[9:] if text[8:9] in ("T", " ", "_") else text
+
+
+def _day(cell: Any) -> str:
+    if isinstance(cell, datetime | date):
+        return cell.strftime("%Y-%m-%d")
+    text = str(cell).strip()
+    return f"{text[:4]}-{text[4:6]}-{text[6:8]}" if len(text) == 8 and text.isdigit() else text
+
+
+def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clock:
+    """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+        return _since_first((cells - EPOCH) / np.timedelta64(1, "s"), columns, "dates")
+    parts = [INSTANT.fullmatch(str(c).strip()) or INSTANT.fullmatch(_spelled_out(c)) for c in cells]
+    read = [m for m in parts if m]
+    short = [m for m in read if len(m["a"]) < 4]
+    points = bool(short) and all(m["sign"] == "." for m in short)
+    label_order = re.search(r"(?i)\bd{1,2}[-/. ]?m", label) or set(tokens(label)) & DAY_FIRST
+    day_first = points or bool(label_order) or any(int(m["a"]) > 12 for m in short) or (
+        not any(int(m["b"]) > 12 for m in short) and bool(short) and _fewer_leaps(short[:: len(short) // SAMPLE + 1])
+    )  # fmt: skip
+    zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
+    seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
+    order = ("day before month, " if day_first else "month before day, ") if short else ""
+    unclear = short and not points and not label_order and all(int(m["a"]) <= 12 and int(m["b"]) <= 12 for m in short)
+    several = len({m[0][: m.start("hour")] if m["hour"] else m[0] for m in short}) > 1
+    doubt = f"is it {order.rstrip(', ')}?" if unclear and several else ""
+    lost = len([c for c in cells if str(c or "").strip()]) - len(read)
+    doubt = doubt or (f"{lost} of {len(cells)} times could not be read" if lost > (1 - SHARE) * len(cells) else "")
+    clock = _since_first(seconds, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
+    return replace(clock, doubt=doubt)
+
+
+def _fewer_leaps(short: Sequence[re.Match[str]]) -> bool:
+    """Do the days follow each other more closely with the day before the month?"""
+    spans = [np.ptp(t[np.isfinite(t)]) if np.isfinite(t).all() else np.inf
+             for first in (True, False) for t in [np.array([_unix(m, first) for m in short])]]  # fmt: skip
+    return bool(spans[0] < spans[1])
+
+
+def _spelled_out(cell: Any) -> str:
+    """An instant with its month in digits: "Sat 28-Mar-2026 10:00", "28. März 2026", "20260328T120010"."""
+    text = _digits(cell)
+    if COMPACT.match(text) or re.match(r"(?:19|20)\d{10}(?!\d)", text):
+        clock = ":".join(re.findall("..", re.split(r"\D", text[8:14])[0]))
+        return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
+    text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip())
+    text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text))
+    return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
+
+
+def _month_in_digits(text: str) -> str:
+    """By dateutil, for the day alone: it is kept for the rows of that day."""
+    match = TIME_OF_DAY.search(text)
+    day = text[: match.start()] if match else text
+    rest = text[match.start() :] if match else ""
+    if match and (year := re.search(r"\s((?:19|20)\d\d)$", rest)):  # Sat Mar 28 12:00:10 2026
+        day, rest = f"{day} {year[1]}", rest[: year.start()]
+    result = _date_in_words(day.strip(" ,T"))
+    return f"{result} {rest}".strip() if result else text
+
+
+@cache
+def _date_in_words(text: str) -> str:
+    from dateutil.parser import ParserError, parse
+
+    words = [MONTHS.get(w.strip(".").lower()[:4], MONTHS.get(w.strip(".").lower()[:3], "")) if w[:1].isalpha() else w
+             for w in re.findall(r"[^\W\d_]+\.?|\d+", text)]  # fmt: skip
+    if sum(w.isalpha() for w in words) != 1:
+        return ""
+    try:
+        return parse(" ".join(filter(None, words)), dayfirst=True).strftime("%Y-%m-%d")
+    except (ParserError, OverflowError):
+        return ""
+
+
+def _unix(m: re.Match[str], day_first: bool) -> float:
+    """Seconds since 1970, NaN where there is no such day or time."""
+    a, b, c = int(m["a"]), int(m["b"]), int(m["c"])
+    if len(m["a"]) == 4:
+        year, month, day = a, b, c
+    else:
+        year, (month, day) = c, (b, a) if (day_first and b <= 12) or a > 12 else (a, b)
+    if len(m["c"]) == 2 and len(m["a"]) < 4:
+        year += 2000 if year < 69 else 1900  # as POSIX has it
+    hour, late = int(m["hour"] or 0), (m["half"] or "").lower()
+    hour = hour % 12 + 12 * (late == "p") if late else hour
+    try:
+        whole = datetime(year, month, day, hour % 24, int(m["minute"] or 0), int(m["second"] or 0), tzinfo=UTC)
+    except ValueError:
+        return float("nan")
+    offset = 3600 * int(m["hours"] or 0) + 60 * int(m["minutes"] or 0)
+    next_day = DAY_S if hour == 24 else 0.0
+    return whole.timestamp() + next_day + float(f"0.{m['fraction'] or 0}") - (-offset if m["east"] == "-" else offset)
+
+
+def _since_first(seconds: Array, columns: tuple[str, ...], words: str) -> Clock:
+    """A clock of seconds since 1970."""
+    first = seconds[np.isfinite(seconds)]
+    start = float(first[0]) if first.size else 0.0
+    return Clock(seconds - start, start, columns, words)
+
+
+def _of_day(source: Source, column: str) -> Clock:
+    """h:mm:ss or m:ss, with fractions; past midnight it goes on. Two numbers alone may be hours or minutes."""
+    cells, label = source.cells[column], source.labels[column].lower() + source.units[column].lower()
+    parsed = [_parts(c) for c in cells]
+    read = [p for p in parsed if p]
+    two = all(len(p) == 2 for p in read)
+    texts = [str(c).strip() for c in cells[:SAMPLE] if c is not None]
+    halves = any(text.lower().endswith("m") for text in texts)
+    hours_in_label, minutes_in_label = (
+        "hh" in label or "h:m" in label or halves or bool(DAY_NAMES & set(tokens(label))),
+        "mm:ss" in label and "hh" not in label,
+    )
+    fraction = any("." in t or "," in t for t in texts)
+    from_zero = two and bool(read) and read[0][0] == 0 and read[0][1] < FROM_ZERO
+    of_day = two and not fraction and all(p[0] < 24 for p in read) and not from_zero
+    hours = two and not minutes_in_label and (hours_in_label or of_day)
+    seconds = np.array([_total(p, two and not hours) for p in parsed])
+    finite = np.flatnonzero(np.isfinite(seconds))
+    turns = np.zeros(seconds.size)
+    turns[finite[1:]] = np.cumsum(np.diff(seconds[finite]) < -DAY_S / 2)
+    words = "minutes:seconds" if two and not hours else "hours:minutes" if two else "hours:minutes:seconds"
+    unsure = two and not (hours_in_label or minutes_in_label or fraction or any(p[0] > 23 for p in read))
+    doubt = (
+        f"taken as {words}; the other of hours:minutes and minutes:seconds: write the unit (mm:ss)" if unsure else ""
+    )
+    return Clock(seconds + DAY_S * turns, None, (column,), words, doubt)
+
+
+def _parts(cell: Any) -> list[float]:
+    if isinstance(cell, timedelta | np.timedelta64):
+        return [0.0, 0.0, float(np.timedelta64(cell) / np.timedelta64(1, "s"))]
+    text = str(cell).strip() if cell is not None else ""
+    if m := CLOCK.fullmatch(text):
+        second, third = (
+            float(x.replace(",", ".").replace(":", ".")) if x else None for x in m.group("second", "third")
+        )
+        first = float(m["first"])
+        if m["half"]:
+            first = first % 12 + 12.0 * (m["half"].lower() == "p")
+        first += 24.0 * int(m["days"] or 0)
+        return [x for x in (first, second, third) if x is not None]
+    if is_span(text) and (m := SPAN.fullmatch(text)):
+        days, hours, minutes, seconds = (float((x or "0").replace(",", ".")) for x in m.groups())
+        return [24 * days + hours, minutes, seconds]
+    return []
+
+
+def _total(parts: list[float], two: bool) -> float:
+    if not parts:
+        return float("nan")
+    return 60 * parts[0] + parts[1] if two else 3600 * parts[0] + 60 * parts[1] + sum(parts[2:3])
+
+
+def _numeric(source: Source) -> Clock | None:
+    """Numbers under a name for time, or that never fall and have a unit of time; of a file without names the first."""
+    numeric = [c for c in source.cells if source.is_numeric(c)]
+    by_name = [c for c in numeric if _is_named(source, c)]
+    by_unit = [c for c in numeric if rises(source, c) and (_unit_of_time(source, c) or _since_1970(source, c))]
+    candidates = sorted(dict.fromkeys(c for c in (*by_name, *by_unit) if c != TIME), key=lambda c: not rises(source, c))
+    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
+        return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
+    if candidates or TIME in by_name:
+        return _scaled(source, candidates[0] if candidates else TIME)
+    return _scaled(source, numeric[0]) if source.unnamed and rises(source, numeric[0]) else None
+
+
+def rises(source: Source, column: str) -> bool:
+    """Numbers that never fall."""
+    if not source.is_numeric(column):
+        return False
+    values = source.numbers(column)
+    finite = values[np.isfinite(values)]
+    return finite.size > 2 and bool((np.diff(finite) >= 0).all()) and bool(finite[-1] > finite[0])
+
+
+def _unit_of_time(source: Source, column: str) -> str:
+    """Of the header's unit, or of a header that is nothing else: "Minutes"; "" where it is none."""
+    for text in (source.units[column], source.labels[column]):
+        if (unit := unit_of(text)) in TIME_UNITS:
+            return unit
+    return ""
+
+
+def is_second_clock(source: Source, column: str) -> bool:
+    """Is it a time beside the clock: by its name, its unit, its size (seconds since 1970 in any unit) or its cells?"""
+    if _is_named(source, column) or unit_of(source.units[column]) in TIME_UNITS or is_instants(source, column):
+        return True
+    has_name = bool(set(tokens(column)) & CLOCKS) or bool(_unit_of_time(source, column))
+    has_name &= unit_of(source.units[column]) in ("", *TIME_UNITS)
+    return rises(source, column) and (has_name or _since_1970(source, column))
+
+
+def _is_named(source: Source, column: str) -> bool:
+    """Has it a name for time, and no unit of something else: "Data [°C]" is no date?"""
+    return is_time(source.labels[column]) and unit_of(source.units[column]) in ("", *TIME_UNITS)
+
+
+def _since_1970(source: Source, column: str) -> bool:
+    """Are its numbers seconds since 1970, or parts of them, as they are now?"""
+    values = source.numbers(column)
+    first = float(values[np.isfinite(values)][0])
+    return any(size <= first < 2 * size for size in UNIX)
+
+
+def _counts(values: Array) -> bool:
+    return bool(np.array_equal(values, np.arange(values.size)))
+
+
+def _scaled(source: Source, column: str) -> Clock:
+    """Seconds by the unit of the file; without one by size and step: what is likely is taken and doubted aloud."""
+    values, unit = source.numbers(column), _unit_of_time(source, column)
+    finite = values[np.isfinite(values)]
+    first, step = float(finite[0]), float(np.median(np.diff(finite))) if finite.size > 1 else 0.0
+    for size, factor in UNIX.items():
+        if size <= first < 5 * size and (not unit or TIME_UNITS[unit] == factor):
+            start = first * factor - (SINCE_1904_S if first * factor > LATEST_S else 0.0)
+            return Clock((values - first) * factor, start, (column,), "seconds since 1970")
+    if unit:
+        return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers in {unit}")
+    for (low, high), factor, words in COUNTS:
+        if low < first < high and (factor < 1 or step < 0.5):
+            doubt = "" if factor == DAY_S else f"'{column}' is taken as {words}"
+            return Clock((values - first) * factor, None, (column,), words, doubt)
+    of_day = step * DAY_S
+    if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
+        return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")
+    if bool((finite == np.round(finite)).all()) and step >= MANY and step not in USUAL_STEPS_S:
+        return Clock(values * 1e-3, None, (column,), "numbers, taken as ms", f"no unit of '{column}': ms are assumed")
+    doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""
+    return Clock(values, None, (column,), "numbers, taken as seconds", doubt)

@@ -1,0 +1,345 @@
+"""What each column of a recording is: quantity, unit and place, from its name, its unit and its values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.description.roles import Role
+from geom.errors import InputError
+from lumped.schemas.bounds import COLDEST, HOTTEST
+from measured.importing.cells import unit_of
+from measured.importing.clock import is_second_clock
+from measured.importing.source import Source
+from measured.importing.target import Target
+from measured.importing.words import (
+    DIFFERENCE,
+    LETTERED,
+    NOTHING,
+    QUANTITY,
+    READ,
+    ROLES,
+    SETPOINT,
+    axis_of,
+    quantities_of,
+    roles_of,
+    tokens,
+)
+from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
+from measured.recordings.tables import LARGEST
+from measured.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
+
+Array = NDArray[np.float64]
+KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
+ALIKE_F = 4.0  # degF between sensors of a machine at rest
+UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
+LEAST = 3  # readings of a column
+ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
+ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
+AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
+PINT_UNITS = {
+    "mW": "power",
+    "MW": "power",
+    "hp": "power",
+    "metric_horsepower": "power",
+    "mN*m": "torque",
+    "cN*m": "torque",
+    "lbf*ft": "torque",
+    "krpm": "speed",
+    "deg/s": "speed",
+    "l/h": "water_flow",
+    "gallon/min": "water_flow",
+    "ml/min": "water_flow",
+    "ml/s": "water_flow",
+    "ft**3/min": "air_flow",
+}  # units of loggers that no table of a sheet lists, for pint
+SUREST = "unit and name"  # by which a column was told: such a one goes before others
+WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
+FIRST = ("temperature", "current", "speed", "torque", "power", "vehicle_speed", "voltage", "share", "water_flow",
+         "air_flow", "frequency")  # fmt: skip
+UNTOLD = "neither name nor unit tells what it is"
+FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
+ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
+
+
+@dataclass(frozen=True)
+class Guess:
+    """quantity : "" for a column that is left out;  place : of a temperature;  feeds : the input it drives
+
+    why : what it was told by;  doubt : what is not sure, "" for nothing
+    """
+
+    column: str
+    quantity: str
+    unit: str = ""
+    place: str = ""
+    feeds: str = ""
+    why: str = ""
+    doubt: str = ""
+
+    @property
+    def used(self) -> bool:
+        return bool(self.place or self.feeds)
+
+    def without(self, doubt: str) -> Guess:
+        """Left out, and why."""
+        return replace(self, place="", feeds="", doubt=doubt)
+
+
+def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
+    """One per column that is no clock."""
+    every = [guess(source, c, target) for c in source.cells if c not in clock]
+    kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
+    axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
+    every = [_component(g, axis_of(source.labels[g.column]), axes, target) for g in every]
+    return single(every if kelvin else _in_fahrenheit(source, every), target)
+
+
+def guess(source: Source, column: str, target: Target) -> Guess:
+    """A column by itself."""
+    if odd := _left_out(source, column):
+        return Guess(column, "", doubt=odd)
+    label, unit_text = source.labels[column], source.units[column]
+    unit = unit_of(unit_text)
+    quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
+    if not quantity:
+        return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
+    unit, assumed = _unit(source, column, quantity, unit)
+    if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
+        assumed = f"unit '{match[1]}' unknown: {unit} assumed"
+    base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    values = source.numbers(column)
+    codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
+    if quantity != "temperature" and codes.size:
+        base = replace(base, doubt=f"is {codes[0]:g} a reading, or a logger's code?")
+    if out := _impossible(source, base):
+        return Guess(column, "", doubt=out)
+    return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
+
+
+def _left_out(source: Source, column: str) -> str:
+    """Why a column is none that a model reads, "" where it may be one: a unit in its header is law."""
+    if is_second_clock(source, column):
+        return "a second clock, or a counter"
+    if not source.is_numeric(column):
+        return "words, not numbers" if np.size(source.cells[column]) and source.is_filled(column) else "empty"
+    values = source.numbers(column)
+    if (count := int(np.isfinite(values).sum())) < LEAST:
+        return f"read {count} {'time' if count == 1 else 'times'} in all"
+    unit_text, label = source.units[column], source.labels[column]
+    if unit_text and not unit_of(unit_text):
+        return f"its unit '{unit_text}' is of nothing a model reads"
+    words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
+    if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
+        return "a difference of temperatures, not a temperature"
+    if words & NOTHING and unit_of(unit_text) in WEAK:
+        return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"
+    identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
+    return "a number that names a row" if identifies and _counts_on(source, column) else ""
+
+
+def _impossible(source: Source, g: Guess) -> str:
+    """Why its readings cannot be what the name says, "" where they can: one bad column costs one column."""
+    values = in_memory(source, g)
+    finite = values[np.isfinite(values)]
+    low, high = (COLDEST, HOTTEST) if g.quantity == "temperature" else (-LARGEST, LARGEST)
+    if not finite.size:
+        return "holds nothing but a logger's codes"
+    worst = finite[np.argmax(np.maximum(low - finite, finite - high))]
+    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} that can be"
+
+
+def _component(g: Guess, axis: str, axes: set[str], target: Target) -> Guess:
+    """A component of a current, where both are there, has an input of its own: the current is their root sum square."""
+    both = any(axis in pair and pair <= axes for pair in AXES) and not any(axis_of(n) == axis for n in target.inputs)
+    return replace(g, feeds=f"{axis}_A") if g.feeds and both else g
+
+
+def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
+    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
+    hot = {g.column: g for g in every
+           if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}  # fmt: skip
+    starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
+    rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
+    alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F
+    if not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts.values()):
+        return every
+    return [_fahrenheit(source, g, bool(rooms)) if g.column in hot else g for g in every]
+
+
+def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
+    """Without a unit in the header it is read so; a unit in the header is law, and doubted aloud."""
+    if not beside_room:
+        return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
+    if source.units[g.column]:
+        return replace(g, doubt=f"{source.units[g.column]} in its header, Fahrenheit by its values?")
+    return replace(g, unit="degF", doubt="no unit: degF by its values")
+
+
+def _counts_on(source: Source, column: str) -> bool:
+    """Does it rise in every row?"""
+    values = source.numbers(column)
+    return bool((np.diff(values[np.isfinite(values)]) > 0).all())
+
+
+def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
+    """By the unit where a quantity has it, then by name, then by what the model reads or where it has places.
+
+    Quantity, what it was told by, and a doubt.
+    """
+    of_unit = (
+        [q for q in FIRST if unit in QUANTITIES[q].units or (unit in PINT_UNITS and q == PINT_UNITS[unit])]
+        if unit
+        else []
+    )
+    by_name = quantities_of(label)
+    both = [q for q in by_name if q in of_unit]
+    if of_unit:
+        unsure = len(of_unit) > 1 and not both
+        return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""
+    if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
+        return quantity, f"name like the input {feeds}", ""
+    if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
+        weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
+        return "temperature", "name of a part", "by its letters alone" if weak else ""
+    if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
+        return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not _worded(label) else ""
+    place, _ = target.place_of(label)
+    alike = label in target.places_by_header or {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
+    return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
+
+
+def _worded(label: str) -> bool:
+    return any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
+
+
+def _by_values(source: Source, column: str) -> tuple[str, str, str]:
+    """Smooth readings of a file without names that can hardly be anything but temperatures."""
+    values = source.numbers(column)
+    values = values[np.isfinite(values)]
+    low, high = float(np.min(values)), float(np.max(values))
+    smooth = np.max(np.abs(np.diff(values))) < 0.2 * max(high - low, 1e-9) + 1.0
+    absolute = KELVIN[0] < float(np.median(values)) < KELVIN[1]
+    celsius = UNNAMED[0] < low and high < UNNAMED[1] and np.unique(values).size > 0.1 * values.size
+    if not (smooth and (absolute or celsius)):
+        return "", "", ""
+    return "temperature", "values", "no name: a temperature, by its values?"
+
+
+def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, str]:
+    """The unit, and a doubt where it had to be guessed from values or is not that of the values."""
+    values = _without_codes(source.numbers(column)) if quantity == "temperature" else source.numbers(column)
+    if quantity == "temperature" and np.isfinite(values).any():
+        kelvin = KELVIN[0] < float(np.nanmedian(values)) < KELVIN[1] and float(np.nanmin(values)) > KELVIN[0]
+        if kelvin and not unit:
+            return "K", "no unit: by its values"
+        first = float(values[np.isfinite(values)][0])
+        if unit == "degC" and kelvin and ROOM_K[0] < first < ROOM_K[1]:
+            return "K", f"{source.units[column]} in its header, but K by its values"
+        unit = unit or "degC"
+        hot = unit == "degC" and first > ROOM_C[1]
+        return unit, f"starts at {first:.4g} degC: is it in other units?" if hot else ""
+    if unit:
+        return unit, ""
+    if quantity == "share":
+        small = float(np.nanmax(np.abs(values))) <= 1.0
+        return ("1" if small else "%"), "no unit: by its values"
+    first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
+    return first_unit, f"no unit: {first_unit} is assumed"
+
+
+def _placed(base: Guess, label: str, target: Target) -> Guess:
+    if SETPOINT & set(tokens(label)):
+        return base.without("a set point, not a reading")
+    place, other = target.place_of(label)
+    if not place:
+        return base.without("no place of the model fits its name")
+    common = set(tokens(label)) & set(tokens(place))
+    weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
+    doubt = f"or {other}" if other else "place by its number only" if weak else base.doubt
+    return replace(base, place=place, doubt=doubt)
+
+
+def _fed(base: Guess, label: str, target: Target) -> Guess:
+    if base.quantity in ELSEWHERE:
+        return base.without(f"a {base.quantity} needs more than its unit: docs/how-to/thermal-test.md")
+    name = target.input_of(label, base.quantity)
+    return replace(base, feeds=name or QUANTITIES[base.quantity].feeds)
+
+
+def single(guesses: list[Guess], target: Target) -> list[Guess]:
+    """One column per boundary and per input; of several readings go before set points, the first before the rest."""
+    owner: dict[str, str] = {}
+    out = {g.column: g for g in guesses}
+
+    def order(g: Guess) -> tuple[bool, ...]:
+        words = set(tokens(g.column))
+        return bool(SETPOINT & words), not READ & words, bool(g.place) and g.place not in words, g.why != SUREST
+
+    for g in sorted(guesses, key=order):
+        key = g.feeds or (g.place if g.place in target.boundaries else "")
+        if not key:
+            continue
+        if key not in owner:
+            owner[key] = g.column
+        elif g.feeds and g.feeds not in target.inputs and not SETPOINT & set(tokens(g.column)):
+            out[g.column] = replace(g, feeds=input_name(g))
+        else:
+            out[g.column] = g.without(f"{owner[key]} gives {key} already")
+    return [out[g.column] for g in guesses]
+
+
+def assigned(
+    guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target
+) -> list[Guess]:  # fmt: skip
+    """With a column at another place or input, "" to leave it out; what gave a boundary or an input before gives way.
+
+    Raises InputError where it cannot go there.
+    """
+    single = to in target.inputs or to in target.boundaries
+    return [
+        _moved(g, source, to, target) if g.column == column
+        else g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g
+        for g in guesses
+    ]  # fmt: skip
+
+
+def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
+    """A column where the user puts it."""
+    if not to:
+        return g.without("left out by hand")
+    if not source.is_numeric(g.column):
+        raise InputError("holds words, not numbers", g.column, "a column of readings")
+    if to in target.places or to in target.boundaries:
+        quantity = "temperature"
+    elif to in target.inputs:
+        quantity = target.inputs[to] or g.quantity
+    else:
+        raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
+    if g.quantity and quantity != g.quantity:
+        raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
+    unit = g.unit or _unit(source, g.column, quantity, "")[0]
+    place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
+    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
+
+
+def input_name(g: Guess) -> str:
+    """An input called after the column, with the unit that memory holds."""
+    unit = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
+    words = [w for w in tokens(g.column) if w.isascii()]
+    return "_".join([*words, unit]) if words else f"{g.quantity}_{unit}"
+
+
+def in_memory(source: Source, g: Guess) -> Array:
+    """Readings in the unit of memory, without a logger's codes."""
+    values = source.numbers(g.column)
+    return converted(_without_codes(values) if g.quantity == "temperature" else values, g.quantity, g.unit)
+
+
+def _without_codes(values: Array) -> Array:
+    """Temperatures as the file has them, without what a logger writes where it read nothing."""
+    return np.where(coded(values), np.nan, values)

@@ -1,0 +1,151 @@
+"""Where the table begins in rows of cells: preamble, header, units, numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from geom.errors import InputError
+from measured.importing.cells import is_reading, is_unit, number, split_unit
+from measured.importing.words import is_time, quantities_of, roles_of
+
+SAMPLE = 2000  # rows that are enough to find the table
+FIRM = 3  # rows of numbers in a row that are a table
+LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
+TALLEST = 8  # rows of names, tags, kinds and units over the readings
+
+Row = Sequence[object]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """names, units : one per column, "" where the file gives none;  first : row where the readings begin
+
+    width : columns;  preamble : rows before the names
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    width: int
+    preamble: int
+
+
+def layout(rows: Sequence[Row], where: str) -> Layout:
+    """InputError where no table of at least two columns stands in the rows, or its header is too short for it."""
+    head = rows[:SAMPLE]
+    widths = Counter(len(trimmed(row)) for row in head if _readings(row))
+    if not widths:
+        raise InputError("no rows of readings in it: it is no record", where,
+                         "columns of numbers, with a header or without")  # fmt: skip
+    most = widths[max(widths, key=lambda n: n * widths[n])]
+    width = max(n for n, count in widths.items() if count >= 0.5 * most)
+    if width < 2:
+        raise InputError("the file has one column only", where,
+                         "a time or an input, and at least one temperature")  # fmt: skip
+    first = _first(head, width, where)
+    block = _block(rows, first, width)
+    units = next((i for i in reversed(block) if _all_units(rows[i])), None)
+    candidates = [i for i in block if i != units]
+    if not candidates:
+        return Layout(("",) * width, ("",) * width, first, width, 0)
+    header = max(candidates, key=lambda i: (_informative(rows[i]), i))
+    names = [str(c or "").strip() for c in trimmed(rows[header])]
+    if names and names[0].strip("#%/ ") != names[0]:
+        names[0] = names[0].strip("#%/ ")
+        widest = max(len(row) for row in head[first:])  # cells that are empty in most rows have names too
+        names = names[1:] if not names[0] and len(names) > max(width, widest) else names
+    if len(names) == width - 1:
+        names = ["", *names] if all(names) and _counts(head[first:]) else [*names, ""]
+    if len(names) < width - 1:
+        right = "as many as names: decimal commas become points, or columns stand between ';'"
+        raise InputError(f"{width} values under {len(names)} names", where, right)
+    width = len(names) if len(names) > width else width
+    above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
+    if above and len(set(names)) < len(names):  # names of groups over those of columns
+        groups = _forward_filled(above[-1])
+        names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
+    if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
+        names = [names[0], *(f"{name} {remark}".strip() for name, remark in zip(names[1:], remarks[1:], strict=True))]
+    return Layout(tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width,
+                  block[0])  # fmt: skip
+
+
+def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
+    """The rows over the readings that may be names, units, or groups of names: those that fill half of the table."""
+    block: list[int] = []
+    for i in reversed(range(max(0, first - TALLEST), first)):
+        count = sum(bool(str(c).strip()) for c in rows[i] if c is not None)
+        if count and (count < 0.5 * width or _all_readings(rows[i])):
+            break
+        if count:
+            block.insert(0, i)
+    return block
+
+
+def _informative(row: Row) -> int:
+    """How many of its cells say what a column is, or at least differ from each other."""
+    cells = {str(c).strip() for c in row if c is not None and str(c).strip()}
+    return sum(2 if quantities_of(c) or roles_of(c) or is_time(c) or split_unit(c)[1] else 0 for c in cells) + (
+        len(cells) > 1
+    )
+
+
+def _counts(rows: Sequence[Row]) -> bool:
+    """Do the rows begin with their number, as statistics programs write them?"""
+    first = [number(row[0]) for row in rows[:SAMPLE] if row]
+    return len(first) > 1 and bool((np.diff(first[:FIRM]) == 1).all())
+
+
+def _forward_filled(cells: Sequence[str]) -> list[str]:
+    """Cells that are merged with those after them in each of them."""
+    out: list[str] = []
+    for cell in cells:
+        out.append(cell or (out[-1] if out else ""))
+    return out
+
+
+def trimmed(row: Row) -> Row:
+    """Without empty cells at the end: many exports close each line with a delimiter."""
+    end = len(row)
+    while end and (row[end - 1] is None or not str(row[end - 1]).strip()):
+        end -= 1
+    return row[:end]
+
+
+def _readings(row: Row) -> bool:
+    cells = [c for c in row if c is not None and str(c).strip()]
+    good = sum(is_reading(c) for c in cells)
+    return good > 0 and good >= LEAST * len(cells) and any(np.isfinite(number(c)) for c in cells)
+
+
+def _all_readings(row: Row) -> bool:
+    return all(is_reading(c) for c in row if c is not None and str(c).strip())
+
+
+def _first(rows: Sequence[Row], width: int, where: str) -> int:
+    """The first of several rows of readings, as wide as the table or less where cells are empty."""
+    fits = [_readings(row) and width / 2 < len(row) and len(trimmed(row)) <= width for row in rows]
+    for i in range(len(rows)):
+        if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
+            while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
+                i -= 1  # a remark behind the readings of a first row
+            return i
+    raise InputError("fewer than three rows of readings: it is no record", where, "at least 3 rows of numbers")
+
+
+def _kinds(row: Row, width: int) -> list[bool]:
+    return [is_reading("" if c is None else c) for c in row[:width]]
+
+
+def _all_units(row: Row) -> bool:
+    cells = [str(c).strip() for c in row if c is not None and str(c).strip()]
+    return bool(cells) and sum(is_unit(c) for c in cells) >= 0.6 * len(cells)
+
+
+def _padded(row: Row, width: int) -> list[str]:
+    cells = ["" if c is None else str(c).strip() for c in row]
+    return [*cells, *[""] * width][:width]

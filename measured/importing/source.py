@@ -1,0 +1,269 @@
+"""A recording as its file has it: named columns of cells, their units, and where it came from."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import zipfile
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.description.names import plain_header
+from geom.errors import InputError
+from measured.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from measured.importing.long_table import side_by_side
+from measured.importing.rows import Layout, layout
+from measured.importing.text import text_table
+from measured.importing.words import is_time, quantities_of, roles_of
+from measured.recordings.csv_file import CHUNK
+from measured.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
+from measured.recordings.units import QUANTITIES
+
+Array = NDArray[np.float64]
+TEXT = 0.2  # share of cells that are words from which a column holds no readings
+BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+EPOCH = np.datetime64(0, "s")  # 1970
+UNNAMED = re.compile(r"column \d+")
+UNIT_NAMES = ("unit", "einheit", "unité", "unità")
+ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
+BOOKS = (".xlsx", ".xlsm")
+UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
+
+
+@dataclass(frozen=True)
+class Source:
+    """cells : column -> its cells, numbers where the file has numbers;  units : column -> unit as the file writes it
+
+    labels : column -> its name without the unit;  start : of its clock, where the format keeps one (s since 1970)
+    notes : what was done to read it;  unnamed : the file has no header;  period_s : between rows, by its preamble
+    """
+
+    file: Path
+    cells: Mapping[str, Sequence[Any]]
+    units: Mapping[str, str]
+    labels: Mapping[str, str]
+    notes: tuple[str, ...] = ()
+    start: float | None = None
+    unnamed: bool = False
+    period_s: float | None = None
+    values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def rows(self) -> int:
+        return len(next(iter(self.cells.values())))
+
+    def numbers(self, column: str) -> Array:
+        """(rows,) readings, nan where there is none or no number; on and off are 1 and 0."""
+        if column not in self.values:
+            self.values[column] = as_numbers(self.cells[column])
+        return self.values[column]
+
+    def is_filled(self, column: str) -> bool:
+        """Does it hold anything but ways to write that nothing was read?"""
+        return _any(self.cells[column])
+
+    def is_numeric(self, column: str) -> bool:
+        """Does it hold numbers, but for a few words such as "overload"?"""
+        finite = np.isfinite(self.numbers(column))
+        if isinstance(cells := self.cells[column], np.ndarray) and cells.dtype.kind == "f":
+            return bool(finite.any())
+        words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
+        return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
+
+
+def _empty(cell: Any) -> bool:
+    return cell is None or (isinstance(cell, float) and np.isnan(cell)) or str(cell).strip().lower() in EMPTY
+
+
+def as_numbers(cells: Sequence[Any]) -> Array:
+    """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
+    if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
+        return np.asarray(cells, float)
+    quick = np.fromiter(map(_quick, cells), float, len(cells))
+    for i in np.flatnonzero(~np.isfinite(quick)):
+        quick[i] = _number(cells[int(i)])
+    return quick
+
+
+def _quick(cell: Any) -> float:
+    """By Python's own reader, which takes nearly all cells; it would also take 1_000."""
+    try:
+        return float("nan") if isinstance(cell, str) and "_" in cell else float(cell)
+    except (TypeError, ValueError):
+        return float("nan")
+
+
+def _number(cell: Any) -> float:
+    return float("nan") if cell is None else _of_word(str(cell))
+
+
+@lru_cache(maxsize=2**16)
+def _of_word(cell: str) -> float:
+    value = number(cell)
+    return SWITCH.get(cell.strip().lower(), value) if np.isnan(value) else value
+
+
+def read_source(file: Path) -> Source:
+    """Any file a recorder writes. InputError where it is no record, MissingDependency where a package is not there."""
+    if not file.is_file():
+        raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
+    suffix = file.suffix.lower()
+    if suffix in BOOKS:
+        return _of_rows(file, _book(file), _formulas(file))
+    return _of_frame(file) if suffix in BINARY else _of_table(file, *text_table(file))
+
+
+def _formulas(file: Path) -> list[str]:
+    """A doubt where formulas have no value, as programs leave them that do not calculate."""
+    with zipfile.ZipFile(file) as book:
+        sheets = [
+            inside for inside in book.namelist() if inside.startswith("xl/worksheets/") and inside.endswith(".xml")
+        ]
+        heads = [book.open(sheet).read(CHUNK) for sheet in sheets]  # of a huge sheet its beginning tells enough
+    count = sum(len(UNCALCULATED.findall(head)) for head in heads)
+    return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
+
+
+def _book(file: Path) -> list[list[Any]]:
+    """The rows of the worksheet with the most cells."""
+
+    def read() -> list[list[Any]]:
+        with workbook(file) as book:
+            sheets = [worksheet_rows(sheet, file) for sheet in book.worksheets]
+        return max(sheets, key=lambda rows: len(rows) * len(rows[0]) if rows else 0)
+
+    rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
+    return rows
+
+
+def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
+    plan = layout(rows, str(file))
+    body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+    return _of_table(file, plan, [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)], notes)
+
+
+def _of_table(
+    file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
+) -> Source:  # fmt: skip
+    """Named columns of a table that was found in the file."""
+    unnamed = not any(plan.names)
+    names = _once(_plain(plan.names))
+    if beside := side_by_side(names, columns, str(file)):
+        return _source(file, list(beside), list(beside.values()), {}, notes)
+    doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
+    doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
+    source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
+    return replace(source, unnamed=unnamed, period_s=period_s)
+
+
+def _of_frame(file: Path) -> Source:
+    table = read_recording(file)
+    units, start, notes = _described(file)
+    names = _once(_plain(table.columns))
+    units = {name: units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
+    return _source(file, names, list(table.cells.values()), units, notes, start)
+
+
+def _plain(names: Sequence[str]) -> list[str]:
+    """Names of columns as a sheet may have them."""
+    return [plain_header(name) or f"column {j + 1}" for j, name in enumerate(names)]
+
+
+def _source(
+    file: Path, names: Sequence[str], columns: Sequence[Any], units: Mapping[str, str], notes: Sequence[str],
+    start: float | None = None,
+) -> Source:  # fmt: skip
+    pairs = list(zip(names, columns, strict=True))
+    cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
+    if sum(map(_any, cells.values())) < 2:
+        raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
+    split = {n: split_unit(n) for n in cells}
+    stems = Counter(label for label, unit in split.values() if unit)
+    split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
+    unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
+    for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
+        is_unit_column = header.lower().startswith(UNIT_NAMES)
+        beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
+        if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
+            unit_texts[before] = unit
+    labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
+    return Source(file, cells, unit_texts, labels, tuple(notes), start)
+
+
+def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
+    """Is the last letter of a name that of a phase or a sensor: one of several, or of a unit that does not fit?"""
+    last = header[-1:]
+    if not letter or is_time(label) or last.lower() != letter[-1].lower() or header[-2:-1].isalpha():
+        return False
+    quantities = quantities_of(label) or (["temperature"] if roles_of(label) else [])
+    fits = any(unit_of(letter) in QUANTITIES[q].units for q in quantities)
+    return (stems[label] > 1 and last in "ABCUVW") or (bool(quantities) and not fits) or bool(ONE_OF.search(label))
+
+
+def _in_cells(cells: Sequence[Any]) -> str:
+    """The unit behind the first number of a column of cells such as "23.5 C"."""
+    if isinstance(cells, np.ndarray):
+        return ""
+    first = next((m for c in cells if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip()))), None)
+    return first[2] if first and is_unit(first[2]) else ""
+
+
+def _any(cells: Sequence[Any]) -> bool:
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "f":
+        return bool(np.isfinite(cells).any())
+    return any(not _empty(c) for c in cells)
+
+
+def _once(names: Sequence[str]) -> list[str]:
+    """Names, numbered where one comes twice."""
+    count: Counter[str] = Counter()
+    out = []
+    for name in names:
+        count[name] += 1
+        out.append(name if count[name] == 1 else f"{name} {count[name]}")
+    return out
+
+
+def _described(file: Path) -> tuple[dict[str, str], float | None, list[str]]:
+    """Units, and the start of the clock (s since 1970), of formats that keep them; a doubt where they lack a clock."""
+    if file.suffix.lower() == ".tdms":
+        from nptdms import TdmsFile
+
+        channels = [c for group in TdmsFile.read_metadata(file).groups() for c in group.channels()]
+        starts = [c.properties.get("wf_start_time") for c in channels]
+        units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
+        timeless = all("wf_increment" not in c.properties for c in channels)
+        notes = [
+            f"{file.name}: no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
+        ] * timeless
+        return units, _seconds(next((s for s in starts if s is not None), None)), notes
+    if file.suffix.lower() == ".mf4":
+        from asammdf import MDF
+
+        with MDF(file) as mdf:
+            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time), []
+    return {}, None, []
+
+
+def _seconds(instant: Any) -> float | None:
+    """Seconds since 1970, of a datetime or a NumPy instant."""
+    if instant is None:
+        return None
+    if isinstance(instant, datetime):
+        stamp = (instant if instant.tzinfo else instant.replace(tzinfo=UTC)).timestamp()
+    else:
+        stamp = float((np.datetime64(instant) - EPOCH) / np.timedelta64(1, "s"))
+    return stamp if np.isfinite(stamp) and stamp > 0 else None
+
+
+def signature(source: Source) -> frozenset[str]:
+    """What tells the files of one recorder from those of another: the names of its columns."""
+    return frozenset(label.lower() for name, label in source.labels.items() if name != TIME)

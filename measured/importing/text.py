@@ -1,0 +1,156 @@
+"""Text exports: any encoding, delimiter and decimal sign, with or without a preamble, into named columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from geom.errors import InputError
+from measured.importing.cells import in_thousands, is_reading, number
+from measured.importing.rows import SAMPLE, Layout, layout
+from measured.recordings.csv_file import Body, chunks
+
+DELIMITERS = ("\t", ";", ",", "|")
+BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have single blanks in them
+SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
+BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
+# Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
+PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250")
+LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñ℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
+INTERVAL = re.compile(
+    r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
+    r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
+)
+TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
+DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
+ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
+KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
+BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
+
+Columns = list[Any]
+
+
+def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
+    """Where the table stands in a text file, its columns (numbers, or cells where there are words), and doubts.
+
+    The last is the time between rows (s) where the lines before the header say it.
+    """
+    text, notes = decoded(b"".join(chunks(file)), file), []
+    if ARROW.search(text[:10_000]):
+        text = ARROW.sub(lambda match: f"{match[1]}\t", text)
+    if text.startswith("{"):  # an object of JSON on every line
+        text = re.sub('[{}"]', "", text)
+    lines = text.splitlines(keepends=True)
+    if sum(line.count('"') for line in lines) % 2:
+        at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
+        notes.append(f"{file.name}: a quotation mark in line {at} has no partner; such marks are left out")
+        lines = [line.replace('"', "") for line in lines]
+    sign = delimiter(lines)
+    head = _split(lines[: 2 * SAMPLE], sign)
+    if keys := _keys(head):
+        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
+        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes, None
+    plan = layout(head, str(file))
+    columns = _plain(file, lines[plan.first :], sign, plan)
+    if columns is None:
+        rows = _split(lines, sign)[plan.first :]
+        long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
+        notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
+        columns = _raw([row for row in rows if any(row)], plan.width)
+        whole = in_thousands(columns)
+        notes += [f"{file.name}: the sign in the numbers of '{plan.names[j] or f'column {j + 1}'}' stands between "
+                  "thousands" for j in whole]  # fmt: skip
+        columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
+    return plan, columns, notes, _interval("".join(lines[: plan.first]))
+
+
+def _interval(preamble: str) -> float | None:
+    """Time between rows (s) as lines before a header give it: "Delta_X 0,5", "Sampling interval, 5 s"."""
+    match = INTERVAL.search(preamble)
+    step = number(match[2]) * TIMES.get((match[1] or match[3] or "s").lower(), 1.0) if match else 0.0
+    return step if step > 0 else None
+
+
+def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | None:
+    """By the reader of plain CSV, which a table is once signs are replaced; None where it is not that simple."""
+    content = "".join(lines)
+    if '"' in content or sign in BLANKS or (sign != "," and "," in content and BOTH_SIGNS.search(content)):
+        return None
+    if sign != ",":
+        content = content.replace(",", ".").replace(sign, ",")
+    try:
+        return Body(file, [str(j) for j in range(plan.width)], strict=False).columns(content.encode(), 0)
+    except csv.Error:
+        return None
+
+
+def _raw(rows: list[list[str]], width: int) -> Columns:
+    return [[row[j] if j < len(row) else None for row in rows] for j in range(width)]
+
+
+def _keys(rows: list[list[str]]) -> list[str]:
+    """The names in rows such as "T1: 23.5, T2: 24.1", where all have the same."""
+    patterns = [tuple(m[1] if (m := KEYED.fullmatch(c)) else "" for c in row) for row in rows if any(row)]
+    same = max(set(patterns), key=patterns.count, default=())
+    return (
+        list(same)
+        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.9 * len(patterns)
+        else []
+    )
+
+
+def decoded(raw: bytes, file: Path) -> str:
+    """UTF-8, UTF-16 with its mark or without, or the code page whose letters are those of headers."""
+    for bom, encoding in BOMS.items():
+        if raw.startswith(bom):
+            return raw.decode(encoding, errors="replace")
+    for encoding, zeros in (("utf-16-le", raw[1:200:2]), ("utf-16-be", raw[:200:2])):
+        if len(zeros) > 4 and zeros.count(0) > 0.9 * len(zeros):
+            return raw.decode(encoding, errors="replace")
+    if b"\0" in raw:
+        raise InputError("holds zero bytes, so it is no text: it is no record", str(file),
+                         "CSV or other text, .xlsx, .tdms, .mf4 or .parquet")  # fmt: skip
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
+        return raw.decode(max(PAGES, key=lambda page: _worth(odd.decode(page, "ignore"))), "replace")
+
+
+def _worth(text: str) -> int:
+    """How many letters in it are those of headers, and degrees above all."""
+    return len(LETTERS.findall(text)) + DEGREE * len(re.findall("[°º][CFK]|℃", text))
+
+
+def delimiter(lines: list[str]) -> str:
+    """The sign between columns, one or two blanks: the one that leaves the most cells that are readings.
+
+    Blanks stand within instants too, so they are it only where no other sign leaves readings nearly everywhere.
+    """
+    middle = max(0, len(lines) // 2 - SAMPLE_LINES // 2)
+    sample = [line for line in lines[middle : middle + SAMPLE_LINES] if line.strip()]
+    scores, shares = {}, {}
+    for sign in (*DELIMITERS, *reversed(BLANKS)):
+        cells = [cell for row in _split(sample, sign) if len(row) > 1 for cell in row]
+        good = sum(is_reading(cell) or bool((m := KEYED.fullmatch(cell)) and is_reading(m[2])) for cell in cells)
+        scores[sign], shares[sign] = (good * good / len(cells), good / len(cells)) if cells else (0.0, 0.0)
+    sure = [sign for sign in DELIMITERS if shares[sign] >= 0.9] or [*scores]
+    return max(sure, key=lambda sign: scores[sign])
+
+
+def _split(lines: list[str], sign: str) -> list[list[str]]:
+    """Cells of lines."""
+    if sign in BLANKS:
+        return [re.split(BLANKS[sign], line.strip()) if line.strip() else [] for line in lines]
+    try:
+        return [[cell.strip() for cell in row] for row in _rows("".join(lines), sign)]
+    except csv.Error:
+        return [[cell.strip() for cell in line.split(sign)] for line in lines]
+
+
+def _rows(text: str, sign: str) -> Iterator[list[str]]:
+    return csv.reader(io.StringIO(text, newline=""), delimiter=sign, skipinitialspace=True)

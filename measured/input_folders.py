@@ -1,0 +1,14 @@
+"""Where a case keeps its inputs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+CASE = "case.toml"
+INPUTS = ("tests", "cycles")  # folders of a case
+
+
+def within_inputs(path: Path) -> bool:
+    """Does a path lie where a case keeps its inputs?"""
+    whole = path.absolute()
+    return any(p.name in INPUTS and (p.parent / CASE).exists() for p in (whole, *whole.parents))

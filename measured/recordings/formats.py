@@ -1,0 +1,241 @@
+"""Recordings as people have them (.csv, .xlsx, .tdms, .mf4, .parquet) into one table.
+
+Channels of several rates share one time column and are empty where they were not sampled.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geom.errors import InputError, MissingDependency
+from geom.limits import BYTES, CELLS
+from geom.plugins import plugins
+from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows
+from lumped.schemas.reader import suggestion
+from measured.recordings.csv_file import read_csv
+from measured.recordings.data_table import DataTable
+
+Array = NDArray[np.float64]
+Columns = Iterable[tuple[object, Any]]  # pairs of a name and its values
+Reader = Callable[[Path], Mapping[str, Any]]  # name -> values; a pandas DataFrame is one too
+READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader
+SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+TIME = "time_s"  # of formats that carry their own time
+SHEETS = (".xlsx", ".tdms")  # formats of several tables
+UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
+GRAIN = 1e-6  # s, below which two instants are one
+Signal = tuple[str, Array, Array]
+
+
+def recording(path: Path) -> Path:
+    """The file itself, or the one file of the same name in another format; two of them are one too many."""
+    if path.is_file():
+        return path
+    if path.exists():
+        raise InputError("is no file", str(path), "a recording")
+    here = sorted(path.parent.iterdir()) if path.parent.is_dir() else []
+    stem = stem_of(path)
+    twins = [p for p in here if _suffix(p) and p.name[: len(stem)] == stem and stem_of(p) == stem]
+    for twin in twins:
+        if not twin.is_file():
+            what = "is a link that leads nowhere" if not twin.exists() else "is no file"
+            raise InputError(what, str(twin), "a recording")
+    if len(twins) > 1:
+        names = " and ".join(twin.name for twin in twins)
+        raise InputError(f"{names} are both there", str(path), f'one of them, or file = "tests/{twins[0].name}"')
+    if twins:
+        return twins[0]
+    beside = [p.name for p in here if _suffix(p) or (p.stem == stem and p.suffix != ".toml")]
+    file = path if _suffix(path) else path.with_name(f"{path.name}.csv")
+    raise InputError(
+        "no such file",
+        str(file),
+        f"one of {', '.join(SUFFIXES)}; found there: {', '.join(beside) or 'no recording at all'}",
+    )
+
+
+def _suffix(path: Path) -> str:
+    """The ending that says the format, the longest that fits; "" for none of those that are read."""
+    return max((s for s in SUFFIXES if path.name.lower().endswith(s)), key=len, default="")
+
+
+def stem_of(path: Path) -> str:
+    """The name of a recording without the ending that says its format."""
+    return path.name[: len(path.name) - len(_suffix(path))]
+
+
+def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable:
+    """The table of a recording. worksheet : of a workbook; of a TDMS file, the group.
+
+    least : rows without which it is none
+    """
+    suffix = _suffix(file)
+    readers: dict[str, Callable[[], DataTable]] = {
+        ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file),
+        ".xlsx": lambda: _table(file, "an Excel workbook", "openpyxl", lambda: _xlsx(file, worksheet)),
+        ".tdms": lambda: _table(file, "TDMS", "nptdms", lambda: _tdms(file, worksheet)),
+        ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
+        ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
+        **{f".{name}": partial(_foreign, file, name, read) for name, read in READERS.items()},
+    }  # fmt: skip
+    if suffix not in readers:
+        raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
+    if worksheet and suffix not in SHEETS:
+        raise InputError(f"'{worksheet}' is asked for, and such a file has no worksheets", str(file),
+                         f"no worksheet, or a file ending in {' or '.join(SHEETS)}")  # fmt: skip
+    table = readers[suffix]()
+    if table.rows < least:
+        raise InputError(f"the file holds {table.rows} rows", str(file), f"at least {least} rows under the header")
+    return table
+
+
+def _table(file: Path, kind: str, package: str, read: Callable[[], Columns]) -> DataTable:
+    check_size(file)
+    table: DataTable = guarded(file, kind, package, lambda: DataTable.of(read(), file))
+    return table
+
+
+def _foreign(file: Path, name: str, read: Reader) -> DataTable:
+    """By the reader of another package."""
+    return _table(file, f"a .{name} file", name, lambda: read(file).items())
+
+
+def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
+    """What a reader returns; whatever it trips over becomes one message."""
+    try:
+        return read()
+    except ImportError:
+        missing = f"{file}: reading {kind} needs the package {package}; pip install 'thermoscope[bench]'"
+        raise MissingDependency(missing) from None
+    except InputError:
+        raise
+    except Exception as fault:
+        first = str(fault).splitlines()[0] if str(fault) else type(fault).__name__
+        raise InputError(f"not readable as {kind}: {first}", str(file), f"a file that is really {kind}") from None
+
+
+def _xlsx(file: Path, worksheet: str) -> Columns:
+    with workbook(file) as book:
+        sheets = {sheet.title: sheet for sheet in book.worksheets}
+        if worksheet and worksheet not in sheets:
+            raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
+        header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))], file) or [[]]
+    names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
+    return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)
+
+
+@contextmanager
+def workbook(file: Path) -> Iterator[Any]:
+    """A workbook's values, not its formulas."""
+    from openpyxl.reader.excel import ExcelReader
+
+    class Reader(ExcelReader):
+        """Sheets of cells alone: openpyxl trips over a chart sheet that draws nothing."""
+
+        def read_chartsheet(self, sheet: Any, rel: Any) -> None:
+            pass
+
+    check_archive(file)
+    reader = Reader(file, read_only=True, data_only=True, keep_links=False)
+    reader.read()
+    book = reader.wb
+    try:
+        if not book.worksheets:
+            raise InputError("holds charts alone", str(file), "a workbook with a sheet of cells")
+        yield book
+    finally:
+        book.close()
+
+
+def worksheet_rows(sheet: Any, file: Path) -> list[list[Any]]:
+    """Cells row by row, as wide as the widest row; None for empty cells and for errors such as #DIV/0!."""
+    from openpyxl.cell.cell import ERROR_CODES
+
+    sheet.reset_dimensions()  # as the file claims them, rows and columns without a cell would be filled up
+    where = f"{file} worksheet '{sheet.title}'"
+    every = counted_rows(sheet.iter_rows(values_only=True), where)
+    rows = [[None if c in ERROR_CODES or c == "" else c for c in row] for row in every]
+    width = max((j + 1 for row in rows for j, c in enumerate(row) if c is not None), default=0)
+    while rows and all(c is None for c in rows[-1]):
+        rows.pop()
+    check_shape(len(rows), width, where)
+    return [[*row, *[None] * width][:width] for row in rows]
+
+
+def _parquet(file: Path) -> Columns:
+    from pyarrow.parquet import ParquetFile
+
+    with ParquetFile(file) as parquet:
+        about = parquet.metadata
+        check_shape(about.num_rows, about.num_columns, file)
+        BYTES.check(sum(about.row_group(i).total_byte_size for i in range(about.num_row_groups)), file, "holds")
+        table = parquet.read()
+    columns = zip(table.column_names, table.columns, strict=True)
+    return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)]
+
+
+def _tdms(file: Path, group: str) -> Columns:
+    from nptdms import TdmsFile
+
+    with TdmsFile.read_metadata(file) as about:
+        sizes = [len(channel) for g in about.groups() for channel in g.channels()]
+        check_shape(max(sizes, default=0), len(sizes), file)
+    with TdmsFile.read(file) as tdms:
+        groups = [g for g in tdms.groups() if not group or g.name == group]
+        if not groups and group:
+            raise InputError(f"no group '{group}'", str(file), suggestion(group, [g.name for g in tdms.groups()]))
+        if not groups:
+            raise InputError("holds no channels", str(file), "a TDMS file with readings")
+        channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
+        names = [c.name for _, c in channels]
+        for _, channel in channels:
+            if (step := channel.properties.get("wf_increment", 0.0)) < 0:
+                raise InputError(
+                    f"its wf_increment is {step:g} s",
+                    f"{file} channel '{channel.name}'",
+                    "a time from row to row above 0",
+                )
+        return joined((c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels)
+
+
+def _tdms_signal(signal: Any) -> tuple[Array, Array]:
+    """Times (s) by the waveform's increment where it has one, else by rows."""
+    values = np.asarray(signal[:])
+    step, offset = signal.properties.get("wf_increment"), signal.properties.get("wf_start_offset", 0.0)
+    time = np.arange(len(values), dtype=float)
+    return (offset + step * time if step else time), values
+
+
+def _mf4(file: Path) -> Columns:
+    from asammdf import MDF
+
+    with MDF(file) as mdf:
+        for group in mdf.groups:
+            check_shape(group.channel_group.cycles_nr, len(group.channels), file)
+        signals = [s for s in mdf.iter_channels(skip_master=True) if len(s.samples) and s.samples.ndim == 1]
+        return joined((s.name, np.asarray(s.timestamps, float), np.asarray(s.samples)) for s in signals)
+
+
+def joined(signals: Iterable[Signal]) -> Columns:
+    """Signals (name, time, values) of any rates on all their instants, with a column `time_s`."""
+    whole = list(signals)
+    instants = np.unique(np.round(np.concatenate([t for _, t, _ in whole]) / GRAIN)) if whole else np.zeros(0)
+    CELLS.check(instants.size * (len(whole) + 1), "signals of several rates", "need")
+    columns: dict[str, Array] = {TIME: instants * GRAIN}
+    for name, time, values in whole:
+        at = np.searchsorted(instants, np.round(time / GRAIN))
+        if values.dtype.kind == "M":  # times of their own
+            values = values.astype("datetime64[us]").astype(float) * 1e-6  # s since 1970
+        if np.issubdtype(values.dtype, np.number):
+            column = np.full(instants.size, np.nan)
+            column[at] = values
+            columns[name if name not in columns else f"{name} (recorded)"] = column
+    return columns.items()

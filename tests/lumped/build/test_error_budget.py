@@ -1,0 +1,100 @@
+"""The error budget against what it estimates: a finer mesh, a finer network, and what a declared network has."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inside_parts import point_in
+from small_case import small_case
+
+from geom import load_machine
+from lumped.build import pipeline, rated_errors
+from lumped.build.fixed_coefficients import rated
+from lumped.build.pipeline import Meshing, build, coefficients_on, meshed
+from lumped.build.rated_errors import HOT, Reader, at_rated_point, cached_errors
+from lumped.condensation.error_budget import MonitoredPlaces
+from lumped.condensation.reduction import Recipe
+from thermoscope.commands.test.compare import compare
+from thermoscope.commands.use.simulate import simulate
+
+pytestmark = pytest.mark.heavy
+
+MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
+RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)
+SENSORS = {"T_winding": "winding", "T_end": "endcap.left"}
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("THERMOSCOPE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def built(cache):
+    return build(load_machine(MACHINE), SIZE, SEGMENTS, RECIPE, axial_m=AXIAL)
+
+
+@pytest.fixture(scope="module")
+def looks(built):
+    places = built.network.places
+    at = {"T_point": np.array(point_in(built.machine, "stator.core"))}
+    return MonitoredPlaces({n: places[p].mean for n, p in SENSORS.items()}, {**SENSORS, "T_point": "stator.core"}, at)
+
+
+@pytest.fixture(scope="module")
+def found(built, looks):
+    return at_rated_point(built, looks)
+
+
+def test_every_sensor_and_every_heated_part_has_an_error(built, found):
+    heated = {f"{HOT}{part}" for part in ("winding", "winding.left", "winding.right")}
+    assert {*SENSORS, "T_point"} | heated <= found.mesh_K.keys()
+    assert found.mesh_K.keys() == found.condensation_K.keys()
+    assert min(found.mesh_K.values()) > 0.0
+
+
+def test_a_mesh_twice_as_fine_lies_within_the_mesh_error(built, looks, found):
+    asked = rated(built.machine, built.network, *coefficients_on(built.machine, built.mesh))
+    finer = meshed(built.machine, Meshing(SIZE / 2, SEGMENTS, 2.0, AXIAL / 2)).field
+    here, there = (Reader(f, built.network, asked, looks).read(asked.of_field(f)) for f in (built.field, finer))
+    for name, error in found.mesh_K.items():
+        assert abs(here[name] - there[name]) < error + 2e-3 * found.rise_K, name
+
+
+def test_a_network_of_more_states_leaves_less(built, looks, found):
+    """Steady, at nominal coefficients; the budget holds the worst of that, of a step of loss and of other points."""
+    larger = build(built.machine, SIZE, SEGMENTS, replace(RECIPE, max_states=None, tolerance=0.01), axial_m=AXIAL)
+    asked = rated(built.machine, built.network, *coefficients_on(built.machine, built.mesh))
+    reader, T = Reader(built.field, built.network, asked, looks), asked.of_field(built.field)
+    small, large = (reader.differences(T, asked.of_network(b.network, built.field)) for b in (built, larger))
+    assert max(large.values()) < 0.5 * max(small.values())
+    assert all(small[name] <= found.condensation_K[name] for name in small)
+
+
+def test_what_was_looked_at_once_is_kept(built, looks, found, monkeypatch):
+    monkeypatch.setattr(rated_errors, "at_rated_point", lambda built, looks: found)
+    first = cached_errors(built, looks)
+    monkeypatch.setattr(rated_errors, "at_rated_point", None)
+    assert cached_errors(built, looks) == first == found
+
+
+def test_coarser_keeps_the_chords_so_that_volumes_agree(built):
+    assert built.meshing.coarser == Meshing(2 * SIZE, SEGMENTS, pipeline.ACROSS / 2, 2 * AXIAL)
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_a_declared_network_has_neither_mesh_nor_condensation(command, tmp_path, capsys):
+    case = small_case(tmp_path)
+    run = {"compare": lambda: compare(str(case), "-"), "simulate": lambda: simulate(str(case), None, None, "-")}
+    run[command]()
+    document = json.loads(capsys.readouterr().out)
+    runs = {"compare": lambda: document["error_budget"].values(),
+            "simulate": lambda: [r["error_budget"] for r in document["runs"]]}  # fmt: skip
+    rows = [place for places in runs[command]() for place in places]
+    assert rows
+    for place in rows:
+        assert (place["mesh_K"], place["condensation_K"]) == (None, None)
+        assert place["place"].startswith("T_")

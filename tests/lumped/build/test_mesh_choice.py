@@ -1,0 +1,105 @@
+"""The mesh of a wish: what it says it leaves, which way it refines, and that it is looked for once."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from geom import load_machine
+from lumped.build import mesh_choice
+from lumped.build.mesh_choice import LARGEST_SHARE, SHARE, chosen_mesh
+from lumped.build.pipeline import Meshing, silent
+
+MACHINE = load_machine("pmsm-m1-no-base")
+FIRST = Meshing(0.2, 24, 0.25, 0.24)
+EXACT = {"winding": 80.0, "bearing": 2.0}
+LOST = {"size_m": 0.002, "across": 0.01, "axial_m": 0.04}  # of the winding's rise, on the first mesh
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
+
+
+def halved(how, way):
+    """How much smaller than the first mesh's elements are, one way."""
+    now, first = getattr(how, way), getattr(FIRST, way)
+    return now / first if way == "across" else first / now
+
+
+def low(how):
+    """Of the exact rise, at order two each way."""
+    return sum(share / halved(how, way) ** 2 for way, share in LOST.items())
+
+
+@pytest.fixture
+def second_order(monkeypatch):
+    """Meshes whose hot spots are low by the square of their elements' size each way; a thousand points, then twice."""
+    solved = []
+
+    def size(machine, how):
+        points = 1000
+        for way in LOST:
+            points *= halved(how, way)
+        return int(points), int(2 * points)
+
+    def ready(machine, how, progress):
+        solved.append(size(machine, how)[1])
+        return SimpleNamespace(meshing=how)
+
+    monkeypatch.setattr(mesh_choice, "meshed", ready)
+    monkeypatch.setattr(mesh_choice, "size_of", size)
+    monkeypatch.setattr(mesh_choice, "_at_rated_point", lambda ready: "rated")
+    monkeypatch.setattr(
+        mesh_choice, "_hot_spots", lambda point, r: {p: T * (1.0 - low(r.meshing)) for p, T in EXACT.items()}
+    )
+    return solved
+
+
+@pytest.mark.parametrize(("accuracy", "axial", "across"), [(14.0, 1, 1), (6.5, 2, 1), (4.5, 4, 1), (2.0, 4, 2)])
+def test_it_is_halved_the_way_that_leaves_most_until_its_share_is_kept(second_order, accuracy, axial, across):
+    found = chosen_mesh(MACHINE, accuracy, FIRST, silent)
+    assert found.met
+    assert (halved(found.meshing, "axial_m"), halved(found.meshing, "across")) == (axial, across)
+    assert found.meshing.size_m == FIRST.size_m
+    assert found.worst <= SHARE * accuracy
+    assert found.percent["winding"] == pytest.approx(125.0 * low(found.meshing), rel=0.06)
+    assert found.percent["bearing"] < found.percent["winding"]  # of a tenth of the largest rise, not of its own
+    assert (found.points, found.unknowns) == (1000 * axial * across, 2000 * axial * across)
+
+
+def test_a_mesh_that_grows_too_large_is_told(second_order):
+    """None beyond what is allowed is chosen; its error is known from finer ones that are looked at once."""
+    found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=4000)
+    assert not found.met
+    assert found.unknowns == 4000
+    assert found.percent["winding"] == pytest.approx(125.0 * low(found.meshing), rel=0.05)
+    assert found.worst > LARGEST_SHARE * 0.1
+
+
+def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
+    """Without a finer one three times what a coarser one moves is told, way by way."""
+    monkeypatch.setattr(mesh_choice, "MOST_SOLVED", 2000)
+    found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=2000)
+    assert not found.met
+    assert found.percent["winding"] == pytest.approx(900.0 * low(FIRST), rel=0.1)
+    assert max(second_order) == 2000
+
+
+def test_an_order_that_does_not_show_is_not_assumed(second_order, monkeypatch):
+    """Where the next halving moves as much again, nothing says how far it goes on: four times that, with safety."""
+    monkeypatch.setattr(
+        mesh_choice, "_hot_spots", lambda point, r: {p: T + halved(r.meshing, "axial_m") for p, T in EXACT.items()}
+    )
+    found = chosen_mesh(MACHINE, 1.0, FIRST, silent, most=4000)
+    assert not found.met
+    assert found.percent["winding"] > 100.0 * 4.0 * 2.0 / 82.0
+
+
+def test_a_machine_is_looked_at_once(monkeypatch):
+    """Meshes and fields in earnest, as coarse as they can be."""
+    found = chosen_mesh(MACHINE, 100.0, FIRST, silent)
+    assert found.met
+    assert {"winding", "winding.left", "winding.right"} <= found.percent.keys()
+    assert 0.0 < found.worst < 50.0
+    monkeypatch.setattr(mesh_choice, "meshed", None)
+    assert chosen_mesh(MACHINE, 100.0, FIRST, silent) == found

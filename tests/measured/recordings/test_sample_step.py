@@ -1,0 +1,132 @@
+"""The sample step is the tool's: inputs that switch keep their instants, and results do not follow it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from small_case import small_case
+
+from lumped.integration.signals import Signals
+from lumped.integration.simulate import Record, simulate
+from lumped.model.build import bare_network, node_link, node_source
+from lumped.transfer.laws import Fixed, InputPower
+from measured.sensors.sampling import Modes, interpolation_error, sample_step, sampled
+from thermoscope.case_folder.folder import load_case
+from validation import diagnose
+from validation.comparison.compare import compare
+
+STEPS = (5.0, 10.0, 30.0)
+
+
+@pytest.fixture(scope="module")
+def switched(tmp_path_factory):
+    """A case recorded every second, its current and wind switched every few minutes, at three sample steps."""
+    case = small_case(tmp_path_factory.mktemp("switched"), step=1.0)
+    file = case / "case.toml"
+    text = file.read_text()
+    out = {}
+    for step in STEPS:
+        file.write_text(text.replace("sample_s = 20", f"sample_s = {step}"))
+        out[step] = load_case(case)
+    return out
+
+
+def test_the_same_errors_at_all_steps(switched):
+    """The error over all sensors within 1 %: the sample steps themselves leave a hundredth of a kelvin."""
+    rms = [compare(folder.case).rmse_K for folder in switched.values()]
+    assert rms == pytest.approx([rms[0]] * 3, rel=0.01)
+    steps = [list(folder.steps.values()) for folder in switched.values()]
+    assert min(map(len, steps)) > 0
+    assert max(s.error_K for own in steps for s in own) < 0.05
+
+
+@pytest.mark.heavy
+def test_the_same_diagnosis_at_all_steps(switched):
+    """Same verdict, the effect as probable within 0.01, sizes within 3 % and within 5 % of the truth (6 W/K).
+
+    Whether it is alone may differ by 0.05: six times the instants are more evidence, by which the temper grows.
+    """
+    found = [diagnose(folder.case).document() for folder in switched.values()]
+    leading = [d["odds"][0] for d in found]
+    assert {(d["verdict"], d["candidates"][0]["effect"]) for d in found} == {("named", "convection@flange")}
+    sure = [d["candidates"][0]["probability"] for d in found]
+    assert sure == pytest.approx([sure[0]] * 3, abs=0.01)
+    assert [o["probability"] for o in leading] == pytest.approx([leading[0]["probability"]] * 3, abs=0.05)
+    sizes = [d["candidates"][0]["amplitude"]["value"] for d in found]
+    assert sizes == pytest.approx([sizes[0]] * 3, rel=0.03)
+    assert sizes == pytest.approx([6.0] * 3, rel=0.05)
+
+
+def two_bodies():
+    """A winding of a minute in a housing of half an hour, with a fan on it."""
+    net = bare_network("two", {"winding": 300.0, "housing": 5000.0}, ("ambient",))
+    links = [
+        node_link(net, "inside", "link", "winding", "housing", Fixed(5.0)),
+        node_link(net, "still", "film", "housing", "ambient", Fixed(2.0)),
+        node_link(net, "fan", "film", "housing", "ambient", InputPower(10.0, (("speed_rpm", 1000.0, 0.8),))),
+    ]
+    copper = node_source(net, "copper", "copper", {"winding": 1.0}, InputPower(100.0, (("current_A", 100.0, 2.0),)))
+    return net.extended(links, [copper], ())
+
+
+def switching(step=1.0):
+    """Current and speed that switch at odd seconds, with two per cent of noise."""
+    time, rng = np.arange(0.0, 1801.0, step), np.random.default_rng(0)
+    current = np.where((time // 137) % 2 == 0, 100.0, 10.0) * (1.0 + 0.02 * rng.standard_normal(time.size))
+    return time, {"current_A": current, "speed_rpm": np.where((time // 211) % 3 == 0, 3000.0, 0.0)}
+
+
+@pytest.mark.parametrize(("step", "within"), [(5.0, 0.01), (10.0, 0.02), (30.0, 0.05)])
+def test_wider_instants_keep_what_the_inputs_did_between_them(step, within):
+    """Against every recorded second; one value per instant was off by 1 to 6 K."""
+    net, (time, inputs) = two_bodies(), switching()
+    rows, grid = [net.place(n).mean for n in net.states], np.arange(0.0, 1801.0, step)
+    every = simulate(net, Record(time, inputs, {"ambient": 20.0}), rows=rows)
+    wide = simulate(net, Record(grid, Signals.recorded(inputs, time, grid), {"ambient": 20.0}), rows=rows)
+    assert np.abs(wide.y - every.y[:: int(step)]).max() < within
+    assert wide.steps.knot.size < 0.5 * every.steps.knot.size
+
+
+def test_the_integral_of_a_factor_is_kept_between_all_instants():
+    """Heat of a noisy current, instant by instant, against quadrature of its square between the seconds."""
+    time, inputs = switching()
+    grid, law = np.arange(0.0, 1801.0, 30.0), InputPower(1.0, (("current_A", 1.0, 2.0),))
+    signals = Signals.recorded(inputs, time, grid)
+    first = signals.curve("copper", law)
+    at = np.union1d(np.arange(grid.size), first.inserted)
+    fine = signals.finer(at).curve("copper", law)
+    width = np.diff(np.interp(at, np.arange(grid.size), grid))
+    heat = width * (0.5 * (fine.value[1:] + fine.value[:-1]) + fine.bulge[1:] / 1.5)
+    total = np.add.reduceat(heat, np.searchsorted(at, np.arange(grid.size - 1)))
+    left, right = inputs["current_A"][:-1], inputs["current_A"][1:]
+    exact = ((left**2 + left * right + right**2) / 3.0).reshape(-1, 30).sum(axis=1)
+    np.testing.assert_allclose(total, exact, rtol=1e-9)
+
+
+def test_a_sensor_that_follows_fast_asks_for_short_steps():
+    """The winding's own time constant is 58 s, the housing's half an hour: one sensor at either."""
+    net, (time, inputs) = two_bodies(), switching()
+
+    def chosen(name, wished=None):
+        seen = [(name, net.place(name).mean, 0.05, 0.0)]
+        return sample_step(net, time, inputs, {"ambient": 20.0}, seen, 60.0, wished)
+
+    assert chosen("winding").step_s < chosen("housing").step_s == 10.0  # no wider than the instants of a fit
+    assert chosen("winding").node == "winding"
+    assert chosen("winding").time_constant_s == pytest.approx(58.0, rel=0.1)
+    assert chosen("housing", 5.0).step_s == 5.0
+    assert "every 10 s in warm" in sampled({"warm": chosen("housing")})
+    assert "follows in 56.2 s" in sampled({"warm": replace(chosen("winding"), time_constant_s=56.18)})
+    assert "follows in 10 h" in sampled({"warm": replace(chosen("winding"), time_constant_s=36000.0)})
+
+
+def test_modes_and_what_a_mean_leaves_of_them():
+    """One node of C / G; the mean of 1 - exp(-t / tau) over half a step on both sides, by quadrature."""
+    modes = Modes.of(np.array([[2.0]]), np.array([4000.0]))
+    assert modes.rate == pytest.approx([5e-4])
+    assert (modes.shape @ modes.weight).real == pytest.approx(np.array([[0.5]]))
+    for x in (0.3, 3.0, 30.0):
+        mean = quad(lambda t, x=x: -np.expm1(-x * t), 0.0, 0.5)[0]
+        assert interpolation_error(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)
+    assert interpolation_error(np.array([1e-6]))[0] == pytest.approx(1e-6 / 24.0, rel=1e-3)

@@ -1,0 +1,255 @@
+"""Recordings of strangers, from the file to the comparison: what is left out is said first, a bad column costs one."""
+
+import json
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from logger_formats import signals
+
+from geom.errors import InputError
+from measured.importing.clock import clock_of
+from measured.importing.source import read_source
+from measured.recordings.formats import read_recording
+from thermoscope.case_folder.folder import load_case
+from thermoscope.commands.test.compare import compare as compare_command
+from thermoscope.commands.test.new import Wishes, new, places
+from thermoscope.console.answer import within
+from validation.comparison.compare import compare
+
+S = signals(5.0)
+ROOM = f"{22:.2f}"
+
+
+def table(header, *columns, sep=","):
+    cells = [[c] * len(S["t"]) if isinstance(c, str) else [f"{v:.2f}" for v in c] for c in columns]
+    return "\n".join([header, *(sep.join(row) for row in zip(*cells))]) + "\n"
+
+
+def written(tmp_path, text, **wishes):
+    """The case that is made without a question, and its document."""
+    (tmp_path / "a.csv").write_text(text)
+    out, document = tmp_path / "made", tmp_path / "new.json"
+    assert new([tmp_path / "a.csv"], Wishes(out=out, yes=True, **wishes), str(document)) == 0
+    return load_case(out), json.loads(document.read_text())
+
+
+def test_a_winding_that_was_left_out_stands_in_the_first_line(tmp_path, capsys):
+    """A network without a winding; --place puts it where it belongs."""
+    model = tmp_path / "network.toml"
+    model.write_text(
+        '[network]\nname = "n"\nboundaries = ["ambient"]\n[nodes.frame]\nC_J_K = 900\n[nodes.head]\nC_J_K = 300\n'
+        '[links.a]\nbetween = ["frame", "ambient"]\nG_W_K = 2\n[links.b]\nbetween = ["head", "frame"]\nG_W_K = 5\n'
+        '[losses.heat]\nkind = "constant"\nat = "head"\nP_W = 50\nof = { input = "current_A", at = 9, exponent = 2 }\n'
+    )
+    text = table("t [s],I [A],T_Wickl_U,frame [°C],room [°C]", S["t"], S["I"], S["W"], S["H"], S["A"])
+    _, document = written(tmp_path, text, network=model)
+    first = " ".join(capsys.readouterr().out.split())
+    assert first.startswith("The winding was not placed: 'T_Wickl_U' looks like winding; --place T_Wickl_U=PLACE")
+    assert document["warnings"]
+    (tmp_path / "made").rename(tmp_path / "before")
+    folder, document = written(tmp_path, text, network=model, places=places(["T_Wickl_U=head"]))
+    assert {c.name: c.place for c in folder.case.tests[0].channels} == {"T_Wickl_U": "head", "frame [°C]": "frame"}
+    assert document["warnings"] == []
+
+
+def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
+    with pytest.raises(InputError, match=r"no column 'T_Wikl_U'.*did you mean 'T_Wickl_U'"):
+        written(tmp_path, table("t [s],I [A],T_Wickl_U", S["t"], S["I"], S["W"]), places={"T_Wikl_U": "winding"})
+    with pytest.raises(InputError, match="no COLUMN=PLACE"):
+        places(["T_Wickl_U"])
+
+
+@pytest.mark.parametrize(
+    ("header", "columns", "words"),
+    [("t [s],T_winding [°C],room [°C]", "tWA", "No column says what heats it."),
+     ("t [s],Heat flow [kJ],T_winding [°C],room [°C]", "tPWA", "The only heat was left out: 'Heat flow"),
+     ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
+     ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone.")],
+)  # fmt: skip
+def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, words, capsys):
+    written(tmp_path, table(header, *(S[c] for c in columns)))
+    assert " ".join(capsys.readouterr().out.split()).startswith(words)
+
+
+def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path, capsys):
+    folder, _ = written(tmp_path, table("t [s],I [A],T_Lager [°C],T_room [°C]", S["t"], S["I"], S["B"], S["A"]))
+    capsys.readouterr()
+    compare_command(str(folder.settings.path), None)
+    assert "is measured at lager alone" in " ".join(capsys.readouterr().out.split())[:60]
+    assert any("measured at lager alone: no reading says how warm the winding is" in note for note in folder.notes)
+    with_winding, _ = written(
+        (tmp_path / "b").mkdir() or tmp_path / "b",
+        table("t [s],I [A],T_Lager [°C],T_Wicklung [°C]", S["t"], S["I"], S["B"], S["W"]),
+    )
+    assert not any("alone" in note for note in with_winding.notes)
+
+
+def test_the_table_of_guesses_keeps_its_doubts_whole_at_80_columns(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # a long folder is no part of the table
+    written(Path(), table("t [s],I [A],T_winding [°C],a long name of some angle [rad],c state", S["t"], S["I"], S["W"],
+                            S["A"], "3"))  # fmt: skip
+    out = capsys.readouterr().out
+    assert max(map(len, out.splitlines())) <= 80
+    assert "…" not in out
+    assert "its unit 'rad' is of nothing a model reads" in " ".join(out.split())
+
+
+def test_a_code_makes_no_first_network_of_its_own(tmp_path):
+    """One 9999 in a temperature: the capacity is that of the record without it."""
+    sizes = []
+    for name, winding in (("plain", S["W"]), ("coded", np.where(S["t"] == 250.0, 9999.0, S["W"]))):
+        (tmp_path / name).mkdir()
+        folder, _ = written(tmp_path / name, table("t [s],I [A],T_winding [°C]", S["t"], S["I"], winding))
+        network = tomllib.loads((tmp_path / name / "made" / "network.toml").read_text())
+        sizes.append(network["nodes"]["winding"]["C_J_K"])
+        assert np.isfinite(compare(folder.case).rmse_K)
+    assert sizes[1] == pytest.approx(sizes[0], rel=0.02)
+
+
+def test_codes_are_codes_of_temperatures_only(tmp_path):
+    """A plateau of 1370 rpm is a speed."""
+    speed = np.where(S["t"] < 100.0, 0.0, 1370.0)
+    folder, _ = written(tmp_path, table("t [s],n [rpm],I [A],T_winding [°C]", S["t"], speed, S["I"], S["W"]))
+    assert folder.case.tests[0].inputs["speed_rpm"].max() == 1370.0
+
+
+@pytest.mark.parametrize("bad", ["1e30", "abc", "", "-5e7"])
+def test_one_bad_column_costs_one_column(tmp_path, bad):
+    """A temperature that cannot be one is left out and said; the rest is compared."""
+    text = table("t [s],I [A],T_winding [°C],T_coil [°C],T_room [°C]", S["t"], S["I"], S["W"], bad, S["A"])
+    folder, document = written(tmp_path, text)
+    columns = {c["column"]: c for c in document["tests"][0]["columns"]}
+    assert [c.name for c in folder.case.tests[0].channels] == ["T_winding [°C]"]
+    assert columns["T_coil [°C]"]["doubt"]
+
+
+@pytest.mark.parametrize(("factor", "offset", "unit"), [(1.0, 273.15, "kelvin"), (1.8, 32.0, "Fahrenheit")])
+def test_all_temperatures_in_another_unit_are_seen_by_the_doctor(tmp_path, factor, offset, unit):
+    from thermoscope.case_folder.doctor import examined
+    from thermoscope.case_folder.folder import patient_of
+
+    folder, _ = written(tmp_path, table("t [s],I [A],T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    network = folder.case.model.network
+    found = lambda: [f.what for f in examined([patient_of(folder.settings.tests[0])], network)]  # noqa: E731
+    assert not any(unit in what for what in found())
+    file = tmp_path / "made" / "tests" / "a.csv"
+    file.write_text(table("time_s,I [A],T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"] * factor + offset,
+                          S["A"] * factor + offset))  # fmt: skip
+    assert any(unit in what for what in found())
+
+
+def test_two_doubts_of_one_file_are_both_said(tmp_path, capsys):
+    """An unclosed quotation mark, and rows that share their minute."""
+    stamps = [f"12:{i // 12:02d}" for i in range(len(S["t"]))]
+    rows = "\n".join(f"{s},{i:.1f},{w:.2f},{'x' if k != 30 else chr(34) + 'fan'}" for k, (s, i, w) in
+                     enumerate(zip(stamps, S["I"], S["W"])))  # fmt: skip
+    written(tmp_path, f"Time,I [A],T_winding [°C],note\n{rows}\n")
+    out = " ".join(capsys.readouterr().out.split())
+    assert "a quotation mark in line 32 has no partner" in out
+    assert "12 rows share each time" in out
+
+
+def test_formulas_without_values_are_said(tmp_path):
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    book.active.append(["t [s]", "T_winding [°C]", "I [A]"])
+    for k in range(20):
+        book.active.append([k, 20.0 + k, f"=B{k + 2}*2"])
+    book.save(tmp_path / "a.xlsx")
+    assert zipfile.is_zipfile(tmp_path / "a.xlsx")
+    assert any("20 formulas have no value" in note for note in read_source(tmp_path / "a.xlsx").notes)
+
+
+def test_times_of_workbooks(tmp_path):
+    """Spans and times of the day as cells have them."""
+    from datetime import time, timedelta
+
+    import openpyxl
+
+    for name, cell in (("span", lambda k: timedelta(seconds=90 * k)), ("day", lambda k: time(10, k, 30))):
+        book = openpyxl.Workbook()
+        book.active.append(["Time", "T_winding [°C]", "I [A]"])
+        for k in range(20):
+            book.active.append([cell(k), 20.0 + k, 5.0])
+        book.save(tmp_path / f"{name}.xlsx")
+        step = np.diff(clock_of(read_source(tmp_path / f"{name}.xlsx")).seconds)
+        assert step == pytest.approx(90.0 if name == "span" else 60.0)
+
+
+def test_channels_of_a_tdms_without_increments_have_the_times_of_their_channel(tmp_path):
+    """Instants in a channel are its clock; without any that rows are 1 s apart is said."""
+    from nptdms import ChannelObject, TdmsWriter
+
+    instants = np.datetime64("2026-03-28T12:00:10") + np.arange(30) * np.timedelta64(5, "s")
+    for name, channels in (("with", {"Time": instants}), ("without", {})):
+        with TdmsWriter(tmp_path / f"{name}.tdms") as file:
+            channels = {**channels, "Wicklung": np.arange(30.0), "Strom": np.ones(30)}
+            file.write_segment([ChannelObject("Log", n, v) for n, v in channels.items()])
+    source = read_source(tmp_path / "with.tdms")
+    assert np.diff(clock_of(source).seconds) == pytest.approx(5.0)
+    assert any("rows are taken as 1 s apart" in note for note in read_source(tmp_path / "without.tdms").notes)
+
+
+def test_a_negative_increment_of_a_waveform_is_refused(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "a.tdms") as file:
+        file.write_segment([ChannelObject("Log", "T", np.arange(9.0), properties={"wf_increment": -0.1})])
+    with pytest.raises(InputError, match=r"channel 'T': its wf_increment is -0\.1 s"):
+        read_recording(tmp_path / "a.tdms")
+
+
+def test_published_recordings_of_a_cell_and_a_house(root, tmp_path):
+    """Of others, where they lie beside the project: thermocouples without a header, and four letters for a house."""
+    data = root.parent / "shared" / "data"
+    if not data.is_dir():
+        pytest.skip("the data of others are not here")
+    cell, house = tmp_path / "cell", tmp_path / "house"
+    files = [data / "leaf-cell/temperature-3c.lvm", data / "leaf-cell/cycler-3c.csv"]
+    with within(None):
+        assert new(files, Wishes(out=cell, yes=True), None) == 0
+        assert new([data / "house/demo_data.csv"], Wishes(out=house, yes=True), None) == 0
+    (test,) = load_case(cell).case.tests
+    assert [c.y[0] for c in test.channels] == pytest.approx([24.9, 25.2, 24.7, 25.0], abs=0.6)
+    assert abs(test.inputs["current_A"][len(test.time) // 2]) == pytest.approx(91.8, abs=0.1)
+    (test,) = load_case(house).case.tests
+    assert {c.name for c in test.channels} == {"Ti", "Th"}
+    assert test.boundaries["ambient"][0] == pytest.approx(5.4, abs=0.5)
+    assert test.inputs["power_W"].max() > 90.0
+
+
+LONG = {
+    "VarName;TimeString;VarValue;Validity;Time_ms": lambda n, k, v: (
+        f'"{n}";"28.03.2026 12:{k // 12:02d}:{5 * k % 60:02d}";{v:.2f};1;{46109500.0 + 5 * k:.1f}'.replace(
+            ".", ","
+        ).replace("28,03,", "28.03.")
+    ),
+    ",result,table,_time,_value,_field": lambda n, k, v: (
+        f",,0,2026-03-28T12:{k // 12:02d}:{5 * k % 60:02d}Z,{v:.2f},{n}"
+    ),
+    "time_s,sensor,reading": lambda n, k, v: f"{5 * k},{n},{v:.2f}",
+}
+
+
+@pytest.mark.parametrize("header", LONG)
+@pytest.mark.parametrize("in_turn", [True, False])
+def test_a_row_for_every_reading_becomes_a_column_for_every_signal(tmp_path, header, in_turn):
+    signs = {"Temp_Winding": S["W"], "Temp_ambient": S["A"], "Current": S["I"]}
+    rows = [(k, LONG[header](name, k, v[k])) for name, v in signs.items() for k in range(len(S["t"]))]
+    text = "\n".join([header, *(row for _, row in (sorted(rows, key=lambda r: r[0]) if in_turn else rows))])
+    (tmp_path / "a.csv").write_text(text + "\n")
+    source = read_source(tmp_path / "a.csv")
+    assert clock_of(source).seconds == pytest.approx(S["t"], abs=1e-3)
+    for name, values in signs.items():
+        assert source.numbers(name) == pytest.approx(values, abs=0.006)
+
+
+def test_signals_with_times_of_their_own_are_refused(tmp_path):
+    rows = [f"{5 * k + (name == 'I')},{name},{k}" for k in range(30) for name in ("T_winding", "I")]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value", *rows]) + "\n")
+    with pytest.raises(InputError, match=r"2 signals .'sensor'., each at its own times"):
+        read_source(tmp_path / "a.csv")

@@ -1,0 +1,1 @@
+"""Which base a machine stood on, and what bases carry off."""
