@@ -37,12 +37,12 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shared")]
 from aiohttp import web  # noqa: E402
 from small_case import small_case  # noqa: E402
 
+from extras.workbench.serve import bench  # noqa: E402
+from extras.workbench.steps import comparing_job  # noqa: E402
+from extras.workbench.tabs import Tabs  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
-from thermoscope.workbench.serve import bench  # noqa: E402
-from thermoscope.workbench.steps import comparing_job  # noqa: E402
-from thermoscope.workbench.tabs import Tabs  # noqa: E402
 
 COMMANDS = {
     "calibrate": ("calibrate", "{case}", "--anyway"),

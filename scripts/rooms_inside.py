@@ -27,7 +27,7 @@ class RoomsInside(BuildHookInterface):
         moved = self.build_config.target_config["sources"]
         rooms = [name for name in moved if Path(self.root, name, "__init__.py").is_file()]
         for file in list(self.build_config.builder.recurse_selected_project_files()):
-            if file.path.endswith(".py"):
+            if file.path.endswith((".py", ".pyi")):
                 new = Path(self.folder.name, file.distribution_path)
                 new.parent.mkdir(parents=True, exist_ok=True)
                 new.write_text(inside(Path(file.path).read_text(encoding="utf-8"), rooms), encoding="utf-8")

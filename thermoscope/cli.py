@@ -5,17 +5,20 @@ from __future__ import annotations
 import io
 import os
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from geom.errors import ThermoscopeError
+from geom.plugins import plugins
 from geom.storage import cache_folder
 from thermoscope.console.answer import LINES, within
-from thermoscope.console.groups import grouped, narrowed, old_name
+from thermoscope.console.groups import added, grouped, narrowed, old_name
+from thermoscope.console.options import Accuracy, Anyway, Case, Effect, Json, Machine, Out, Sure
 from thermoscope.console.terminal import ranges_as_notes
-from thermoscope.files import STOPPED, checked_out, checked_target, message_of, printable
+from thermoscope.files import STOPPED, checked_out, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
 
 app = typer.Typer(
@@ -32,35 +35,7 @@ ANYWHERE = ("--all", "--debug")  # options of every command
 # Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
-Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
-Json = Annotated[
-    str | None,
-    typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),
-]
-Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Draws = Annotated[int | None, typer.Option("--draws", hidden=True, help="Of older versions; nothing is drawn now.")]
-Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
-Accuracy = Annotated[
-    float, typer.Option(min=0.01, max=100.0, help="Percent of a part's rise; means within half of it.")
-]
-Limit = Annotated[
-    list[str] | None,
-    typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
-]
-HotLimit = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--limit",
-        metavar="PLACE=DEGC",
-        help="For example winding=155, of its hottest point, or winding.mean=145; several.",
-    ),
-]
-Sure = Annotated[
-    bool | None,
-    typer.Option("--bands/--no-bands", help="95 % bands of all temperatures; usual for networks of up to 40 states."),
-]
-Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]
 
 
 @app.command()
@@ -291,18 +266,6 @@ def viewer(
 
 
 @app.command()
-def serve(
-    case: Case,
-    host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
-) -> None:
-    """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
-    from thermoscope.workbench.command import serve as run
-
-    raise typer.Exit(run(case, host, port))
-
-
-@app.command()
 def plan(
     case: Case,
     effect: Annotated[
@@ -325,167 +288,6 @@ def machines(out: Out = None, json: Json = None) -> None:
     from thermoscope.commands.model.machines import machines as run
 
     raise typer.Exit(run(out, json))
-
-
-@app.command()
-def protocol(
-    record: Annotated[Path | None, typer.Argument(metavar="RECORD.toml", help="A test's record so far.")] = None,
-    json: Json = None,
-) -> None:
-    """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
-    from thermoscope.commands.bench.protocol import protocol as run
-
-    raise typer.Exit(run(record, json))
-
-
-@app.command()
-def screen(
-    machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
-    design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
-    """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
-    from thermoscope.commands.bench.screen import screen as run
-
-    raise typer.Exit(run(machine, design, json, out))
-
-
-@app.command("two-paths")
-def two_paths(
-    case: Case,
-    winding: Annotated[str, typer.Option(help="Place of the winding's mean.")] = "winding.copper",
-    machine: Annotated[str, typer.Option(help="Place of the machine's inside.")] = "magnets",
-    json: Json = None,
-) -> None:
-    """The network of a case as two resistances: machine to ambient, winding to machine."""
-    from thermoscope.commands.bench.screen import two_paths as run
-
-    raise typer.Exit(run(case, winding, machine, json))
-
-
-@app.command()
-def curves(
-    case: Case,
-    resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
-    json: Json = None,
-) -> None:  # fmt: skip
-    """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
-    from thermoscope.commands.bench.curves import curves as run
-
-    raise typer.Exit(run(case, resolution, json))
-
-
-@app.command()
-def bases(case: Case, json: Json = None) -> None:
-    """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
-    from thermoscope.commands.bench.bases import bases as run
-
-    raise typer.Exit(run(case, json))
-
-
-@app.command()
-def carry(
-    source: Case, targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
-    json: Json = None,
-) -> None:  # fmt: skip
-    """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
-    from thermoscope.commands.bench.screen import carry as run
-
-    raise typer.Exit(run(source, targets, json))
-
-
-@app.command()
-def rate(
-    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: HotLimit = None,
-    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
-    losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
-    voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
-    overload: Annotated[float, typer.Option(min=100.1, max=1e4, help="Percent of the continuous rating.")] = 150.0,
-    top: Annotated[float | None, typer.Option(min=0.0, max=1e6, metavar="RPM", help="Of the envelope.")] = None,
-    load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
-    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
-    mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
-    start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
-    bands: Sure = None, json: Json = None,
-) -> None:  # fmt: skip
-    """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
-    from thermoscope.commands.use.rate import rate as run
-
-    options = tuple(limit or ()), tuple(at or ())
-    loads = tuple(load or ())
-    raise typer.Exit(run(name, *options, losses, voltage, overload, top, loads, cycle, mapped, start, bands, json))
-
-
-@app.command()
-def optimise(
-    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: HotLimit = None,
-    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
-    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
-    vary: Annotated[
-        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
-    ] = None,
-    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
-    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
-    generations: Annotated[int, typer.Option(min=1)] = 30,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
-    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
-    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
-    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
-    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
-    from thermoscope.commands.use.optimise import optimise as run
-    from validation.optimisation.search import Effort
-
-    options = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
-    raise typer.Exit(run(name, *options, Effort(population, generations, seed), cluster, cycle, robust, out, json))
-
-
-@app.command()
-def watch(
-    case: Case,
-    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
-    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
-    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
-    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
-    from thermoscope.commands.use.watch import watch as run
-
-    raise typer.Exit(run(case, follow, tuple(sensor or ()), like, out, json))
-
-
-@app.command()
-def fleet(
-    case: Case,
-    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
-    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
-    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
-    json: Json = None,
-) -> None:
-    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
-    from thermoscope.commands.use.fleet import fleet as run
-
-    raise typer.Exit(run(case, recordings, like, cluster, json))
-
-
-@app.command()
-def export(
-    case: Case,
-    out: Out = None,
-    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
-    limit: Limit = None,
-    fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
-    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
-    csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
-    json: Json = None,
-) -> None:
-    """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
-    from thermoscope.commands.use.export import export as run
-
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
 
 
 @app.command()
@@ -526,19 +328,28 @@ def check(json: Json = None) -> None:
 grouped(app)
 
 
+@cache
+def whole_app() -> typer.Typer:
+    """The app with the commands of the installed extras: entry points of the group "thermoscope.commands"."""
+    return added(app, plugins("commands").values())
+
+
 def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
     _open_streams()
     arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
+    one = narrowed(app, arguments)
+    if one is app:
+        one = narrowed(whole_app(), arguments)
     if note := old_name(arguments):
         print(f"note: {note}", file=sys.stderr)
     try:
         with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
             if "--help" not in arguments:
                 required(package for word in arguments[:2] for package in NEEDS.get(word, ()))
-            code = narrowed(app, arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
+            code = one(arguments, prog_name="thermoscope", standalone_mode=False)
     except typer.Abort:
         raise SystemExit(1) from None
     except Exception as fault:

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz")
+ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "extras")
 PACKAGE = Path(__file__).resolve().parent
 HOME = PACKAGE.parent
 

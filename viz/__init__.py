@@ -15,8 +15,7 @@ _HOME = {
     "residuals": "figures.curves", "before_after": "figures.errors", "staircase": "figures.errors",
     "scores": "figures.candidates", "posterior": "figures.candidates", "confusion": "figures.candidates",
     "write_recording": "recordings.recording", "Report": "pages.report",
-    "write_report": "pages.report", "write_pdf": "pages.pdf", "screened": "figures.screening",
-    "ranking": "figures.screening", "portrait": "appearance.portrait", "misses": "machine.misses",
+    "write_report": "pages.report", "write_pdf": "pages.pdf",     "misses": "machine.misses",
     "uncertainty": "machine.field", "predicted": "figures.bands", "Predicted": "figures.bands",
 }  # fmt: skip
 __all__ = sorted(_HOME)

@@ -3,7 +3,7 @@
 import csv
 from pathlib import Path
 
-from viz.live.designs import WORDS, parallel_coordinates
+from extras.rating.designs import WORDS, parallel_coordinates
 from viz.live.style import save
 
 HERE = Path(__file__).parent

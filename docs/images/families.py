@@ -6,8 +6,8 @@ from pathlib import Path
 from matplotlib import get_data_path
 from PIL import Image, ImageDraw, ImageFont
 
+from extras.portraits.portrait import portrait
 from geom import load_machine
-from viz.appearance.portrait import portrait
 
 SHOWN = {
     "tefc-industrial": "induction, fan-cooled",

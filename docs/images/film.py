@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from extras.portraits.moving import moving
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import before_last, by_interest, fields, temperature_range
 from thermoscope.commands.show.film import before, misses, now, title
-from viz.appearance.moving import moving
 from viz.rendering.nodes import split
 
 FRAMES, PER_SECOND, WIDTH = 48, 12.0, 640  # 48 pictures for each model: eight seconds

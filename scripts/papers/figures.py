@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from extras.bench.measuring.protocol import STEPS
 from lumped.integration.simulate import simulate
 from scripts.papers.machines import m1
 from scripts.papers.page import Row, Section
 from validation.comparison.compare import physical
 from validation.comparison.predict import record, thermal
 from validation.parameters.unknowns import standing
-from validation.procedure.measuring.protocol import STEPS
 
 Array = NDArray[np.float64]
 NODES = {  # fig. 1, from the middle to the outside -> parts of the network

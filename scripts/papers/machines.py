@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student
 
+from extras.bench.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
+from extras.bench.reduction.transfer import Transfer, end_errors, transferred
+from extras.bench.reduction.two_paths import TwoPaths, of_test
 from geom import load_machine
 from lumped.model.network import Network
 from measured.case import Case, Test
@@ -20,9 +23,6 @@ from validation.bases.base_heat import BaseHeat, base_heat
 from validation.bases.which_base import Hypothesis, base_hypotheses
 from validation.calibration.calibrate import calibrated
 from validation.parameters.unknowns import working
-from validation.procedure.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
-from validation.procedure.reduction.transfer import Transfer, end_errors, transferred
-from validation.procedure.reduction.two_paths import TwoPaths, of_test
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 BASE_TESTS = ("wood", "plate", "bench")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from extras.bench.measuring.assemblies import assembly
+from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
 from lumped.drives.drive import SeriesMachine
 from lumped.transfer.properties import ethylene_glycol
 from scripts.papers.page import Row, Section, page
-from validation.procedure.measuring.assemblies import assembly
-from validation.procedure.measuring.warming import eq8, equilibrium, fit_eq8
 
 TITLE = "Evaluation for thermal analysis of DC motors in electric vehicles"
 RATED = {"power": 100e3, "speed_rpm": 1000.0, "voltage": 220.0, "current": 511.0}

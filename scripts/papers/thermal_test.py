@@ -6,6 +6,10 @@ from functools import cache
 
 import numpy as np
 
+from extras.bench.factors.factorial import full
+from extras.bench.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
+from extras.bench.factors.sensitivity import Ranking, morris, sobol
+from extras.bench.figure import screened
 from geom import load_machine
 from measured.electrical.meters import OHMMETER, VOLTMETER, Meter, Range
 from measured.electrical.propagation import PropagatedUncertainty, propagate
@@ -14,10 +18,6 @@ from measured.electrical.switch_off import Cooling, exponentials, rule_150, semi
 from scripts.papers.figures import figure_1, figure_2, figures_3_and_9
 from scripts.papers.machines import bases, circuits, constructive, machines, repeated, table_two, wrong_base
 from scripts.papers.page import Row, Section, page
-from validation.procedure.factors.factorial import full
-from validation.procedure.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
-from validation.procedure.factors.sensitivity import Ranking, morris, sobol
-from viz.figures.screening import screened
 
 TITLE = "Thermal Test Procedure and Analytical Model Calibration Method for Electrical Machines"
 RISE = 80.0

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from paper_pages import differences
 
+from extras.bench.measuring.repeats import repeats
+from extras.bench.reduction.transfer import end_errors
 from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from validation.bases.which_base import declared_base, on_base, which_base, wrong_bases
-from validation.procedure.measuring.repeats import repeats
-from validation.procedure.reduction.transfer import end_errors
 
 pytestmark = pytest.mark.heavy
 GAP = "k.liner-gap"

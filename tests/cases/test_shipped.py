@@ -18,9 +18,12 @@ from lumped.build import fixed_coefficients, network_size, pipeline
 from lumped.condensation.reduction import Recipe
 from lumped.declarations.network import load_network
 from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.cli import whole_app
 from thermoscope.commands import open_case
 from thermoscope.commands.model.crosscheck import checked
 from thermoscope.console.groups import HOME
+
+whole_app()  # extras have told their groups
 
 ROOT = Path(__file__).resolve().parents[2]
 TINY = Recipe(tolerance=0.3, shifts=(), random_points=1, local_points=1, local_states=1, max_states=40)

@@ -4,7 +4,7 @@ import re
 
 import typer
 
-from thermoscope.cli import app
+from thermoscope.cli import whole_app
 
 SAID_BY_HELP = {"--help", "--out", "--json"}  # every command's, explained once
 
@@ -22,6 +22,6 @@ def options(command):
 def test_every_option_stands_on_a_page(root):
     pages = [root / "README.md", *root.glob("docs/**/*.md"), *root.glob("cases/*/README.md")]
     named = set(re.findall(r"--[a-z][a-z-]*", "\n".join(page.read_text(encoding="utf-8") for page in pages)))
-    known = set(options(typer.main.get_command(app)))
+    known = set(options(typer.main.get_command(whole_app())))
     assert len(known) > 20
     assert known - named - SAID_BY_HELP == set()

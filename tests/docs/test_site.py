@@ -63,9 +63,9 @@ def test_tutorial_commands_exist(root):
 
     from typer.main import get_command
 
-    from thermoscope.cli import app
+    from thermoscope.cli import whole_app
 
-    known = set(get_command(app).commands)
+    known = set(get_command(whole_app()).commands)
     pages = [root / "docs" / "tutorial.md", *(root / "docs" / "how-to").glob("*.md")]
     used = {w for page in pages for w in re.findall(r"^thermoscope (\w+)", page.read_text(), re.M)}
     assert used

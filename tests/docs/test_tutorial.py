@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from scripts import tutorial
-from thermoscope.cli import app
+from thermoscope.cli import whole_app
 from thermoscope.console.answer import LINES
 
 PAGE = tutorial.PAGE.read_text(encoding="utf-8")
@@ -24,7 +24,7 @@ def test_it_goes_from_the_machine_through_add_to_the_report():
 @pytest.mark.parametrize("command", RUN)
 def test_every_command_exists_with_its_options(command):
     """--help ends before anything is done."""
-    done = CliRunner().invoke(app, [*shlex.split(command)[1:], "--help"])
+    done = CliRunner().invoke(whole_app(), [*shlex.split(command)[1:], "--help"])
     assert done.exit_code == 0, done.output
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope")
+ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "measured/recordings/csv_file.py": "endings of files",
     "thermoscope/console/groups.py": "options on the command line",
     "thermoscope/console/progress_bar.py": "options on the command line",
-    "thermoscope/workbench/dropped.py": "columns that the page names itself, FILE:COLUMN",
+    "extras/workbench/dropped.py": "columns that the page names itself, FILE:COLUMN",
     "thermoscope/commands/stored_diagnosis.py": "hidden files",
     "thermoscope/rooms.py": "names of modules",
     "geom/solids/step.py": "labels of a STEP assembly",
@@ -45,9 +45,9 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/effects/losses/copper_feedback.py": "sources by their own name, loss:NAME",
     "validation/effects/losses/factor.py": "sources by their own name, loss:NAME",
     "validation/effects/streams/fan_stop.py": "places of this effect, FLOW:TEST:50",
-    "validation/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
-    "validation/procedure/reduction/pm_network.py": "nodes that this file names itself",
-    "validation/procedure/reduction/transfer.py": "parameters of losses, as the networks of machines name them",
+    "extras/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
+    "extras/bench/reduction/pm_network.py": "nodes that this file names itself",
+    "extras/bench/reduction/transfer.py": "parameters of losses, as the networks of machines name them",
     "viz/figures/sankey.py": "streams that a machine's network names itself, fan:CELL",
     "geom/description/bases.py": "contacts, A|B",
     "geom/meshing/meshio_io.py": "keys of a file of meshes",
@@ -64,14 +64,14 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "measured/importing/draft.py": "files by their own name, NAME.csv",
     "thermoscope/commands/test/new.py": "options, NAME=VALUE",
     "thermoscope/case_folder/history.py": "effects by their own name, KIND@PLACE",
-    "thermoscope/export/model.py": "inputs that mark a test, by RUNNING",
+    "extras/export/model.py": "inputs that mark a test, by RUNNING",
     "validation/parameters/unknowns.py": "nuisances that it names itself, KIND of NAME",
     "measured/recordings/formats.py": "endings of files",
     "lumped/build/analytical_checks.py": "contacts, A|B",
     "thermoscope/case_folder/cycle.py": "sources by their own name, loss:NAME",
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
-    "thermoscope/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
-    "thermoscope/workbench/access_control.py": "hosts of requests",
+    "extras/rating/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
+    "extras/workbench/access_control.py": "hosts of requests",
 }  # fmt: skip
 
 
@@ -127,8 +127,8 @@ FAMILY = {"series-dc", "pmsm", "tefc", "poles", "airgap", "yoke", "rotor.core", 
           "air.left", "air.right", "air.interpolar", "air.ducts", "air.fan", "winding.field", "winding.armature",
           "slot.liner", "field.insulation"}  # fmt: skip
 PUBLISHED = {  # a thermal test of one kind of machine, by its parts' names
-    "validation/procedure/factors/screening.py",
-    "validation/procedure/reduction/pm_network.py",
+    "extras/bench/factors/screening.py",
+    "extras/bench/reduction/pm_network.py",
     "validation/bases/base_heat.py",
 }
 

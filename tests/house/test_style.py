@@ -6,7 +6,7 @@ import sys
 import pytest
 
 pytestmark = pytest.mark.heavy
-ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope"]
+ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras"]
 
 
 def run(root, *command):

@@ -74,7 +74,7 @@ def test_an_option_without_sense_is_refused(shared, tmp_path, monkeypatch, words
 
 
 def test_a_port_of_another_computer(shared, monkeypatch):
-    monkeypatch.setattr("thermoscope.workbench.serve.prepare", lambda: None)
+    monkeypatch.setattr("extras.workbench.serve.prepare", lambda: None)
     message = refusal(shared.parent, "show", "serve", shared, "--host", "nosuch.invalid")
     assert "--host nosuch.invalid" in message
 

@@ -19,8 +19,8 @@ from command_line import RUN, answered
 from hostile import CANARY, hostile_names
 from recordings import case_of
 
+from extras.export.compilers import has_zig, here
 from geom.description.names import DEVICES, FORBIDDEN, is_plain
-from thermoscope.export.compilers import has_zig, here
 
 RESERVED = set("@#")  # of effects at places
 ROOT = Path(__file__).parents[2]

@@ -17,6 +17,10 @@ import tomlkit
 from hostile import hostile_names
 from scipy.io import loadmat
 
+from extras.export.document import document, mat
+from extras.export.drive import Compiled
+from extras.export.fmu import description, identifier
+from extras.export.model import Output, Signal, packed
 from geom.description.names import FORBIDDEN, LETTERS, file_stem, is_plain, plain_header
 from geom.errors import InputError
 from geom.escapes import c_comment, csv_lines, toml_key, toml_value, xml_text
@@ -28,10 +32,6 @@ from measured.case import Reference
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
 from thermoscope.console.answer import Answer, Grid, printed, within
 from thermoscope.console.terminal import give, notes
-from thermoscope.export.document import document, mat
-from thermoscope.export.drive import Compiled
-from thermoscope.export.fmu import description, identifier
-from thermoscope.export.model import Output, Signal, packed
 from viz.pages import html
 from viz.viewer.page import render
 

@@ -10,6 +10,8 @@ from documents import documented, put, shipped
 from recordings import case_of, original
 from test_numbers import SHEET
 
+from extras.bench.commands.protocol import read_record
+from extras.bench.measuring.protocol import protocol
 from geom.errors import ThermoscopeError
 from geom.machine_file import machine_from
 from lumped.declarations.network import load_network, read_network
@@ -17,8 +19,6 @@ from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.cycle import load_cycle
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
-from thermoscope.commands.bench.protocol import read_record
-from validation.procedure.measuring.protocol import protocol
 
 OTHER = [3, "word", True, [], {"x": "y"}, [[1, 2], [3]], datetime.date(2020, 1, 1), ""]
 DUTY = {

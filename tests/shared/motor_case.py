@@ -48,8 +48,8 @@ def with_motor(path: Path) -> Folder:
 
 
 def main() -> None:
-    from thermoscope.workbench.access_control import AccessControl
-    from thermoscope.workbench.serve import application, serve
+    from extras.workbench.access_control import AccessControl
+    from extras.workbench.serve import application, serve
 
     case, access = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
     app = application(with_motor(case), access)

@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 
-ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope"]
-FORBIDDEN = {"fem", "lumped", "measured", "validation", "viz", "thermoscope"}
+ROOMS = ["geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras"]
+FORBIDDEN = {"fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras"}
 
 
 def imported(path):

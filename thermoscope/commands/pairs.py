@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, nan
 
+from geom.constants import ZERO_C
 from geom.errors import InputError
 
 
@@ -25,3 +26,8 @@ def read_pairs(
             raise InputError(f"'{one}' is no {what}", option, right)
         out[name] = value
     return out
+
+
+def read_limits(words: Sequence[str]) -> dict[str, float]:
+    """PLACE=DEGC, ..."""
+    return read_pairs(words, "--limit", "limit", "PLACE=DEGC, for example winding=155", -ZERO_C, 3000.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 
 import typer
@@ -15,10 +15,8 @@ GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
              ("new", "doctor", "compare", "quantities")),
     "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects", "answer")),
     "show": ("Report, pictures, the workbench in the browser.",
-             ("report", "render", "picture", "film", "viewer", "serve", "plan")),
-    "use": ("Run the model, and take it elsewhere.", ("simulate", "export", "rate", "optimise", "watch", "fleet")),
-    "bench": ("The published test procedure, from resistances to screened models.",
-              ("protocol", "curves", "bases", "screen", "two-paths", "carry")),
+             ("report", "render", "picture", "film", "viewer", "plan")),
+    "use": ("Run the model, and take it elsewhere.", ("simulate",)),
 }  # fmt: skip
 HOME = {name: group for group, (_, names) in GROUPS.items() for name in names}
 UNTIL = "0.3"  # version from which the old names are gone
@@ -38,6 +36,23 @@ def grouped(app: typer.Typer) -> typer.Typer:
             one.hidden = True
     for group, part in parts.items():
         app.add_typer(part, name=group, short_help=GROUPS[group][0])
+    return app
+
+
+def added(app: typer.Typer, extras: Iterable[typer.Typer]) -> typer.Typer:
+    """The app with what extras declare. The name of an extra's app is its group, a new one brings its help."""
+    for extra in extras:
+        group = str(extra.info.name)
+        part = next((p.typer_instance for p in app.registered_groups if p.name == group), None)
+        if part is None:
+            part = typer.Typer(help=extra.info.help, no_args_is_help=True, rich_markup_mode=None)
+            app.add_typer(part, name=group, short_help=str(extra.info.help))
+        for one in extra.registered_commands:
+            assert one.callback is not None
+            name, words = str(one.name or one.callback.__name__), inspect.getdoc(one.callback)
+            part.command(name, short_help=words)(one.callback)
+            app.command(name, short_help=words, hidden=True)(one.callback)
+            HOME[name] = group
     return app
 
 

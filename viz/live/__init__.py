@@ -10,7 +10,7 @@ from geom.lazy import loaded_when_used
 
 _HOME = {
     "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
-    "confusion": "candidates", "save": "style", "parallel_coordinates": "designs", "objective_space": "designs",
+    "confusion": "candidates", "save": "style",
 }  # fmt: skip
 __all__ = sorted(_HOME)
 __getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.live.")

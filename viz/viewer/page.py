@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from geom.description.machine import Machine
 from geom.meshing.mesh import NamedMesh
+from geom.plugins import plugins
 from viz.colours import VERDICT, heat, missing, part_colours, power
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
 from viz.viewer.flux import nodal_flux
-from viz.viewer.looks import packed_looks
 from viz.viewer.low_rank import ERROR_K
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
@@ -73,7 +73,9 @@ def document(
 
     machine : is drawn as it looks, too;  mesh : of the tests' networks
     """
-    shape = machine_document(title, nodes, conductivity, None if machine is None else packed_looks(machine, nodes))
+    looks_of = plugins("sections").get("looks")
+    looks = None if machine is None or looks_of is None else looks_of.packed_looks(machine, nodes)
+    shape = machine_document(title, nodes, conductivity, looks)
     temperatures = temperature_document(nodes, tests, positions, conductivity, revisions, limits)
     return {**shape, **temperatures, **analysis_document(tests, nodes, mesh)}
 

@@ -801,7 +801,7 @@ const SAME = 0.9999;  // cosine of the angle between normals below which they ar
 const SAMPLES = 4;  // per pixel: every WebGL 2 has them
 const SLOW = 12, QUICK = 50;  // ms that a smooth picture takes from which moving ones are rough; a rough one, until which smooth ones are timed
 const FILL = [0.66, 0.86];  // shares of the picture's width and height that the machine takes
-const SHARES = 16;  // viz.viewer.looks
+const SHARES = 16;  // extras.portraits.looks
 const COARSE = 0.5;  // of the pixels along a side, in rough pictures
 const REST = 200;  // ms without a movement until the picture is smooth
 const CREASE = 0.77;  // cosine of 40 degrees

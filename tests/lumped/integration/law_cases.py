@@ -11,6 +11,7 @@ import lumped
 import thermoscope
 import validation
 import viz
+from extras.export.tables import ExponentRatio
 from lumped.declarations.separated import FilmOver, Share
 from lumped.integration.simulate import Record
 from lumped.machine.air import Stirred
@@ -40,7 +41,6 @@ from lumped.transfer.laws import (
 )
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
-from thermoscope.export.tables import ExponentRatio
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
 from validation.effects.sensors.input_offset import Shift

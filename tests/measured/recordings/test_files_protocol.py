@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from extras.bench.commands.protocol import protocol, read_record
+from extras.bench.measuring.protocol import protocol as judged
 from geom.errors import InputError
-from thermoscope.commands.bench.protocol import protocol, read_record
 from thermoscope.console.answer import within
-from validation.procedure.measuring.protocol import protocol as judged
 
 RECORD = """
 [machine]

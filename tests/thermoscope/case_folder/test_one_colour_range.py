@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import viz
+from extras.workbench import revisions, steps
 from lumped.build import pipeline
 from lumped.condensation.reduction import Recipe
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import History, Revision
 from thermoscope.case_folder.runs import by_interest, fields, stored_range, temperature_range
 from thermoscope.commands.show import pages, viewer
-from thermoscope.workbench import revisions, steps
 from viz.rendering.scale import rounded
 
 pytestmark = pytest.mark.heavy

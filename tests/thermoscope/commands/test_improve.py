@@ -7,7 +7,7 @@ import pytest
 from small_case import small_case
 
 from thermoscope.case_folder.history import load_history
-from thermoscope.cli import app
+from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
 from validation.inference.result import Candidate, Diagnosis
 from validation.revision.improvement import offered, singletons
@@ -48,7 +48,7 @@ def test_the_history_keeps_the_evidence(improved):
 
 def test_undo_brings_the_model_before_back_and_forgets_nothing(improved, capsys):
     with pytest.raises(SystemExit) as done:
-        app(["undo", str(improved[2]), "--to", "1", "--json", "-"])
+        whole_app()(["undo", str(improved[2]), "--to", "1", "--json", "-"])
     assert done.value.code == 0
     document = json.loads(capsys.readouterr().out)
     assert document["effects"] == []

@@ -5,15 +5,17 @@ import re
 import pytest
 from typer.testing import CliRunner
 
-from thermoscope.cli import app, main
-from thermoscope.console.groups import GROUPS, HOME, narrowed, old_name
+from thermoscope.cli import main, whole_app
+from thermoscope.console.groups import HOME, narrowed, old_name
+
+whole_app()  # extras have told their groups
 
 RUN = CliRunner()
 TOP = {"demo", "check"}
 
 
 def known():
-    return {str(c.name or c.callback.__name__) for c in app.registered_commands}
+    return {str(c.name or c.callback.__name__) for c in whole_app().registered_commands}
 
 
 def test_every_command_has_a_group_or_stands_alone():
@@ -21,11 +23,13 @@ def test_every_command_has_a_group_or_stands_alone():
     assert not TOP & set(HOME)
 
 
-@pytest.mark.parametrize("words", [[], *([g] for g in GROUPS), *([HOME[n], n] for n in sorted(HOME))])
+@pytest.mark.parametrize(
+    "words", [[], *([g] for g in sorted(set(HOME.values()))), *([HOME[n], n] for n in sorted(HOME))]
+)
 def test_help_is_whole_and_narrow(words):
     if words[1:] and words[1] not in known():
         pytest.skip(f"{words[1]} has a group already, and comes later")
-    done = RUN.invoke(app, [*words, "--help"], prog_name="thermoscope", terminal_width=80)
+    done = RUN.invoke(whole_app(), [*words, "--help"], prog_name="thermoscope", terminal_width=80)
     assert done.exit_code == 0
     assert not re.search(r"[a-z]\.\.\.", done.output)
     assert max(map(len, done.output.splitlines())) <= 80
@@ -33,16 +37,18 @@ def test_help_is_whole_and_narrow(words):
 
 @pytest.mark.parametrize("words", [[HOME[n], n] for n in sorted(HOME) if n in known()], ids="-".join)
 def test_the_app_of_one_command_says_what_the_whole_says(words):
-    one = narrowed(app, [*words, "case"])
+    one = narrowed(whole_app(), [*words, "case"])
     assert [len(g.typer_instance.registered_commands) for g in one.registered_groups] == [1]
     for tail in (["--help"], ["--no-such-option"]):
-        few, every = (RUN.invoke(x, [*words, *tail], prog_name="thermoscope", terminal_width=80) for x in (one, app))
+        few, every = (
+            RUN.invoke(x, [*words, *tail], prog_name="thermoscope", terminal_width=80) for x in (one, whole_app())
+        )
         assert (few.exit_code, few.output) == (every.exit_code, every.output)
 
 
 @pytest.mark.parametrize("words", [[], ["test"], ["test", "nothing"], ["compare"], ["demo"], ["--help"]], ids=str)
 def test_what_is_no_command_of_a_group_is_left_to_the_whole_app(words):
-    assert narrowed(app, words) is app
+    assert narrowed(whole_app(), words) is whole_app()
 
 
 def test_old_and_new_names_do_the_same(case, monkeypatch, capsys):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from one_body import measured, one_node
 
+from extras.workbench import tables
+from extras.workbench.appearance import Appearance
 from measured.case import Case, Model
 from measured.doubt import USUAL, widened
-from thermoscope.workbench import tables
-from thermoscope.workbench.appearance import Appearance
 from validation.comparison.compare import Comparison as Errors
 from validation.comparison.compare import channel_error, compare, errors
 from validation.comparison.uncertainty import COVERAGE, RULE

@@ -61,7 +61,7 @@ EMPHASIS = 0.87  # of Vuetify's usual letters over their ground
 
 
 def workbench():
-    return files("thermoscope.workbench").joinpath("page.css").read_text(encoding="utf-8")
+    return files("extras.workbench").joinpath("page.css").read_text(encoding="utf-8")
 
 
 def named_in(block):

@@ -8,11 +8,12 @@ import pytest
 from fictional import HISTORY, candidates, comparison
 from PIL import Image
 
+from extras.bench import figure as screening
 from geom.errors import InputError
 from viz.data import Comparison
 from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
-from viz.figures import curves, errors, paper, screening
+from viz.figures import curves, errors, paper
 from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor
 

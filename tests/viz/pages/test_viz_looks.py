@@ -7,12 +7,12 @@ import pytest
 from small_motor import machine, motor
 from viewer_pages import PLACE, TOP, recorded, tab
 
+from extras.portraits.dressed import dressed
+from extras.portraits.looks import LOST, SHARES, STEP_M, coarse, packed_looks
+from extras.portraits.portrait import framed
 from geom import build_mesh, load_machine
 from viz import split
-from viz.appearance.dressed import dressed
-from viz.appearance.portrait import framed
 from viz.rendering.cut import HALF
-from viz.viewer.looks import LOST, SHARES, STEP_M, coarse, packed_looks
 from viz.viewer.packing import unpacked
 from viz.viewer.page import document, render
 
@@ -105,7 +105,7 @@ EXTENT = """() => {  // shares of the picture that the machine's corners reach o
 def test_the_same_machine_is_shaped_once(tmp_path, monkeypatch):
     """Kept by all that decides: temperatures do not; another section, place, cut or way to draw does."""
     one, nodes, shaped = machine(), split(motor(24)), []
-    monkeypatch.setattr("viz.viewer.looks.dressed", lambda of: shaped.append(of) or dressed(of))
+    monkeypatch.setattr("extras.portraits.looks.dressed", lambda of: shaped.append(of) or dressed(of))
     first, again = (packed_looks(one, nodes, cache=tmp_path) for _ in range(2))
     assert (again, len(shaped)) == (first, 1)
     assert first == packed_looks(one, nodes)
@@ -113,7 +113,7 @@ def test_the_same_machine_is_shaped_once(tmp_path, monkeypatch):
     packed_looks(replace(one, sections={**one.sections, "ratings": {}}), nodes, cache=tmp_path)
     packed_looks(one, replace(nodes, points=nodes.points * (1 + 1e-9)), cache=tmp_path)
     packed_looks(one, nodes, HALF, cache=tmp_path)
-    monkeypatch.setattr("viz.viewer.looks.drawing_code", lambda: b"another way to draw")
+    monkeypatch.setattr("extras.portraits.looks.drawing_code", lambda: b"another way to draw")
     packed_looks(one, nodes, cache=tmp_path)
     assert len(shaped) == 4
     for file in tmp_path.glob("looks-*.json"):

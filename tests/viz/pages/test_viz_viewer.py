@@ -11,11 +11,11 @@ import pytest
 from small_motor import RADII, motor
 from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, still, tab, warming, write_viewer
 
+from extras.portraits.looks import packed_looks
 from geom import build_mesh, load_machine
 from viz import split
 from viz.viewer.error_map import ERROR
 from viz.viewer.flux import nodal_flux
-from viz.viewer.looks import packed_looks
 from viz.viewer.low_rank import ERROR_K
 from viz.viewer.page import Earlier, document, machine_document, render, temperature_document
 

@@ -5,8 +5,9 @@ import pytest
 from PIL import Image
 from small_motor import motor
 
+from extras.portraits.portrait import portrait
 from geom import load_machine
-from viz import Sensor, cutaway, misses, portrait, split, uncertainty
+from viz import Sensor, cutaway, misses, split, uncertainty
 from viz.machine.misses import CAPTION, GUESS, pixels
 from viz.machine.pulses import Pulses
 from viz.rendering import scene

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from test_viz_ghost import eye_of, first_hit
 
+from extras.portraits.portrait import VIEW
 from geom import build_mesh, load_machine
 from viz import QUARTER, Sensor, split
-from viz.appearance.portrait import VIEW
 from viz.machine.parts import ASIDE
 from viz.machine.thermocouples import LABELS, marked
 from viz.rendering.cut import cut_away

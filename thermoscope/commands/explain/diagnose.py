@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.commands.bench.bases import hypotheses_table
+from thermoscope.commands.explain.bases_table import hypotheses_table
 from thermoscope.commands.explain.next_tests import next_tests
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case

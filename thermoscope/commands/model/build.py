@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError, MissingDependency
+from geom.plugins import plugins
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.model import crosscheck
 from thermoscope.console.answer import Answer, Grid
@@ -54,7 +55,7 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
 
 def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
     """What was built: the machine cut open, and its mesh; none, and one note, where nothing can be drawn."""
-    from viz import portrait, regions, require_gl, split
+    from viz import regions, require_gl, split
 
     try:
         require_gl()
@@ -62,9 +63,11 @@ def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
         notes([str(fault)])
         return []
     tell("drawing")
-    name, files = built.machine.name, [folder / "machine.png", folder / "mesh.png"]
-    portrait(built.machine, title=name, png=files[0]).close()
-    regions(split(built.mesh), mesh=True, title=f"{name}: its mesh", png=files[1]).close()
+    name, files, portrait = built.machine.name, [folder / "mesh.png"], plugins("sections").get("portrait")
+    if portrait is not None:
+        files.insert(0, folder / "machine.png")
+        portrait(built.machine, title=name, png=files[0]).close()
+    regions(split(built.mesh), mesh=True, title=f"{name}: its mesh", png=files[-1]).close()
     return files
 
 

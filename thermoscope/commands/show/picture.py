@@ -128,19 +128,6 @@ def _field(s: Subject, png: Path) -> None:
     cutaway(s.nodes, s.field(), sensors=all_sensors, title=title, limits=s.limits, note=LATE, png=png).close()
 
 
-def _machine(s: Subject, png: Path) -> None:
-    from viz import portrait
-
-    portrait(s.built.machine, title=s.built.machine.name, png=png).close()
-
-
-def _temperature(s: Subject, png: Path) -> None:
-    from viz import portrait
-
-    title = f"{s.when}: temperature of the model"
-    portrait(s.built.machine, nodes=s.nodes, T=s.field(), title=title, limits=s.limits, png=png).close()
-
-
 def _difference(s: Subject, png: Path) -> None:
     from viz import difference
 
@@ -254,6 +241,5 @@ FLAT: dict[str, Callable[[Subject, Path], None]] = {
 }  # fmt: skip
 PICTURES: dict[str, Callable[[Subject, Path], None]] = {
     "field": _field, "difference": _difference, "misses": _misses, "uncertainty": _uncertainty,
-    "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux, "network": _network, "machine": _machine,
-    "temperature": _temperature, **FLAT,
+    "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux, "network": _network, **FLAT,
 }  # fmt: skip

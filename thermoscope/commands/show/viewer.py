@@ -13,6 +13,7 @@ from typing import Any
 from geom.description.names import file_stem
 from geom.disk_cache import atomic_write
 from geom.errors import InputError
+from geom.plugins import plugins
 from geom.storage import cache_folder
 from measured.case import Test
 from thermoscope.caches import recalled_result, store_result
@@ -102,14 +103,13 @@ def stored_documents(folder: Folder) -> list[dict[str, Any]] | None:
 
 def _file(folder: Folder) -> Path:
     models = repr((revisions(folder), folder.history.last, sorted(folder.positions.items())))
-    content = hashlib.sha256((result_key(folder, "viz") + models).encode()).hexdigest()[:20]
+    content = hashlib.sha256((result_key(folder, "viz", "extras") + models).encode()).hexdigest()[:20]
     return cache_folder() / f"viewer-{content}.json"
 
 
 def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz import split
     from viz.viewer.error_map import ErrorMap
-    from viz.viewer.looks import cached_looks, packed_looks
     from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
 
     assert folder.built is not None
@@ -131,10 +131,12 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
         return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
 
     tell("running the model on a first test")
-    order, cache = by_interest(folder), cache_folder()
+    order, cache, looks_of = by_interest(folder), cache_folder(), plugins("sections").get("looks")
     standing(folder.case)  # one network for both of the following
     with ThreadPoolExecutor() as pool:
-        looks = cached_looks(machine, nodes, cache)  # to make them takes longer than all else of the first picture
+        looks = looks_of and looks_of.cached_looks(
+            machine, nodes, cache
+        )  # to make them takes longer than all else of the first picture
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
         comparison = pool.submit(current_comparison, folder, order[0])
         run = fields(folder.case, order[0], nodes, FRAMES)
@@ -143,7 +145,7 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     yield shape.result() | now
     tell("running every test")
     with ThreadPoolExecutor() as pool:
-        shapes = None if looks else pool.submit(packed_looks, machine, nodes, cache=cache)
+        shapes = None if looks or looks_of is None else pool.submit(looks_of.packed_looks, machine, nodes, cache=cache)
         limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
         tests = side_by_side(played, order)
         now = temperature_document(nodes, tests, folder.positions, conductivity, names, limits)

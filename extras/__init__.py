@@ -1,0 +1,1 @@
+"""What stands around the diagnosis. Each uses `import thermoscope as ts` and `thermoscope.plugin` alone."""

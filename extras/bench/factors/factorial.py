@@ -1,0 +1,152 @@
+"""Two-level designs: which of many factors move a response, from as few runs as that takes.
+
+design = full([...]) or fractional([...], {"G": "ABCDEF"});  found = effects(design, responses)
+
+An effect is the mean response at the high level minus that at the low one. Which effects are more than noise is judged
+by Lenth's pseudo standard error, as published with the half-normal plot.
+Sources: Box, Hunter and Hunter 2005; Daniel 1959; Lenth 1989, Technometrics 31, 469.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor with its two levels; letter as in the paper's table."""
+
+    letter: str
+    name: str
+    low: Any
+    high: Any
+
+
+@dataclass(frozen=True)
+class Design:
+    """signs (n_run, n_factor) -1 or 1;  words : generators and what follows from them, () for a full design"""
+
+    factors: tuple[Factor, ...]
+    signs: Array
+    words: tuple[str, ...] = ()
+
+    def settings(self) -> list[dict[str, Any]]:
+        """Name -> level of every run."""
+        levels = [(f.name, f.low, f.high) for f in self.factors]
+        return [
+            {n: high if s > 0 else low for (n, low, high), s in zip(levels, row, strict=True)} for row in self.signs
+        ]
+
+    def column(self, letters: str) -> Array:
+        """The product of some factors' columns: the contrast of an effect."""
+        index = [next(i for i, f in enumerate(self.factors) if f.letter == c) for c in letters]
+        return np.asarray(np.prod(self.signs[:, index], axis=1))
+
+    @property
+    def resolution(self) -> int:
+        """Length of the shortest defining word; 0 for a full design, which confounds nothing."""
+        return min((len(w) for w in self.words), default=0)
+
+    def aliases(self, letters: str, order: int = 2) -> tuple[str, ...]:
+        """Effects up to an order that this design cannot tell from the given one."""
+        same = {_times(letters, word) for word in self.words}
+        return tuple(sorted((w for w in same if 0 < len(w) <= order), key=lambda w: (len(w), w)))
+
+
+def full(factors: Sequence[Factor]) -> Design:
+    """All 2^k runs, the first factor varying fastest."""
+    signs = np.array([row[::-1] for row in product((-1.0, 1.0), repeat=len(factors))])
+    return Design(tuple(factors), signs)
+
+
+def fractional(factors: Sequence[Factor], generators: Mapping[str, str]) -> Design:
+    """2^(k-p) runs: every generated factor is the product of others, e.g. {"G": "ABCDEF"}."""
+    letters = "".join(f.letter for f in factors)
+    free = [f for f in factors if f.letter not in generators]
+    for letter, word in generators.items():
+        if letter not in letters or not word or any(c not in {f.letter for f in free} for c in word):
+            raise InputError(f"{letter} = {word}", "generators", f"products of {''.join(f.letter for f in free)}")
+    base = full(free)
+    columns = {f.letter: base.column(f.letter) for f in free} | {g: base.column(w) for g, w in generators.items()}
+    signs = np.column_stack([columns[f.letter] for f in factors])
+    return Design(tuple(factors), signs, _defining([_times(g, w) for g, w in generators.items()]))
+
+
+def _times(a: str, b: str) -> str:
+    """Product of two words: letters that occur twice cancel."""
+    return "".join(sorted(set(a) ^ set(b)))
+
+
+def _defining(words: Sequence[str]) -> tuple[str, ...]:
+    """All products of the generators' words."""
+    out: list[str] = []
+    for n in range(1, len(words) + 1):
+        for some in combinations(words, n):
+            word = ""
+            for w in some:
+                word = _times(word, w)
+            out.append(word)
+    return tuple(out)
+
+
+@dataclass(frozen=True)
+class Effects:
+    """letters -> effect, in the response's unit;  PSE, margin, simultaneous : Lenth's standard error and 95 % limits"""
+
+    response: str
+    effects: Mapping[str, float]
+    names: Mapping[str, str]
+    PSE: float
+    margin: float
+    simultaneous: float
+
+    @property
+    def ranked(self) -> list[tuple[str, float]]:
+        """Largest first: the Pareto chart's order."""
+        return sorted(self.effects.items(), key=lambda e: -abs(e[1]))
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """Effects beyond the simultaneous limit."""
+        return tuple(letters for letters, e in self.ranked if abs(e) > self.simultaneous)
+
+    def document(self) -> dict[str, Any]:
+        rows = [{"effect": e, "words": self.words(e), "value": v, "active": e in self.active} for e, v in self.ranked]
+        return {"response": self.response, "PSE": self.PSE, "margin": self.margin, "simultaneous": self.simultaneous,
+                "effects": rows}  # fmt: skip
+
+    def words(self, letters: str) -> str:
+        return " x ".join(self.names[c] for c in letters)
+
+
+def effects(design: Design, values: Array, response: str = "", order: int = 2) -> Effects:
+    """Main effects and interactions up to an order; of aliased ones the shortest stands for all."""
+    values = np.asarray(values, float)
+    letters = [f.letter for f in design.factors]
+    words = ["".join(w) for n in range(1, order + 1) for w in combinations(letters, n)]
+    leading = [w for w in words if not any((len(a), a) < (len(w), w) for a in design.aliases(w, order))]
+    by_word = {w: float(2.0 * design.column(w) @ values / values.size) for w in leading}
+    PSE, margin, simultaneous = lenth(np.array(list(by_word.values())))
+    return Effects(response, by_word, {f.letter: f.name for f in design.factors}, PSE, margin, simultaneous)
+
+
+def lenth(contrasts: Array) -> tuple[float, float, float]:
+    """Lenth's pseudo standard error, margin of error (95 %) and simultaneous margin of error."""
+    from scipy.stats import t as student
+
+    size = np.abs(contrasts)
+    first = 1.5 * float(np.median(size))
+    PSE = 1.5 * float(np.median(size[size < 2.5 * first])) if first > 0 else 0.0
+    m, free = size.size, size.size / 3.0
+    gamma = 0.5 * (1.0 + 0.95 ** (1.0 / m))
+    return PSE, PSE * float(student.ppf(0.975, free)), PSE * float(student.ppf(gamma, free))

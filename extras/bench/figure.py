@@ -1,0 +1,70 @@
+"""What a screening found: which of many factors move a temperature, and which effects are no more than noise.
+
+Sources: Daniel 1959 (half-normal plot); Lenth 1989 (limits); Morris 1991 and Sobol by their own measures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.stats import halfnorm
+
+from thermoscope.plugin import BLUE, LIGHT, paper
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Row = Mapping[str, Any]
+TOP = 8  # bars that can be read
+LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
+
+
+@paper.styled
+def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path | None = None) -> Figure:
+    """Half-normal plot and Pareto chart of the effects on one response, with Lenth's limits.
+
+    effects : {"margin", "simultaneous", "effects": [{"effect", "words", "value", "active"}]}, as `screen` gives it
+    """
+    rows = sorted(effects["effects"], key=lambda e: abs(e["value"]))
+    figure, (left, right) = paper.subplots(9.6, 4.0, columns=2)
+    _half_normal(left, rows)
+    _bars(right, [e["words"] for e in rows[-TOP:]], [abs(e["value"]) for e in rows[-TOP:]],
+          [BLUE if e["active"] else LIGHT.faint for e in rows[-TOP:]])  # fmt: skip
+    for ax in (left, right):
+        for key, words, line in LENTH:
+            ax.axvline(effects[key], color=LIGHT.ink, lw=1.0, ls=line, label=words)
+        ax.set_xlabel(f"|high - low| ({unit})")
+    left.legend(fontsize=8, frameon=False, loc="lower right")
+    left.set_title(title)
+    return paper.save(figure, png)
+
+
+def _half_normal(ax: Axes, rows: Sequence[Row]) -> None:
+    size = np.array([abs(e["value"]) for e in rows])
+    x = halfnorm.ppf((np.arange(len(rows)) + 0.5) / len(rows))
+    ax.scatter(size, x, s=22, c=[BLUE if e["active"] else LIGHT.faint for e in rows], zorder=3)
+    for i in [i for i, e in enumerate(rows) if e["active"]][-TOP:]:
+        ax.annotate(rows[i]["effect"], (size[i], x[i]), (6, 0), textcoords="offset points", va="center", fontsize=8)
+    ax.set(ylabel="half-normal quantile", ylim=(0, None))
+
+
+@paper.styled
+def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Path | None = None) -> Figure:
+    """Factors by their share or size, with 95 % intervals: [{"factor", "measure", "conf95"}], as Morris or Sobol."""
+    up = sorted(rows, key=lambda r: r["measure"])
+    figure, (ax,) = paper.subplots(6.4, 0.4 * len(up) + 1.2)
+    sizes = [r["measure"] for r in up]
+    _bars(ax, [r["factor"] for r in up], sizes, [BLUE] * len(up))
+    ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=LIGHT.ink, lw=1.0)
+    ax.set(xlabel=measure, title=title, xlim=(0, None))
+    return paper.save(figure, png)
+
+
+def _bars(ax: Axes, words: Sequence[str], sizes: Sequence[float], colours: Sequence[str]) -> None:
+    ax.barh(range(len(words)), sizes, color=list(colours))
+    ax.set_yticks(range(len(words)), list(words))
+    ax.grid(False, axis="y")

@@ -1,0 +1,133 @@
+"""Any network as the two resistances of the paper's fig. 10: R_w from the winding to the machine, R_ext to ambient.
+
+T_m = T_a + R_ext P          T_w = T_m + R_w P_w         P_w copper loss, P all losses
+
+The two come from one steady state; what they leave over is how far they miss other loads and the transient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thermoscope import InputError, Network, Steady, ThermoscopeError, steady
+from thermoscope.plugin import (
+    Conductivity,
+    Constant,
+    Linear,
+    Source,
+    Test,
+    heat_model,
+    physical,
+    standing,
+    temperature_value,
+)
+from thermoscope.plugin import MeasuredCase as Case
+
+
+@dataclass(frozen=True)
+class TwoPaths:
+    """R_ext, R_w (K/W) at one load;  winding_K, machine_K : rises there;  P_w, P_all (W)
+
+    residual : load (share of the current) -> (winding, machine) K that the two resistances miss; without those loads
+    at which the machine does not come to rest
+    """
+
+    R_ext: float
+    R_w: float
+    winding_K: float
+    machine_K: float
+    P_w: float
+    P_all: float
+    residual: Mapping[float, tuple[float, float]]
+
+    def rises(self, P_w: float, P_all: float) -> tuple[float, float]:
+        """Winding and machine over ambient (K)."""
+        machine = self.R_ext * P_all
+        return machine + self.R_w * P_w, machine
+
+    @property
+    def largest_K(self) -> float:
+        return max((abs(v) for pair in self.residual.values() for v in pair), default=0.0)
+
+    def document(self) -> dict[str, Any]:
+        return {**{k: v for k, v in vars(self).items() if k != "residual"}, "largest_residual_K": self.largest_K,
+                "residual_K": {f"{k:g}": list(v) for k, v in self.residual.items()}}  # fmt: skip
+
+
+def two_paths(
+    network: Network,
+    inputs: Mapping[str, float],
+    ambient: float = 20.0,
+    winding: str = "winding.copper",
+    machine: str = "magnets",
+    loads: Sequence[float] = (0.5, 0.75, 1.25),
+    values: Mapping[str, float] | None = None,
+) -> TwoPaths:
+    """R_ext and R_w of a network at one load, and what they miss at others.
+
+    inputs : the load; `loads` are shares of its inputs that are currents
+    winding, machine : the places whose means T_w and T_m are
+    """
+    for place in (winding, machine):
+        network.place(place)
+    rated = _state(network, inputs, ambient, (winding, machine), values)
+    T_w, T_m, P_w, P_all = rated
+    if P_w <= 0 or P_all <= 0:
+        raise InputError("no copper loss at this load", network.name, "a load with a current")
+    paths = TwoPaths((T_m - ambient) / P_all, (T_w - T_m) / P_w, T_w - ambient, T_m - ambient, P_w, P_all, {})
+    residual = {}
+    for share in loads:
+        level = {n: v * (share if network.measures(n) == "current" else 1.0) for n, v in inputs.items()}
+        try:
+            T_w, T_m, P_w, P_all = _state(network, level, ambient, (winding, machine), values)
+        except ThermoscopeError:  # at this load the machine runs away
+            continue
+        expected = paths.rises(P_w, P_all)
+        residual[share] = (expected[0] - (T_w - ambient), expected[1] - (T_m - ambient))
+    return TwoPaths(paths.R_ext, paths.R_w, paths.winding_K, paths.machine_K, paths.P_w, paths.P_all, residual)
+
+
+def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:
+    """The case's model at the mean load of one of its tests."""
+    network, values = heat_model(standing(case), physical(case))
+    load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
+    air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
+    return two_paths(network, load, air, winding, machine, values=values)
+
+
+def _state(
+    network: Network, inputs: Mapping[str, float], ambient: float, at: tuple[str, str], values: Mapping | None
+) -> tuple[float, float, float, float]:
+    """T_w, T_m (degC), P_w, P_all (W) at rest."""
+    rows = [network.places[place].mean for place in at]
+    state = steady(network, inputs, dict.fromkeys(network.boundaries, ambient), values, rows)
+    power = {s.name: _multiplier(network, s, values) * power_of(s, inputs, state) for s in network.sources}
+    copper = sum(power[s.name] for s in network.sources if s.kind == "copper")
+    return float(state.y[0]), float(state.y[1]), copper, sum(power.values())
+
+
+def power_of(source: Source, inputs: Mapping[str, float], state: Steady) -> float:
+    """Loss (W) of a source at rest, before the multipliers of parameters."""
+    one = {name: np.array([float(value)]) for name, value in inputs.items()}
+    factor = float(np.ravel(source.law.factor(one))[0])
+    law = source.law.temperature
+    if not isinstance(law, Constant | Linear | Conductivity):
+        raise InputError(
+            f"loss '{source.name}' follows a {type(law).__name__}", "two resistances", "constant, or as copper does"
+        )
+    T = float(source.probe.weights @ state.z[source.probe.index])
+    return factor * temperature_value(law, T, T)
+
+
+def _multiplier(network: Network, source: Source, values: Mapping | None) -> float:
+    """What the parameters make of a loss."""
+    out = 1.0
+    for p in network.parameters:
+        value = (values or {}).get(p.name, p.value)
+        m = 1.0 + value if p.mapping == "relative" else value
+        out *= float(np.prod([m**e for target, e in p.targets if target == source.name]))
+    return out

@@ -1,0 +1,117 @@
+"""C99 from a model: fixed code (runtime/), the model's numbers, and a header that says what they are good for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extras.export.flat import Flat, flat
+from extras.export.heading import heading
+from extras.export.model import Model
+from thermoscope.plugin import (
+    COLD,
+    CONVERGED_K,
+    END,
+    FILMS,
+    FIRST_C,
+    FULL_UNITS,
+    HOT,
+    LAST,
+    LEAST,
+    PLACE,
+    POINT,
+    ROW,
+    STEP_K,
+    c_comment,
+    stages,
+)
+
+RUNTIME = Path(__file__).resolve().parent / "runtime"
+SOURCES = ("thermal_network.h", "thermal_network.c")
+WIDE = 8  # numbers on a line
+EMPTY = ["0"] * 32  # C99 has no empty arrays, and compilers look ahead
+
+
+def c_files(model: Model) -> dict[str, str]:
+    """File name -> text: everything that has to be compiled."""
+    fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in SOURCES}
+    return {**fixed, "thermal_network_sizes.h": sizes(model), "thermal_network_data.h": data(model)}
+
+
+def sizes(model: Model) -> str:
+    """The header: what the model is, its inputs and outputs, and the sizes of its arrays."""
+    T = model.terms
+    counts = {
+        "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
+        "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
+        "FACTORS": len(model.factors) + len(model.sizes),
+        "ROWS": T.begin.size - 1,
+    }  # fmt: skip
+    numbers = {
+        "C21": stages.C21, "C31": stages.C31, "C32": stages.C32, "SLOPE2": stages.SLOPE2, "END1": stages.END1,
+        "END2": stages.END2, "END3": stages.END3, "ERROR_K": model.tolerance[0], "ERROR_SHARE": model.tolerance[1],
+        "REST_K": CONVERGED_K,
+    }  # fmt: skip
+    lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
+    lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
+    macro = "THERMAL_NETWORK_SIZES_H"
+    return "\n".join([c_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
+
+
+def data(model: Model) -> str:
+    """All arrays."""
+    signals = [s.name for s in model.signals]
+    T, F = model.terms, flat(model.factors, signals)
+    rows = [o.row for o in model.outputs]
+    starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
+    parts = [
+        reals("C", model.C), _matrix("K0", model.K0), reals("UNIT", model.unit), ints("NODE", model.node),
+        ints("ENTRY_START", T.begin), ints("ENTRY_AT", T.at), reals("ENTRY_WEIGHT", T.weight),
+        ints("ROW_FIRST", T.part[:, ROW]), ints("ROW_END", T.part[:, END]), ints("ROW", T.row),
+        ints("HOT", T.part[:, HOT]), ints("COLD", T.part[:, COLD]),
+        ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
+        ints("POINT_START", T.part[:, POINT]), ints("POINT_END", T.part[:, LAST]), reals("POINT_X", T.point[:, 0]),
+        reals("POINT_Y", T.point[:, 1]), ints("PLACE", T.part[:, PLACE]),
+        ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
+        reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
+        *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
+        reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
+        f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",
+        f"#define LEAST ((thermal_real){LEAST})", f"#define FULL_UNITS ((thermal_real){FULL_UNITS})",
+    ]  # fmt: skip
+    return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
+
+
+def _functions(F: Flat) -> list[str]:
+    return [
+        ints("PRODUCT_START", F.product_start), reals("PRODUCT", F.coefficient),
+        ints("FUNCTION_START", F.function_start), _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters), reals("FUNCTION_X", F.x), reals("FUNCTION_Y", F.y),
+    ]  # fmt: skip
+
+
+def joined(parts: Iterable[np.ndarray]) -> np.ndarray:
+    return np.concatenate([np.empty(0), *parts])
+
+
+def _broken(words: Sequence[str]) -> str:
+    return ",\n".join(", ".join(words[i : i + WIDE]) for i in range(0, len(words), WIDE))
+
+
+def reals(name: str, values: Any) -> str:
+    words = [f"{v:.17g}" for v in np.ravel(values)] or EMPTY
+    return f"static const thermal_real {name}[] = {{{_broken(words)}}};"
+
+
+def ints(name: str, values: Any) -> str:
+    words = [str(int(v)) for v in np.ravel(values)] or EMPTY
+    return f"static const int {name}[] = {{{_broken(words)}}};"
+
+
+def _matrix(name: str, values: np.ndarray, of: str = "thermal_real") -> str:
+    table = values if values.size else np.zeros((1, values.shape[1]), values.dtype)
+    rows = ",\n".join("{" + _broken([f"{v:.17g}" for v in row]) + "}" for row in table)
+    return f"static const {of} {name}[][{table.shape[1]}] = {{{rows}}};"

@@ -1,0 +1,31 @@
+"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from thermoscope.plugin import CaseArgument as Case
+from thermoscope.plugin import JsonOption as Json
+from thermoscope.plugin import LimitOption as Limit
+from thermoscope.plugin import OutOption as Out
+
+use_commands = typer.Typer(name="use")
+
+
+@use_commands.command()
+def export(
+    case: Case,
+    out: Out = None,
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
+    limit: Limit = None,
+    fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
+    csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
+    json: Json = None,
+) -> None:
+    """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
+    from extras.export.commands.export import export as run
+
+    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))

@@ -1,0 +1,1 @@
+"""thermoscope use export"""

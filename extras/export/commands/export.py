@@ -1,0 +1,153 @@
+"""thermoscope use export CASE: a workbook of results, or the model itself to run elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from extras.export.compilers import compiler, here
+from thermoscope import InputError, MissingDependency, ThermoscopeError
+from thermoscope.plugin import (
+    Answer,
+    Folder,
+    Progress,
+    give,
+    notes,
+    open_case,
+    plain,
+    plugins,
+    progress,
+    read_limits,
+    suggestion,
+    tables,
+    write_csvs,
+    write_whole,
+    write_xlsx,
+)
+
+if TYPE_CHECKING:
+    from extras.export.model import Model
+
+WORKBOOKS = ("xlsx", "csv")
+MODELS = ("c", "fmu", "json", "matlab")
+VERSIONS = (2, 3)  # of FMI
+
+
+def export(
+    case: str, out: Path | None, form: str, limits: Sequence[str], version: int, target: str | None,
+    sensors: Sequence[str] = (),
+) -> int:  # fmt: skip
+    """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
+    further = {} if form in (*WORKBOOKS, *MODELS) else plugins("exports")
+    if form not in (*WORKBOOKS, *MODELS, *further):
+        raise InputError(f"'{form}' is no form to export", "--as", suggestion(form, (*WORKBOOKS, *MODELS, *further)))
+    if version not in VERSIONS:
+        raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
+    if sensors and form not in further:
+        raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
+    if form == "fmu":
+        compiler(here())
+    if form in further:
+        return int(further[form](case, out, read_limits(limits), sensors, target))
+    if form in MODELS:
+        return _model(case, out, form, read_limits(limits), version, target)
+    with progress() as tell:
+        folder = open_case(case, tell)
+        tell("running the model")
+        content = tables(folder)
+    where, name = out or folder.settings.out, folder.settings.path.resolve().name
+    paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
+    document = {"case": folder.case.name, "files": [str(p) for p in paths], "worksheets": list(content)}
+    give(document, target, lambda: Answer(f"{len(paths)} files written.", [str(p) for p in paths]))
+    return 0
+
+
+def _model(
+    case: str, out: Path | None, form: str, limits: Mapping[str, float], version: int, target: str | None
+) -> int:
+    from extras.export.heading import state_bytes, step_operations
+    from extras.export.model import exported
+
+    with progress() as tell:
+        folder = open_case(case, tell, untested=True)
+        tell("collecting the network")
+        model = exported(folder, limits)
+        differences = _differences(folder, model, tell) if form in ("c", "fmu") else {}
+        files, platforms = _files(model, form, version, tell)
+    where = out or folder.settings.out / form
+    paths = [write_whole(where / name, content) for name, content in files.items()]
+    document = {
+        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in paths],
+        "platforms": platforms, "states": len(model.states), "state_bytes": state_bytes(model),
+        "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
+        "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
+                    for o in model.outputs],
+        "difference_K": differences,
+    }  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, float]:
+    """Test -> largest difference (K) between the code and the simulation; empty where nothing can compile here.
+
+    Raises ThermoscopeError where they disagree.
+    """
+    import numpy as np
+
+    from extras.export.drive import AGREES_K, Compiled, difference, sampled
+    from extras.export.model import reach_of
+    from thermoscope.plugin import model_of, record
+
+    tell("holding the code against the simulation")
+    try:
+        code = Compiled(model)
+    except MissingDependency as fault:
+        tell(f"not held against the simulation: {fault}")
+        return {}
+    network, values = model_of(folder)
+    out = {}
+    for test in folder.case.tests:
+        out[test.name] = difference(code, network, sampled(record(test, {})), values)
+        what = f"the exported code differs from the simulation of '{test.name}' by {out[test.name]:.3g} K"
+        outside = [f"{s.name} = {u:.4g} (to {reach:.4g})" for s in model.inputs
+                  if (reach := reach_of(s)) < (u := float(np.max(np.abs(test.inputs.get(s.name, 0.0)))))]  # fmt: skip
+        if not out[test.name] <= AGREES_K and outside:
+            notes([f"{what}, where an input is beyond what the fitted tests give a table for: {', '.join(outside)}"])
+        elif not out[test.name] <= AGREES_K:
+            raise ThermoscopeError(what)
+    return out
+
+
+def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
+    """File name -> content; the platforms that compiled code in them runs on."""
+    import json
+
+    from extras.export.c_code import RUNTIME, c_files
+    from extras.export.document import document, mat
+    from extras.export.fmu import fmu, identifier
+
+    if form == "c":
+        return {**c_files(model)}, []
+    if form == "fmu":
+        tell("compiling (the first time for other platforms: some minutes)")
+        content, platforms = fmu(model, version)
+        return {f"{identifier(model)}.fmu": content}, platforms
+    beside = "reference_solver.py" if form == "json" else "thermal_solve.m"
+    solver = {beside: (RUNTIME / beside).read_text(encoding="utf-8")}
+    if form == "json":
+        return {"model.json": json.dumps(plain(document(model)), ensure_ascii=False), **solver}, []
+    return {"model.mat": mat(model), **solver}, []
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """What was written and how well it agrees."""
+    sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
+    lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
+    if differences := document["difference_K"]:
+        test = max(differences, key=lambda t: differences[t])
+        lines.append(
+            f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
+        )
+    return Answer(sentence, [*lines, *document["files"]], "--json FILE")

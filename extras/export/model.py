@@ -1,0 +1,181 @@
+"""What is exported: the network with its multipliers worked in, and what its user must know of inputs and outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.export.products import Product, Sum
+from extras.export.tables import Ranges, factors
+from thermoscope import InputError, Network
+from thermoscope.plugin import LAW_RUNNING as RUNNING
+from thermoscope.plugin import (
+    QUANTITIES,
+    RUN,
+    Assembly,
+    Folder,
+    Reference,
+    Row,
+    Terms,
+    assembly,
+    capacity_multipliers,
+    errors,
+    mean_rows,
+    model_of,
+    multipliers,
+    sensors,
+    standing_reference,
+    state_units,
+    suggestion,
+)
+
+Array = NDArray[np.float64]
+USUAL_C = 20.0  # where a run starts unless it is told
+WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded
+
+
+@dataclass(frozen=True)
+class Signal:
+    """An input of a law, or a boundary temperature.  low, high : over the fitted tests; None where none records it"""
+
+    name: str
+    unit: str
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class Output:
+    """A temperature (degC).  row : over z = [x; u];  limit : degC, if one was given
+
+    error_K, role : root mean square against the readings of the tests of that role, where a sensor sits, when the
+    model was fitted
+    low, high : reached by the model in the tests
+    """
+
+    name: str
+    row: Row
+    limit: float | None = None
+    error_K: float | None = None
+    role: str = ""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A network as exported code has it.
+
+    K0 (n, n + nb + 1) : constant terms;  terms : the others, with multipliers worked into `factors`
+    sizes : inputs, by their sizes, that temperature laws see; or a size that never changes
+    unit, node (n,) : K per unit of a state; 1 where it is a temperature
+    """
+
+    name: str
+    revision: int
+    effects: tuple[str, ...]
+    states: tuple[str, ...]
+    C: Array
+    K0: Array
+    terms: Terms
+    term_names: tuple[str, ...]
+    factors: tuple[Sum, ...]
+    inputs: tuple[Signal, ...]
+    boundaries: tuple[Signal, ...]
+    outputs: tuple[Output, ...]
+    unit: Array
+    node: NDArray[np.int64]
+    sizes: tuple[tuple[str | None, float], ...] = ()
+    tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
+    initial_degC: float = USUAL_C
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """All that is set from outside: inputs, then boundaries."""
+        return (*self.inputs, *self.boundaries)
+
+
+def exported(folder: Folder, limits: Mapping[str, float]) -> Model:
+    """The model of a case as it stands. Raises InputError for a law that has no form outside this tool."""
+    network, values = model_of(folder)
+    model = packed(network, values, standing_reference(folder.case), outputs(network, folder, limits))
+    effects = tuple(e.name for e in folder.case.model.effects)
+    return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects)
+
+
+def packed(network: Network, values: Mapping[str, float], reference: Reference, looks: Sequence[Output]) -> Model:
+    """A network at some values of its parameters; reference: which ranges of inputs it was fitted over."""
+    every, m = assembly(network), multipliers(network, values)
+    acting = np.array([m.get(name, 1.0) for name in every.names])
+    steady = np.array([not p.bends and not p.law.reads for p in every.patterns], bool)
+    live = ~steady & (acting != 0.0)
+    constant = [float(p.law.factor({})) if s else 0.0 for p, s in zip(every.patterns, steady, strict=True)]
+    inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in _read(every, live))
+    hidden = np.array(["#" in s for s in network.states], bool)
+    return Model(
+        network.name, 0, (), network.states, network.C * capacity_multipliers(network, m),
+        every.matrix(acting * np.array(constant)), every.packed(live, steady),
+        tuple(n for n, on in zip(every.names, live, strict=True) if on),
+        tuple(_factors(every, live, acting, _reaches(inputs))),
+        inputs,
+        tuple(Signal(b, "degC", *_range(reference, b)) for b in network.boundaries),
+        tuple(looks), state_units(network), (~hidden).astype(np.int64), _sizes(every, live),
+        initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
+    )  # fmt: skip
+
+
+def _sizes(every: Assembly, live: NDArray[np.bool_]) -> tuple[tuple[str | None, float], ...]:
+    """What temperature laws see: (input, 0), or (None, a size)."""
+    laws = [x.law for x in every.input_sizes(live)]
+    return tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws)
+
+
+def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:
+    return sorted({name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads})
+
+
+def reach_of(signal: Signal) -> float:
+    """How far tables of an input reach, either way of zero."""
+    return WIDER * max(abs(signal.low or 0.0), abs(signal.high or 0.0))
+
+
+def _reaches(signals: Sequence[Signal]) -> Ranges:
+    """Input -> how far tables have to reach; what marks a single test is no input."""
+    reach = {s.name: (s, reach_of(s)) for s in signals if not s.name.startswith(RUNNING)}
+    return {name: (-end if s.low and s.low < 0.0 else 0.0, end) for name, (s, end) in reach.items()}
+
+
+def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
+    pairs = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
+    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in pairs]
+
+
+def _times(one: Product, by: float) -> Product:
+    return replace(one, coefficient=by * one.coefficient)
+
+
+def _range(reference: Reference, name: str) -> tuple[float | None, float | None]:
+    one = reference.signals.get(name)
+    return (None, None) if one is None else (one.low, one.high)
+
+
+def unit_of(network: Network, name: str) -> str:
+    """The unit of an input, as memory holds it; "1" where nobody says."""
+    quantity = network.measures(name)
+    units = QUANTITIES[quantity].units if quantity in QUANTITIES else {}
+    return next(iter(units), "1")
+
+
+def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
+    """All named temperatures with their limits and, where a sensor sits, its error when the model was fitted."""
+    case = folder.case
+    of_sensors = (
+        errors(case).sensor_errors if case.model.reference is None and case.tests else standing_reference(case).errors
+    )
+    error_of = {f"sensor {name}": error for name, error in of_sensors.items()}
+    rows = mean_rows(network) | {f"sensor {n}": c.row for n, c in sorted(sensors(folder).items())}
+    for place in limits:
+        if place not in rows:
+            raise InputError(f"no temperature '{place}' to limit", "--limit", suggestion(place, rows))
+    return tuple(Output(n, row, limits.get(n), *error_of.get(n, (None, ""))) for n, row in rows.items())

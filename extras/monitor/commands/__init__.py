@@ -1,0 +1,1 @@
+"""thermoscope use watch, thermoscope use fleet"""

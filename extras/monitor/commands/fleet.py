@@ -1,0 +1,114 @@
+"""thermoscope use fleet CASE RECORDINGS...: what differs between motors that should be equal, and which stands out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extras.monitor.fleet import Population, population
+from extras.monitor.fleet.population import DIFFERS
+from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
+from thermoscope import InputError
+from thermoscope.plugin import (
+    NORMAL_95,
+    Answer,
+    Grid,
+    dask_cluster,
+    give,
+    load_sheet,
+    one_blas_thread,
+    open_case,
+    progress,
+    suggestion,
+)
+
+
+@one_blas_thread
+def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | None, target: str | None) -> int:
+    """like : the test of the case whose sheet the recordings have;  cluster : address of a Dask scheduler"""
+    files = recordings(names)
+    with progress() as tell:
+        folder = open_case(case, tell)
+        sheets = {e.name: e.sheet for e in folder.settings.tests}
+        if like is not None and like not in sheets:
+            raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
+        test = next(t for t in folder.case.tests if like in (None, t.name))
+        reader = Reader(replace(folder.case, tests=()), test, load_sheet(sheets[test.name]),
+                        folder.settings.sample_s or STEP_S, tuple(sheets))  # fmt: skip
+        with dask_cluster(cluster) if cluster else nullcontext() as executor:
+            units = histories(files, reader, tell, executor)
+        tell("the motors together")
+        spread = population(units)
+    fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, "recordings": len(files),
+                **_document(spread, fits)}  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
+    parameters = []
+    for k, name in enumerate(of.names):
+        row: dict[str, Any] = {
+            "name": name, "mean": np.exp(of.mean[k]), "mean_ci95": _factor(of.mean[k], of.mean_sd[k]),
+            "spread_percent": 100.0 * of.spread[k], "differs": bool(of.spread_probability[k] < DIFFERS),
+            "probability_equal": of.spread_probability[k],
+        }  # fmt: skip
+        if of.drift is not None and of.drift_sd is not None and of.drift_spread is not None:
+            low, high = of.drift[k] - NORMAL_95 * of.drift_sd[k], of.drift[k] + NORMAL_95 * of.drift_sd[k]
+            row["drift_percent_year"] = 100.0 * of.drift[k]
+            row["drift_ci95"] = [100.0 * low, 100.0 * high]
+            row["drift_spread_percent_year"] = 100.0 * of.drift_spread[k]
+            row["drifts"] = bool(low > 0.0 or high < 0.0)
+        parameters.append(row)
+    return {
+        "units": [
+            {"unit": name, "rmse_K": fits[name],
+             "parameters": {n: np.exp(of.posterior[i, k]) for k, n in enumerate(of.names)},
+             "ci95": {n: _factor(of.posterior[i, k], of.posterior_sd[i, k]) for k, n in enumerate(of.names)},
+             **_drifts(of, i)}
+            for i, name in enumerate(of.units)
+        ],
+        "parameters": parameters,
+        "outliers": [
+            {"unit": o.unit, "parameter": o.parameter, "factor": np.exp(o.change),
+             "factor_ci95": _factor(o.change, o.sd), "z": o.z, "probability": o.probability, "instead": o.instead}
+            for o in of.outliers
+        ],
+    }  # fmt: skip
+
+
+def _drifts(of: Population, i: int) -> dict[str, Any]:
+    if of.unit_drift is None or of.unit_drift_sd is None:
+        return {}
+    rows = {n: [100.0 * (of.unit_drift[i, k] + s * NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
+            for k, n in enumerate(of.names)}  # fmt: skip
+    return {"drift_percent_year": {n: [low, high] for n, (low, _, high) in rows.items()}}
+
+
+def _factor(mean: float, sd: float) -> list[float]:
+    return [float(np.exp(mean - NORMAL_95 * sd)), float(np.exp(mean + NORMAL_95 * sd))]
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The outliers, what differs, what drifts."""
+    outliers, count = document["outliers"], len(document["units"])
+    worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
+    names = dict.fromkeys(o["unit"] for o in outliers)
+    sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
+    rows = [[o["unit"], o["parameter"], o["factor"], *o["factor_ci95"], o["instead"]] for o in outliers]
+    differ = [[p["name"], p["mean"], p["spread_percent"], p["differs"], p.get("drift_percent_year"),
+               *(p.get("drift_ci95") or [None, None])]
+              for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])]  # fmt: skip
+    parts = [
+        Grid("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
+        Grid("Parameters over the fleet",
+             ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"], differ,
+             keep=["mean", "spread (%)", "differs", "drift (%/year)"]),
+    ]  # fmt: skip
+    return Answer(sentence, [p for p in parts if p.rows], "--json FILE")

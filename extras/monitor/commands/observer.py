@@ -1,0 +1,40 @@
+"""thermoscope use export CASE --as observer"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from thermoscope.plugin import Answer, give, open_case, progress, write_whole
+
+
+def export_observer(
+    case: str, out: Path | None, limits: Mapping[str, float], names: Sequence[str], target: str | None
+) -> int:
+    """The observer of a case in C99."""
+    import numpy as np
+
+    from extras.monitor.observer_code import code_writer, observer_files, observer_model
+    from extras.monitor.rows.observing import chosen, designed
+    from thermoscope.plugin import model_of, standing_reference
+
+    with progress() as tell:
+        folder = open_case(case, tell).small  # a controller's memory is short
+        channels = {c.name: c for t in folder.case.tests for c in t.channels}
+        sensors = chosen([*channels.values()], names, str(folder.settings.path))
+        design = designed(folder, tell)
+        tell("writing the observer")
+        looks = code_writer().outputs(model_of(folder)[0], folder, limits)
+        filters = [design.as_learned(c) for c in sensors]
+        of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in filters],
+                            standing_reference(folder.case), looks, np.array([s.bias_K for s in filters]))  # fmt: skip
+    where = out or folder.settings.out / "observer"
+    paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
+    document = {
+        "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
+        "files": [str(p) for p in paths], "state_bytes": of.bytes, "inputs": of.input_names,
+        "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
+    }  # fmt: skip
+    sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
+    give(document, target, lambda: Answer(sentence, [str(p) for p in paths], "--json FILE"))
+    return 0

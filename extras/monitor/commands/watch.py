@@ -1,0 +1,223 @@
+"""thermoscope use watch CASE --follow FILE|-: temperatures and missing heat while the machine runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.monitor.observer import Observer, Sample
+from extras.monitor.observer.learning import Design
+from extras.monitor.observer.process import Process
+from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
+from extras.monitor.rows.observing import chosen, designed, joined, record_of, started
+from thermoscope import InputError, Record
+from thermoscope.plugin import (
+    NORMAL_95,
+    PACKAGE,
+    STDOUT,
+    Answer,
+    Channel,
+    Folder,
+    Grid,
+    csv_lines,
+    give,
+    initial_state,
+    load_sheet,
+    mean_rows,
+    model_of,
+    open_case,
+    progress,
+    say,
+    stem_of,
+    write_whole,
+)
+
+Array = NDArray[np.float64]
+MINUTE = 60.0
+
+
+def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
+    """Rows from a file or a pipe.  names : sensors to use, by default all;  like : test whose sheet the rows have"""
+    with open_stream(follow) as stream:
+        with progress() as tell:
+            folder = open_case(case, tell)
+            sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
+            network = folder.case.model.network
+            name, table, lines = table_of(stream, follow, sheets, network, like)
+            channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+            here = [c for n, c in channels.items() if n in table.sensors()]
+            sensors = chosen(here, names, follow)
+            design = designed(folder, tell)
+        session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
+        with suppress(KeyboardInterrupt):
+            for part in together(lines, 1 if follow == PIPE else TOGETHER):
+                session.take(table.rows(part))
+    if session.one is None:
+        raise InputError("holds no row", follow, "rows of numbers under the header")
+    where = out or (Path("out") / folder.settings.path.name if _shipped(folder) else folder.settings.out)
+    label = "pipe" if follow == PIPE else stem_of(Path(follow))
+    file = write_whole(where / f"watch-{label}.csv", session.csv())
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, "source": follow, "like": name,
+                **session.document(), "file": str(file)}  # fmt: skip
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def _shipped(folder: Folder) -> bool:
+    return PACKAGE in folder.settings.path.resolve().parents
+
+
+@dataclass
+class Session:
+    """An observer as it goes on.  withheld : sensors that are only compared with;  loud : a line a minute on stdout"""
+
+    folder: Folder
+    design: Design
+    sensors: list[Channel]
+    withheld: list[Channel]
+    loud: bool
+    one: Observer | None = None
+    before: Rows | None = None
+    free: Array | None = None
+    lines: list[str] = field(default_factory=list)
+    hottest: dict[str, tuple[float, float]] = field(default_factory=dict)
+    errors: dict[str, list[Array]] = field(default_factory=dict)
+    last: Sample | None = None
+    spoken: float = -np.inf
+    start_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.rows = mean_rows(self.design.process.network)
+        self.plain = Process(*model_of(self.folder), self.design.process.bodies)
+
+    def take(self, rows: Rows) -> None:
+        if self.one is None:
+            self.one, self.start_s = started(self.design, self.sensors, rows), float(rows.time[0])
+            first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
+            initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
+            self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
+        whole = joined(self.before, rows)
+        record = record_of(whole, self.folder)
+        y = np.column_stack([whole.readings[c.name] for c in self.sensors])
+        samples = self.one.follow(record, y)
+        self.before = whole
+        self._compare(rows, samples, self._open_loop(record, len(samples)))
+        for sample in samples:
+            self._note(sample)
+
+    def _open_loop(self, record: Record, count: int) -> list[Array]:
+        """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
+        if not self.withheld or self.free is None:
+            return []
+        process = self.plain
+        by, still, out = process.driven(record), np.zeros(len(process.bodies)), []
+        for k in range(by.time.size - count, by.time.size):
+            if k > 0:
+                self.free = process.steps(by, k, self.free, still)[0]
+            out.append(np.concatenate([np.asarray(self.free), by.u[k]]))
+        return out
+
+    def _compare(self, rows: Rows, samples: Sequence[Sample], free: Sequence[Array]) -> None:
+        for c in self.withheld:
+            y = rows.readings[c.name]
+            estimates = np.array([s.at(c.row)[0] for s in samples])
+            without = np.array([c.row.weights @ z[c.row.index] for z in free])
+            both = np.column_stack([y - estimates, y - without])
+            sums = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
+            good = np.isfinite(y)
+            sums[0] += np.sum(both[good] ** 2, axis=0)
+            sums[1] += float(good.sum())
+
+    def _note(self, sample: Sample) -> None:
+        temperatures = {n: sample.at(row) for n, row in self.rows.items()}
+        for name, (T, _) in temperatures.items():
+            if name not in self.hottest or self.hottest[name][0] < T:
+                self.hottest[name] = T, sample.time_s
+        numbers = [sample.time_s, *(x for pair in temperatures.values() for x in pair)]
+        numbers += [x for pair in zip(sample.heat, sample.heat_sd, strict=True) for x in pair]
+        self.lines.append(",".join(f"{x:.7g}" for x in numbers))
+        self.last = sample
+        if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
+            self.spoken = sample.time_s
+            say(self._line(sample, temperatures))
+
+    def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
+        """One line for the terminal."""
+        assert self.one is not None
+        places = [c.place for c in self.sensors]
+        places += [n for n in self.design.process.bodies if n not in places]
+        temperatures = [
+            f"{n} {estimates[n][0]:.1f} +- {NORMAL_95 * estimates[n][1]:.1f}"
+            for n in dict.fromkeys(places)
+            if n in estimates
+        ]
+        alarms = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
+        return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in alarms)}"
+
+    def csv(self) -> str:
+        head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]
+        head += [x for n in self.design.process.bodies for x in (f"missing heat {n} (W)", f"sd heat {n} (W)")]
+        return csv_lines([head]) + "\n".join([*self.lines, ""])
+
+    def document(self) -> dict[str, Any]:
+        assert self.one is not None
+        assert self.last is not None
+        temperatures = {n: self.last.at(row) for n, row in self.rows.items()}
+        states = dict(zip((c.name for c in self.sensors), self.one.states, strict=True))
+        noise, last = self.design.noise, self.last
+        return {
+            "duration_s": last.time_s - self.start_s, "samples": len(self.lines),
+            "process_noise": {"time_s": noise.time_s},
+            "sensors": [{"sensor": c.name, "place": c.place, "given": c in self.sensors,
+                         "dropped": states[c.name].dropped if c.name in states else ""}
+                        for c in (*self.sensors, *self.withheld)],
+            "places": [{"place": n, "end_C": T, "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
+                        "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]}
+                       for n, (T, sd) in temperatures.items()],
+            "missing_heat": [
+                {"place": b, "end_W": last.heat[i], "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
+                 "allowed_sd_W": noise.sd[i]}
+                for i, b in enumerate(self.design.process.bodies)],
+            "events": [vars(e) for e in self.one.events],
+            "withheld": [{"sensor": c.name, "n": int(n[0]), "rmse_K": float(np.sqrt(s[0] / n[0])),
+                          "open_loop_rmse_K": float(np.sqrt(s[1] / n[1]))}
+                         for c in self.withheld for s, n in [self.errors[c.name]] if n[0] > 0],
+        }  # fmt: skip
+
+
+def _interval(value: float, sd: float) -> list[float]:
+    return [value - NORMAL_95 * sd, value + NORMAL_95 * sd]
+
+
+def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
+    if kind == "model":
+        return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({100 * probability:.0f} %)"
+    size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
+    return f"sensor {where} {kind}{size}"
+
+
+def answer(document: dict[str, Any]) -> Answer:
+    """Where the machine stands, what was dropped, where the model failed."""
+    hottest = max(document["places"], key=lambda p: p["max_C"])
+    sentence = (f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, "
+                f"{hottest['max_C']:.1f} degC.")  # fmt: skip
+    rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
+    events = [[_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+              for e in document["events"]]  # fmt: skip
+    withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
+    parts = [
+        Grid("What was said", ["event", "from (s)", "to (s)"], events),
+        Grid("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
+        Grid("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
+    ]
+    return Answer(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else value

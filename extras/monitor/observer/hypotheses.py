@@ -1,0 +1,86 @@
+"""Innovation tests: does one sensor drift, or is heat missing that the filter does not expect, and how surely?
+
+Each hypothesis, a constant error of one sensor or constant heat in one body, leaves a signature in the innovations
+(Willsky and Jones 1976). With a = sum of signature times innovation over its variance and V = sum of squared signatures
+over the variance, the log evidence for an amplitude of prior variance v, against none, is
+
+    e(v) = a^2 / (V + 1 / v) / 2 - log(1 + v V) / 2
+
+A sensor that only has the bias it may have, of variance v0, is no fault: its evidence is e(v0 + v) - e(v0). The sums
+forget, so that what was long ago is no evidence now. Odds and temper are those of the diagnosis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope.plugin import PRIOR, temper
+from thermoscope.plugin import USUAL_DOUBT as USUAL
+
+Array = NDArray[np.float64]
+FORGETS_S = 1800.0  # half an hour: a motor's own time constant
+SURE = 0.95  # probability from which a hypothesis is said
+OVER = 0.5  # and below which it is withdrawn
+DRIFT = 20.0  # times a sensor's accuracy: how far a broken one is off
+TOLERANCE = 2.0  # deviations of the table of doubt: missing heat beyond is a failure of the model
+
+
+@dataclass
+class Hypotheses:
+    """names (h,) : sensors, then bodies;  spread, tolerance (h,) K or W, deviations of a fault and of what is none
+
+    prior (h,) log odds;  score, information (h,) : a and V
+    """
+
+    names: tuple[str, ...]
+    spread: Array
+    tolerance: Array
+    prior: Array
+    score: Array
+    information: Array
+
+    def forget(self, seconds: float) -> None:
+        keeps = float(np.exp(-seconds / FORGETS_S))
+        self.score *= keeps
+        self.information *= keeps
+
+    def weigh(self, signature: Array, innovation: float, variance: float) -> None:
+        self.score += signature * innovation / variance
+        self.information += signature**2 / variance
+
+    @property
+    def amplitude(self) -> Array:
+        """(h,) K or W, shrunk by the prior."""
+        return self.score / (self.information + 1.0 / (self.spread**2 + self.tolerance**2))
+
+    def _evidence(self, variance: Array) -> Array:
+        """(h,) e(v)"""
+        V = self.information
+        return 0.5 * variance * self.score**2 / (1.0 + variance * V) - 0.5 * np.log1p(variance * V)
+
+    @property
+    def probability(self) -> Array:
+        """(h,) of each against nothing and the others."""
+        gain = self._evidence(self.spread**2 + self.tolerance**2) - self._evidence(self.tolerance**2)
+        log = np.concatenate([[0.0], self.prior + gain / temper(float(gain.max(initial=0.0)))])
+        weight = np.exp(log - log.max())
+        return np.asarray(weight[1:] / weight.sum())
+
+    def clear(self) -> None:
+        """Begin anew, as after a sensor was dropped."""
+        self.score[:], self.information[:] = 0.0, 0.0
+
+
+def hypotheses(
+    sensors: tuple[str, ...], sigma: Array, tolerance_K: Array, bodies: tuple[str, ...], table_sd: Array
+) -> Hypotheses:
+    """sigma, tolerance_K (s,) K of the sensors;  table_sd (m,) W that the table of doubt allows the bodies"""
+    fault = PRIOR["fault"].share / max(len(sensors), 1)
+    fails = sum(PRIOR[name].share for name in ("effect", "condition", "heat")) / max(len(bodies), 1)
+    log = np.log(np.array([*[fault] * len(sensors), *[fails] * len(bodies)]) / PRIOR["nothing"].share)
+    spread = np.concatenate([DRIFT * sigma, USUAL["switched"] * table_sd])
+    tolerance = np.concatenate([tolerance_K, np.zeros(len(bodies))])
+    return Hypotheses((*sensors, *bodies), spread, tolerance, log, np.zeros(spread.size), np.zeros(spread.size))

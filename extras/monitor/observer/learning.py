@@ -1,0 +1,131 @@
+"""What an observer is made of: the model as the calibration tests correct it, and how much heat may be missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.monitor.observer.constants import Constants, Sensor, with_motion
+from extras.monitor.observer.joint_filter import JointFilter
+from extras.monitor.observer.observer import Observer, Sample, observer
+from extras.monitor.observer.process import Process
+from extras.monitor.observer.process_noise import ProcessNoise, thinned
+from thermoscope import Network, Parameter
+from thermoscope.plugin import Channel, Doubt, ParameterPosterior, Test, parameter_posterior, record, thermal
+from thermoscope.plugin import MeasuredCase as Case
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor
+TIME_S = 1200.0  # that missing heat lasts: between a winding's time constant and a machine's
+
+
+@dataclass(frozen=True)
+class Design:
+    """process : the corrected model;  noise : by the table of doubt;  learned : name -> sensor as it was learned
+
+    rise_K : usual rise of the tests
+    """
+
+    process: Process
+    noise: ProcessNoise
+    learned: Mapping[str, Sensor]
+    rise_K: float
+
+    def started(self, sensors: Sequence[Channel], readings: Array, boundaries: Mapping[str, float]) -> Observer:
+        """With some sensors, from their first readings (s,)."""
+        sensor_models = [self.as_learned(c) for c in sensors]
+        bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
+        return observer(
+            self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias
+        )  # fmt: skip
+
+    def as_learned(self, c: Channel) -> Sensor:
+        """A sensor by its name; as declared where no test had it."""
+        constants = self.learned.get(c.name)
+        return Sensor(c) if constants is None else constants.of(c)
+
+
+def unsettled(case: Case) -> ParameterPosterior:
+    """The model as it stands, as unsure as before any calibration; an effect that was added by half of itself."""
+    prior = parameter_posterior(replace(case, model=replace(case.model, revision=0)))
+    network = narrowed(prior.network, prior.values, case)
+    sd = {p.name: p.prior_sd for p in network.parameters}
+    return replace(prior, network=network, covariance=np.diag([sd[n] ** 2 for n in prior.names]))
+
+
+def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Network:
+    """With priors of added effects that say half of what was found: in a fit they say nothing."""
+    effects = {e.name for e in case.model.effects}
+
+    def prior(p: Parameter) -> Parameter:
+        deviation = abs(values.get(p.name, p.value) - p.neutral)
+        return replace(p, prior_sd=min(p.prior_sd, HALF * deviation)) if p.name in effects else p
+
+    return replace(network, parameters=tuple(prior(p) for p in network.parameters))
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """bodies : where heat may be missing;  table (m, m) W2 : how much, by the table of doubt;  constants (k,)"""
+
+    bodies: tuple[str, ...]
+    table: Array
+    constants: Array
+
+
+def taught(
+    network: Network, values: Mapping[str, float], bodies: Sequence[str], table: Array, tests: Sequence[Test],
+    doubt: Doubt, progress: Progress = lambda message: None,
+) -> Lesson:  # fmt: skip
+    """What some tests, those of a calibration, tell of the constants."""
+    one = JointFilter(constants_of(network, values, tests, doubt), tuple(bodies), ProcessNoise(table, TIME_S))
+    for test in tests:
+        progress(f"learning from {test.name}")
+        one.over(test)
+    return Lesson(tuple(bodies), table, one.w)
+
+
+def design_of(
+    network: Network, values: Mapping[str, float], lesson: Lesson, tests: Sequence[Test], doubt: Doubt
+) -> Design:  # fmt: skip
+    """tests : those of the lesson"""
+    constants = constants_of(network, values, tests, doubt)
+    process = Process(constants.network, constants.values(lesson.constants), lesson.bodies)
+    noise = ProcessNoise(lesson.table, TIME_S)
+    return Design(process, noise, constants.sensors(lesson.constants), usual_rise(tests))
+
+
+def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[Test], doubt: Doubt) -> Constants:
+    """Of the network's heat, and of every sensor of the tests."""
+    bare = thermal(network)
+    names = {p.name for p in bare.parameters}
+    channels = {c.name: c for t in tests for c in t.channels}
+    start = {n: v for n, v in values.items() if n in names}
+    return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
+
+
+def over(design: Design, test: Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
+    """An observer after a test, and its samples."""
+    test = thinned(test)
+    course, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
+    y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
+    around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
+    one = design.started(sensors, y[0], around)
+    return one, list(one.follow(course, y))
+
+
+def usual_rise(tests: Sequence[Test]) -> float:
+    """Root mean square (K) of what the sensors of some tests read above the surroundings."""
+    rises = list(_rises(tests))
+    return float(np.sqrt(np.nanmean(np.concatenate(rises) ** 2))) if rises else 0.0
+
+
+def _rises(tests: Sequence[Test]) -> Iterator[Array]:
+    for t in tests:
+        around = np.mean([np.broadcast_to(u, t.time.shape) for u in t.boundaries.values()], axis=0)
+        for c in t.channels:
+            yield c.y - around

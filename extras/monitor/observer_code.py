@@ -1,0 +1,151 @@
+"""The observer in C99: the network's code with missing heat as an input, the filter (runtime/), and its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.monitor.observer import hypotheses as tests_of
+from extras.monitor.observer import sensor_faults as faults
+from extras.monitor.observer.hypotheses import hypotheses
+from extras.monitor.observer.observer import CORRELATION_S
+from extras.monitor.observer.process import LONGEST_S, Process
+from extras.monitor.observer.process_noise import ProcessNoise
+from thermoscope import InputError, MissingDependency, Network
+from thermoscope.plugin import COLDEST, HOTTEST, TEMPER, Channel, MeasuredLoss, Reference, c_comment, plugins
+from thermoscope.plugin import USUAL_DOUBT as USUAL
+from thermoscope.plugin import heat_source as heat
+
+Array = NDArray[np.float64]
+MOST_BYTES = 10_000  # of what has to live from step to step on a controller
+FILES = ("thermal_observer.h", "thermal_observer.c")
+HERE = Path(__file__).resolve().parent / "runtime"
+REAL, SINGLE = 8, 4  # bytes
+
+
+def code_writer() -> Any:
+    """What writes a network in C, of the extra `export`. Raises MissingDependency where it is not installed."""
+    if "c" not in plugins("code"):
+        raise MissingDependency("an observer in C needs the extra 'export': pip install 'thermoscope[export]'")
+    return plugins("code")["c"]
+
+
+@dataclass(frozen=True)
+class ObserverModel:
+    """model : the network with the missing heat of every body as an input;  given : the inputs that a user sets
+
+    table_sd (m,) W that the table of doubt allows;  rise_K : usual rise of the tests
+    bias (s,) K that the sensors read too much
+    """
+
+    model: Any  # of the writer
+    process: Process
+    noise: ProcessNoise
+    table_sd: Array
+    rise_K: float
+    sensors: tuple[Channel, ...]
+    heats: tuple[str, ...]
+    bias: Array
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        return tuple(s.name for s in self.model.signals if s.name not in self.heats)
+
+    @property
+    def bytes(self) -> int:
+        """Of thermal_observer, as a C compiler lays it out, but for a few bytes between its parts."""
+        n, m, s = self.process.size, len(self.process.bodies), len(self.sensors)
+        doubles = len(self.model.states) + len(self.model.signals) + 2 + s + 1
+        singles = n * n + n * (s + m) + 2 * (s + m) + 3 * (m + 1) + s + 1 + (s + 1) * (s + 7)
+        return REAL * doubles + SINGLE * singles
+
+
+def observer_model(
+    process: Process, noise: ProcessNoise, table_sd: Array, rise_K: float, sensors: Sequence[Channel],
+    reference: Reference, looks: Sequence[Any], bias: Array | None = None,
+) -> ObserverModel:  # fmt: skip
+    """Raises InputError where it would not fit on a controller."""
+    writer = code_writer()
+    network, names = with_missing_heat(process.network, process.bodies)
+    model = writer.packed(network, process.values, reference, looks)
+    off = np.zeros(len(sensors)) if bias is None else bias
+    result = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
+    if result.bytes > MOST_BYTES:
+        what = (
+            f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors has {result.bytes} bytes"
+        )
+        raise InputError(what, "--as observer", f"at most {MOST_BYTES}: fewer sensors (--sensor), or a smaller network")
+    return result
+
+
+def with_missing_heat(network: Network, bodies: Sequence[str]) -> tuple[Network, tuple[str, ...]]:
+    """The network with an input (W) for the missing heat of every body."""
+    names = tuple(f"missing heat {body}" for body in bodies)
+    laws = [MeasuredLoss(((1.0, (name,)),)) for name in names]
+    sources = [heat(network, n, "missing", b, law) for n, b, law in zip(names, bodies, laws, strict=True)]
+    return network.extended(sources=sources), names
+
+
+def observer_files(of: ObserverModel) -> dict[str, str]:
+    """File name -> text: everything that has to be compiled (thermal_observer.c takes thermal_network.c in)."""
+    writer = code_writer()
+    fixed = {name: (HERE / name).read_text(encoding="utf-8") for name in FILES}
+    return {
+        **writer.c_files(of.model),
+        **fixed,
+        "thermal_observer_sizes.h": _sizes(of),
+        "thermal_observer_data.h": _data(of),
+    }
+
+
+def _sizes(of: ObserverModel) -> str:
+    counts = {"SLOW": of.process.slow.size, "BODIES": len(of.process.bodies), "SENSORS": len(of.sensors),
+              "GIVEN": len(of.input_names)}  # fmt: skip
+    comments = [
+        f"Observer of '{of.model.name}': {of.bytes} bytes from step to step; single precision but for temperatures.",
+        f"Inputs u, in this order: {', '.join(of.input_names)}.",
+        f"Sensors y (degC, NAN where nothing was read), in this order: {', '.join(c.name for c in of.sensors)}.",
+        f"Missing heat q (W), in this order: {', '.join(of.process.bodies)}.",
+    ]
+    lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
+    macro = "THERMAL_OBSERVER_SIZES_H"
+    return "\n".join([c_comment(comments), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
+
+
+def _data(of: ObserverModel) -> str:
+    writer = code_writer()
+    ints, reals, chained = writer.ints, writer.reals, writer.joined
+    signals = [s.name for s in of.model.signals]
+    network, rows = of.process.network, [c.row for c in of.sensors]
+    sigma = np.array([c.sigma_K for c in of.sensors])
+    names = tuple(c.name for c in of.sensors)
+    odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
+    numbers: Mapping[str, float] = {
+        "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": CORRELATION_S, "START_K": USUAL["start"],
+        "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
+        "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
+        "MOVED_SD": faults.MOTION, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
+        "DOUBT_SD": tests_of.TOLERANCE, "TEMPER_BY": TEMPER["temper"].share,
+        "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
+    }  # fmt: skip
+    m = len(of.process.bodies)
+    root = "},\n{".join(", ".join(f"{v:.17g}" for v in row) for row in of.noise.root)
+    return "\n".join([
+        "/* The numbers of the observer; see thermal_observer_sizes.h. */",
+        *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
+        ints("SLOW", of.process.slow), ints("BODY_STATE", [network.column(b) for b in of.process.bodies]),
+        ints("HEAT_SIGNAL", [signals.index(n) for n in of.heats]),
+        ints("GIVEN_SIGNAL", [signals.index(n) for n in of.input_names]),
+        f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
+        ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
+        ints("SENSOR_AT", chained(r.index for r in rows)), reals("SENSOR_WEIGHT", chained(r.weights for r in rows)),
+        ints("SENSOR_STATE", [of.process.state(c) for c in of.sensors]), reals("SENSOR_SD", sigma),
+        reals("SENSOR_BIAS", of.bias),
+        reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
+        reals("ALLOWED_SD", odds.tolerance), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
+    ])  # fmt: skip

@@ -1,0 +1,1 @@
+"""A case's model beside a running machine, and over a fleet of machines."""

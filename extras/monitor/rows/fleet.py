@@ -1,0 +1,153 @@
+"""Recordings of a fleet, motor by motor and piece by piece: only their statistics stay in memory."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.monitor.fleet import Statistics, UnitHistory, statistics
+from extras.monitor.rows.live_rows import Rows, open_stream, table_of, together
+from thermoscope import InputError, Network
+from thermoscope.plugin import LAW_RUNNING as RUNNING
+from thermoscope.plugin import CaseProgress as Progress
+from thermoscope.plugin import Channel, Sheet, Test, stem_of
+from thermoscope.plugin import MeasuredCase as Case
+
+Array = NDArray[np.float64]
+PIECE = 20_000  # rows that are in memory at once: five hours at 1 Hz
+LEAST = 60  # rows worth a fit
+STEP_S = 20.0  # between the instants that a fit looks at, where the case does not say
+DATED = re.compile(r"(?P<unit>.+)@(?P<year>\d{4})-(?P<month>\d\d)(-(?P<day>\d\d))?")
+ENDINGS = (".csv", ".csv.gz")
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A file of one motor.  year : its date, 0 where the name gives none"""
+
+    file: Path
+    unit: str
+    year: float
+
+
+@dataclass(frozen=True)
+class Reader:
+    """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests
+
+    tests : their names, of which none is running here
+    piece : rows that are in memory at once
+    """
+
+    case: Case
+    test: Test
+    sheet: Sheet
+    step_s: float
+    tests: tuple[str, ...] = ()
+    piece: int = PIECE
+
+    def statistics(self, recording: Recording) -> Statistics:
+        """All pieces of a recording together."""
+        total: Statistics | None = None
+        network = self.case.model.network
+        with open_stream(str(recording.file)) as stream:
+            _, table, lines = table_of(stream, str(recording.file), {self.test.name: self.sheet}, network, None)
+            for part in together(lines, self.piece):
+                if total is None or len(part) >= LEAST:
+                    one = statistics(self.case, self._test(table.rows(part), recording, network))
+                    total = one if total is None else total + one
+        if total is None:
+            raise InputError("holds no row", str(recording.file), "rows of numbers under the header")
+        return total
+
+    def _test(self, rows: Rows, recording: Recording, network: Network) -> Test:
+        if rows.time.size < LEAST:
+            raise InputError(f"holds {rows.time.size} rows", str(recording.file), f"at least {LEAST} to fit a motor to")
+        start = _starts(rows.time, self.step_s)
+
+        def mean(y: Array) -> Array:
+            good = np.isfinite(y).astype(float)
+            count = np.add.reduceat(good, start)
+            with np.errstate(invalid="ignore"):
+                return np.add.reduceat(np.nan_to_num(y), start) / np.where(count > 0.0, count, np.nan)
+
+        channels = [replace(c, y=mean(rows.readings[c.name])) for c in self.test.channels if c.name in rows.readings]
+        if not any(np.isfinite(c.y).any() for c in channels):
+            raise InputError("no sensor of the machine", str(recording.file), "a temperature that the sheet knows")
+        time = mean(rows.time)
+        inputs = {n: mean(u) for n, u in rows.inputs.items()}
+        inputs |= {f"{RUNNING}{name}": np.zeros(time.size) for name in self.tests}
+        air = {n: mean(u) for n, u in rows.boundaries.items()}
+        return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
+
+
+def _starts(time: Array, step_s: float) -> NDArray[np.int64]:
+    """First row of every step."""
+    cell = np.floor((time - time[0]) / step_s)
+    return np.flatnonzero(np.diff(cell, prepend=-1.0) > 0)
+
+
+def _initial(channels: Sequence[Channel], air: dict[str, Array]) -> dict[str, float]:
+    first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
+    return first or {name: float(u[0]) for name, u in air.items()}
+
+
+def recordings(names: Sequence[Path]) -> list[Recording]:
+    """Files, and those in folders: UNIT.csv or UNIT@YEAR-MONTH[-DAY].csv."""
+    files = [f for name in names for f in (_inside(name) if name.is_dir() else [name])]
+    out = [_recording(file) for file in files]
+    if len({r.unit for r in out}) < 3:
+        raise InputError(f"{len({r.unit for r in out})} motors are no fleet", ", ".join(map(str, names)),
+                         "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv")  # fmt: skip
+    dated = [r for r in out if r.year]
+    if dated and len(dated) < len(out):
+        bare = next(r for r in out if not r.year)
+        raise InputError("has no date, others have", str(bare.file), "UNIT@YEAR-MONTH.csv for all, or for none")
+    return out
+
+
+def _inside(folder: Path) -> list[Path]:
+    files = sorted(f for ending in ENDINGS for f in folder.glob(f"[!.]*{ending}"))
+    if not files:
+        raise InputError("no recording in the folder", str(folder), "CSV files named UNIT.csv or UNIT@2026-03.csv")
+    return files
+
+
+def _recording(file: Path) -> Recording:
+    if not file.is_file():
+        raise InputError("no such file", str(file), "CSV files or folders of them")
+    match = DATED.fullmatch(stem_of(file))
+    if match is None:
+        return Recording(file, stem_of(file), 0.0)
+    try:
+        day = date(int(match["year"]), int(match["month"]), int(match["day"] or 15))
+    except ValueError:
+        raise InputError("the name holds no date that exists", str(file), "UNIT@YEAR-MONTH[-DAY].csv") from None
+    return Recording(file, match["unit"], day.year + (day.timetuple().tm_yday - 0.5) / 365.25)
+
+
+def histories(
+    files: Sequence[Recording], reader: Reader, tell: Progress, executor: Executor | None = None
+) -> list[UnitHistory]:
+    """Motor by motor, in the order of their names."""
+    by_unit: dict[str, list[tuple[float, Statistics]]] = {}
+    for i, (one, numbers) in enumerate(zip(files, _each(files, reader, executor), strict=True)):
+        tell(f"motors: {one.unit}, {i + 1} of {len(files)}")
+        by_unit.setdefault(one.unit, []).append((one.year, numbers))
+    return [
+        UnitHistory(unit, tuple(y for y, _ in parts), tuple(s for _, s in parts))
+        for unit, parts in sorted(by_unit.items())
+    ]
+
+
+def _each(files: Sequence[Recording], reader: Reader, executor: Executor | None) -> Iterator[Statistics]:
+    if executor is None:
+        yield from map(reader.statistics, files)
+    else:
+        yield from executor.map(reader.statistics, files)

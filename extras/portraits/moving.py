@@ -1,0 +1,66 @@
+"""The machine as it looks, warming up: slower to draw than viz.machine.animation, for pictures that are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from extras.portraits.portrait import CAPTION, VIEW, Warm, staged
+from thermoscope.plugin import (
+    LIGHT,
+    NOTE,
+    QUARTER,
+    TITLE,
+    WRITERS,
+    Pulses,
+    Room,
+    Sensor,
+    SplitMesh,
+    cut_away,
+    on_nodes,
+    scene,
+)
+from thermoscope.plugin import MachineDescription as Machine
+
+Array = NDArray[np.float64]
+RENDER_SIZE = (1080, 720)  # pixels; the film is a smaller copy, which smooths its letters
+
+
+def moving(
+    machine: Machine,
+    nodes: SplitMesh,
+    fields: Array,
+    path: Path,
+    *,
+    titles: Sequence[str],
+    sensors: Sequence[Sequence[Sensor]],
+    limits: tuple[float, float],
+    width: int,
+    frames_per_second: float,
+    tell: Callable[[int], None] = lambda number: None,
+) -> Path:
+    """Write a .gif or .mp4 of fields (n, n_nodes) degC, with a title and a row of sensors each.
+
+    limits : of the colours (degC);  width : in pixels
+    """
+    from PIL import Image
+
+    T = on_nodes(nodes, fields)
+    warm = Warm(nodes, T[0], limits)
+    p, painted = staged(machine, warm, QUARTER, VIEW, LIGHT, RENDER_SIZE, Room(0.0, 0.1, TITLE, NOTE))
+    scene.footnote(p, CAPTION, LIGHT)
+    pulses, pictures = Pulses(p, cut_away(nodes), sensors[0]), []
+    for number, (words, values, row) in enumerate(zip(titles, T, sensors, strict=True), 1):
+        tell(number)
+        for data, rows in painted:
+            data.point_data["T"] = rows @ values
+        pulses.show(row, number / frames_per_second)
+        scene.headline(p, words, LIGHT)
+        picture = Image.fromarray(np.asarray(p.screenshot(return_img=True)))
+        small = picture.resize((width, width * RENDER_SIZE[1] // RENDER_SIZE[0]), Image.Resampling.LANCZOS)
+        pictures.append(np.asarray(small))
+    p.close()
+    return WRITERS[path.suffix](path, pictures, frames_per_second)

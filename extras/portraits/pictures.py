@@ -1,0 +1,26 @@
+"""Pictures of a machine as it looks: thermoscope show picture CASE machine, or temperature instead of machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from thermoscope.plugin import Subject
+
+
+def machine_picture(s: Subject, png: Path) -> None:
+    """The machine cut open."""
+    from extras.portraits.portrait import portrait
+
+    s.require_drawing()
+    portrait(s.built.machine, title=s.built.machine.name, png=png).close()
+
+
+def temperature_picture(s: Subject, png: Path) -> None:
+    """The same, coloured by temperature at the end of the most telling test."""
+    from extras.portraits.portrait import portrait
+
+    s.require_drawing()
+    title = f"{s.when}: temperature of the model"
+    portrait(s.built.machine, nodes=s.nodes, T=s.field(), title=title, limits=s.limits, png=png).close()

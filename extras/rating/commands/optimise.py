@@ -1,0 +1,167 @@
+"""thermoscope use optimise CASE|MACHINE: designs that trade temperature, settling, loss and auxiliary power."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from extras.rating.commands.rate import case_or_machine, once, read_at
+from extras.rating.design.condensations import Condensations
+from extras.rating.design.design_problem import DesignRequest, checked_request, design_problem
+from extras.rating.design.machine_keys import MachineFile, machine_file_text, short_key
+from extras.rating.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
+from extras.rating.optimisation.search import METHODS, Design, Effort, pareto_set
+from thermoscope import InputError
+from thermoscope.plugin import Answer, Grid, csv_lines, file_stem, give, notes, progress, read_limits, write_whole
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+WORDS = {PEAK: "peak (degC)", SETTLING: "settling (min)", COPPER: "copper (W)", AUXILIARY: "pump and fan (W)"}
+
+
+def optimise(
+    name: str, limits: Sequence[str], torque: float | None, at: Sequence[str], vary: Sequence[str], method: str,
+    effort: Effort, cluster: str | None, cycle: str | None, robust: bool, out: Path | None, target: str | None,
+) -> int:  # fmt: skip
+    """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
+    if method not in METHODS:
+        raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
+    request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    with progress() as tell, once() as messages, _executor(cluster) as executor:
+        folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
+        problem, file = design_problem(folder, request, tell)
+        designs = pareto_set(problem, METHODS[method], effort, executor, tell)
+        document = document_of(problem, designs, method, effort)
+        if file is not None and any(v.conducts for v in problem.space.variables):
+            samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
+            document["interpolation_error"] = Condensations(problem, tell).verified(samples)
+        where = out or Path("out") / f"{file_stem(folder.case.name)}-designs"
+        tell(f"writing {where}")
+        document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
+    notes(messages)
+    give(document, target, lambda: answer(document, where))
+    return 0
+
+
+@contextmanager
+def _executor(cluster: str | None) -> Iterator[Executor | None]:
+    if cluster is None:
+        yield None
+        return
+    from thermoscope.plugin import dask_cluster
+
+    with dask_cluster(cluster) as executor:
+        yield executor
+
+
+def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
+    """NAME or NAME=LOW:HIGH, ..."""
+    out: dict[str, tuple[float, float] | None] = {}
+    for one in words:
+        name, equals, bounds = one.partition("=")
+        out[name] = None
+        if equals:
+            try:
+                low, high = map(float, bounds.split(":"))
+            except ValueError:
+                low, high = 1.0, 0.0
+            if not (name and np.isfinite([low, high]).all() and low < high):
+                raise InputError(f"'{one}' is no range", "--vary", "NAME=LOW:HIGH, as geometry.jacket.height_mm=8:20")
+            out[name] = low, high
+    return out
+
+
+def document_of(problem: Problem, designs: Sequence[Design], method: str, effort: Effort) -> dict[str, Any]:
+    usual = {v.name: v.usual for v in problem.space.variables}
+    reference = problem.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    return {
+        "method": method,
+        "judged": effort.population * effort.generations,
+        "objectives": list(problem.aimed),
+        "robust": problem.sure is not None,
+        "limits": [{"place": s.name, "degC": s.limit} for s in problem.spots],
+        "operating_point": {"inputs": dict(reference.inputs), "boundaries": dict(problem.boundaries)},
+        "torque_Nm": None if problem.driven else problem.electrics.torque(problem.inputs.get("current_A", 0.0)),
+        "variables": [{"name": v.name, "low": v.low, "high": v.high, "usual": v.usual}
+                      for v in problem.space.variables],
+        "reference": {"values": usual, **dict(reference.objectives), "feasible": reference.feasible,
+                      "places": dict(reference.places)},
+        "designs": [
+            {"design": f"design-{k + 1:02d}", "values": problem.space.named(d.x), **dict(d.performance.objectives),
+             "places": dict(d.performance.places)}
+            for k, d in enumerate(designs)
+        ],
+    }  # fmt: skip
+
+
+def _spread(designs: Sequence[Design], count: int) -> list[int]:
+    """Numbers of designs evenly over the set, both ends among them."""
+    return sorted({round(k) for k in np.linspace(0, len(designs) - 1, min(count, len(designs)))})
+
+
+def _write(
+    folder: Path, problem: Problem, designs: Sequence[Design], document: Mapping[str, Any], file: MachineFile | None
+) -> list[str]:
+    """pareto.csv, pareto.html, and a machine file per design."""
+    from extras.rating.designs import page
+
+    rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
+    lines = ([f"{v:.6g}" if isinstance(v, float) else v for v in row.values()] for row in rows)
+    out = [write_whole(folder / "pareto.csv", csv_lines([list(rows[0]), *lines]))]
+    html = page(rows, problem.aimed, {v.name: short_key(v.name) for v in problem.space.variables}, folder.name)
+    out.append(write_whole(folder / "pareto.html", html))
+    for row, design in zip(rows, designs, strict=True) if file is not None else ():
+        assert file is not None
+        name, does = row["design"], design.performance.objectives
+        comments = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
+        values = problem.space.named(design.x)
+        out.append(
+            write_whole(
+                folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
+            )
+        )
+    return [str(path) for path in out]
+
+
+def answer(document: Mapping[str, Any], where: Path) -> Answer:
+    """How far the objectives reach, the designs, and how sure the reduced models are of them."""
+    designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
+    ends = ", ".join(f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
+                     f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}" for o in objectives)  # fmt: skip
+    sentence = f"{len(designs)} designs that none beats, of {document['judged']} judged: {ends}."
+    names = [v["name"] for v in document["variables"]]
+    headers = ["design", *(WORDS[o] for o in objectives), *(short_key(n) for n in names)]
+    rows = [_row("as it is" + (" (too hot)" if not reference["feasible"] else ""), reference, objectives, names)]
+    picked = [designs[round(k)] for k in np.linspace(0, len(designs) - 1, min(12, len(designs)))]
+    rows += [_row(d["design"], d, objectives, names) for d in picked]
+    parts: list[Grid | str] = [Grid("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
+    if error := document.get("interpolation_error"):
+        parts.append(
+            f"Against models condensed anew for three of them: rises within {100.0 * _rises(error):.2g} %, settling "
+            f"time within {100.0 * error[SETTLING]:.2g} %, copper loss within {100.0 * error[COPPER]:.2g} %."
+        )
+    if document["robust"]:
+        parts.append("Temperatures are the upper ends of their 95 % bands.")
+    torque = "" if document["torque_Nm"] is None else f"{document['torque_Nm']:.4g} N m; "
+    point = {**document["operating_point"]["inputs"], **document["operating_point"]["boundaries"]}
+    parts.append(f"At {torque}{', '.join(f'{n} = {u:.4g}' for n, u in point.items())}.")
+    return Answer(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
+
+
+def _rises(error: Mapping[str, float]) -> float:
+    return max(e for n, e in error.items() if n not in (SETTLING, COPPER))
+
+
+def _in_display_unit(objective: str, value: float) -> float:
+    return value / 60.0 if objective == SETTLING else value
+
+
+def _row(word: str, design: Mapping[str, Any], objectives: Sequence[str], names: Sequence[str]) -> list[Any]:
+    return [word, *(_in_display_unit(o, design[o]) for o in objectives), *(design["values"][n] for n in names)]

@@ -1,0 +1,268 @@
+"""thermoscope use rate CASE|MACHINE: what it may carry, for how long, and how sure that is."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extras.rating.envelope import DUTIES, rated, until
+from extras.rating.holding_map import holding_times
+from extras.rating.operation import Operation
+from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
+from extras.rating.request import Rated, RatingRequest, rated_model
+from extras.rating.rows import derated, load_of, point, row
+from thermoscope import InputError
+from thermoscope.plugin import (
+    Answer,
+    Folder,
+    Grid,
+    Progress,
+    RangeWarning,
+    Settings,
+    as_number,
+    before_last,
+    find_case,
+    give,
+    notes,
+    open_case,
+    posterior_of,
+    progress,
+    read_limits,
+    read_pairs,
+    read_settings,
+    short_of,
+    standing_reference,
+    toml_value,
+    wanted,
+)
+
+POINTS = 6  # speeds of the envelope
+LOADS = 8  # loads of the map
+LARGEST_START = 1e7  # in amperes or newton metres: beyond any machine
+WARM = 0.75  # load at rest from which an overload begins warm
+
+
+def rate(
+    name: str, limits: Sequence[str], at: Sequence[str], losses: Path | None, voltage: float | None, overload: float,
+    top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, start: str,
+    sure: bool | None, target: str | None,
+) -> int:  # fmt: skip
+    """Ratings of a case, or of a machine with nothing measured."""
+    options = read_limits(limits), read_at(at), tuple(loads)
+    request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped, read_start(start))
+    if voltage is not None and losses is None:
+        raise InputError(
+            "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
+        )
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    with progress() as tell, once() as messages:
+        folder = case_or_machine(name, tell)
+        document = {"case": folder.case.name, "revision": folder.case.model.revision,
+                    **document_of(folder, request, sure, tell)}  # fmt: skip
+    notes(messages)
+    give(document, target, lambda: answer(document))
+    return 0
+
+
+def read_at(words: Sequence[str]) -> dict[str, float]:
+    """NAME=VALUE, ..."""
+    return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
+
+
+def read_start(word: str) -> float | None:
+    """The load from whose rest S2 begins, in the unit of the input that carries it; None for "cold"."""
+    if word == "cold":
+        return None
+    load = as_number(word)
+    if load is None or not 0.0 <= load <= LARGEST_START:
+        raise InputError(f"'{word}' is no start", "--start", f"cold, or a load from 0 to {LARGEST_START:g}, e.g. 120")
+    return load
+
+
+def case_or_machine(name: str, tell: Progress, check: Callable[[Settings], None] = lambda settings: None) -> Folder:
+    """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
+    from thermoscope.plugin import library
+
+    path = Path(name)
+    if not (path.is_file() or (not path.exists() and name in library())):
+        check(read_settings(find_case(name), untested=True))
+        return open_case(name, tell, untested=True)
+    with tempfile.TemporaryDirectory() as folder:
+        machine = str(path.resolve()) if path.is_file() else name
+        text = f"[case]\nname = {toml_value(path.stem)}\nmachine = {toml_value(machine)}\n"
+        Path(folder, "case.toml").write_text(text, encoding="utf-8")
+        check(read_settings(Path(folder), untested=True))
+        return open_case(folder, tell, untested=True)
+
+
+@contextmanager
+def once() -> Iterator[list[str]]:
+    """What correlations and maps say of their ranges: the last word of each instead of hundreds."""
+    notes: list[str] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", RangeWarning)
+        yield notes
+    last = {str(w.message).split("=")[0]: str(w.message) for w in caught}
+    notes.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
+
+
+def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
+    it = rated_model(folder, request)
+    model, op, limits = it.model, it.op, it.limits
+    tell("ratings")
+    here = {form: rated(model, op, limits, form, None) for form in DUTIES}
+    old = _before(folder, request, tell)
+    before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
+    posterior = posterior_of(folder, tell) if request.losses is None and wanted(model.network, sure) else None
+    tell("envelope over the speed")
+    speeds = _speeds(folder, op, request)
+    envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]
+    tell("derating")
+    load, main = here["S1"].load, op.inputs[op.main]
+    return {
+        "limits": [{"place": p, "degC": T} for p, T in limits.items()],
+        "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries),
+                      "start": "cold" if request.start is None else request.start},
+        "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
+        "envelope": [point(folder, op, r, old, posterior) for r in envelope],
+        "derating": derated(folder, it, old, load, posterior),
+        "overload": _overload(it, request, load),
+        "cycle": _cycle(folder, it, request, tell),
+        "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if request.mapped else {},
+    }  # fmt: skip
+
+
+def _before(folder: Folder, request: RatingRequest, tell: Progress) -> Rated | None:
+    """The model before its last step; none without a step."""
+    earlier = before_last(folder)
+    if earlier is None:
+        return None
+    tell("ratings of the model before its last step")
+    return rated_model(replace(folder, case=earlier), request)
+
+
+def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
+    """Seconds from cold at every speed and load, from half of what holds for ever to what holds for ten seconds."""
+    if not speeds or not np.all(np.isfinite(ends)):
+        raise InputError("there is no map", "--map", "a model whose losses or films know a speed, and a limit in reach")
+    tell("map over load and speed")
+    loads = [float(x) for x in np.geomspace(0.5 * ends[0], ends[1], LOADS)]
+    seconds = holding_times(it.model, it.op, it.limits, loads, speeds)
+    main = it.op.inputs[it.op.main]
+    return {"speed_rpm": list(speeds), it.op.main: [main * x for x in loads], "seconds": seconds.tolist()}
+
+
+def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) -> dict[str, Any]:
+    """The share of a drive cycle's load that may be repeated for ever; how long all of it from cold."""
+    if request.cycle is None:
+        return {}
+    from thermoscope.plugin import find_cycle, load_cycle
+
+    tell(f"cycle {request.cycle}")
+    network, op, model = it.model.network, it.op, it.model
+    ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
+    cycle = load_cycle(find_cycle(folder.settings.path, request.cycle), network, ratings)
+    notes(cycle.notes)
+    record = cycle.record
+    if cycle.drive is not None:
+        from thermoscope.plugin import coupled
+
+        model = replace(model, network=cycle.on(network))
+        drive = coupled(model.network, record, cycle.drive, cycle.watched, model.values)
+        record = replace(record, inputs=drive.inputs)
+        currents = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
+        op = replace(op, inputs={**currents, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *currents))))
+    lap, short = Lap(record, op.loads), short_of(record)
+    notes(f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
+          for name, seconds in short.items())  # fmt: skip
+    share, at = share_for_ever(model, op, it.limits, lap)
+    until_s = time_to_limit(model, op, it.limits, lap)
+    return {"name": cycle.name, "share": share, "at": at, "until_s": until_s, "short_of_s": short}
+
+
+def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:
+    """From rest to the largest speed that was fitted or asked for."""
+    if op.speed is None:
+        return []
+    fitted = standing_reference(folder.case).signals.get(op.speed)
+    peaks = [abs(fitted.low), abs(fitted.high)] if fitted else []
+    top = request.top_rpm or max([abs(op.inputs[op.speed]), *peaks])
+    return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
+
+
+def _overload(it: Rated, request: RatingRequest, load: float) -> dict[str, Any]:
+    """How long at a multiple of the continuous rating, from cold and from rest at three quarters of it."""
+    if not np.isfinite(load):
+        return {}
+    most = list(it.limits.values())
+    cold, warm = (until(it.model, it.op, most, request.overload * load, None, w) for w in (None, WARM * load))
+    return {"percent": 100.0 * request.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
+
+
+def answer(document: Mapping[str, Any]) -> Answer:
+    """The continuous rating with its band; the other forms; cycle, map, envelope and derating."""
+    first, reference = document["ratings"][0], document["reference"]
+    main = reference["input"]
+    band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
+    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}{_change(first)}."
+    if not np.isfinite(first["value"]):
+        sentence = f"Continuous: no {main} that this model knows reaches a limit."
+    rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
+            for r in document["ratings"]]  # fmt: skip
+    headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
+    begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
+    around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
+    at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
+    table = Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
+    parts: list[Grid | str] = [table, f"At {at}; S2 from {begin}."]
+    if over := document["overload"]:
+        parts.append(f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
+                     f"from rest at {over['warm_percent']:g} %.")  # fmt: skip
+    if cycle := document["cycle"]:
+        parts.append(_of_cycle(cycle))
+    parts += [_of_map(document["map"], main)] if document["map"] else []
+    shares = [[d["of"], d["value"], d["unit"], *_percent([d["share"], *(d["share_ci95"] or (None, None)),
+               d["share_before"]])] for d in document["derating"]]  # fmt: skip
+    elsewhere = ["over", "value", "unit", "% of it", "95 % from", "to", "before (%)"]
+    parts.append(Grid("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
+    envelope = [[e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
+                for e in document["envelope"]]  # fmt: skip
+    over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
+    parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
+    return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+
+
+def _change(first: Mapping[str, Any]) -> str:
+    """How much more or less than the model before its last step said."""
+    change = first["change_percent"]
+    if change is None:
+        return ""
+    return f"; {abs(change):.3g} % {'more' if change > 0.0 else 'less'} than the model before its last step said"
+
+
+def _percent(shares: Sequence[float | None]) -> list[float | None]:
+    return [None if s is None else 100.0 * s for s in shares]
+
+
+def _of_cycle(cycle: Mapping[str, Any]) -> str:
+    """A sentence on a cycle."""
+    until_s = cycle["until_s"]
+    whole = f"all of it reaches the limit after {until_s:.4g} s" if np.isfinite(until_s) else "all of it may"
+    share = f"{100.0 * cycle['share']:.4g} % of its load" if np.isfinite(cycle["share"]) else "any load"
+    return f"Cycle {cycle['name']}: {share} may be repeated for ever ({cycle['at'] or 'nothing'} limits); {whole}."
+
+
+def _of_map(grid: Mapping[str, Any], main: str) -> Grid:
+    """A row per load, the largest first; a column per speed."""
+    rows = [[u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
+            for k, u in reversed(list(enumerate(grid[main])))]  # fmt: skip
+    return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)

@@ -1,0 +1,121 @@
+"""Ratings: the load at which the first limit is reached, for ever, for a time, or in a duty; with its band.
+
+T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from extras.rating.operation import Operation
+from extras.rating.points import RUNAWAY_C, S3, S6, Model
+from thermoscope import InputError
+
+Array = NDArray[np.float64]
+LARGEST = 50.0  # of the reference load; beyond, no temperature limits
+CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
+DUTIES = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")
+TIMES = {"S2 60 min": 3600.0, "S2 60 s": 60.0, "S2 10 s": 10.0}  # s, as their names say
+
+
+@dataclass(frozen=True)
+class Rating:
+    """One rating.  load : of the reference, inf where no load within LARGEST reaches a limit
+
+    at : the place that limits;  slope : d T / d load there (K)
+    """
+
+    form: str
+    speed: float | None
+    load: float
+    at: str
+    slope: float
+
+
+def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
+    """The load of a form at a speed (1/min; the reference where None); short times begin where `op` says.
+
+    Raises InputError where a limit is exceeded without any load.
+    """
+    return reached(excess(model, op, form, speed), limits, form, speed)
+
+
+def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
+    """The load at which the first limit is reached.  over : load -> temperatures of the places (degC), growing with it
+
+    Raises InputError where a limit is exceeded without any load.
+    """
+    names, most = list(limits), np.array(list(limits.values()))
+
+    over = cache(over)
+
+    def worst(load: float) -> float:
+        return float(np.max(over(load) - most))
+
+    if worst(0.0) >= 0.0:
+        T = over(0.0)
+        k = int(np.argmax(T - most))
+        if T[k] >= RUNAWAY_C:
+            raise InputError(
+                "the model does not come to rest even without any load", f"rating {form}",
+                "a way for heat to leave every part; effects add one (explain diagnose)",
+            )  # fmt: skip
+        raise InputError(
+            f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
+            "--limit", "a higher limit, cooler surroundings or a lower speed",
+        )  # fmt: skip
+    high = 1.0
+    while worst(high) < 0.0:
+        high *= 1.5
+        if high > LARGEST:
+            return Rating(form, speed, float("inf"), "", 0.0)
+    # copper's heat goes with the square of the load: over it the excess is nearly straight, and found in few runs
+    load = float(brentq(lambda square: worst(square**0.5), 0.0, high**2, xtol=2.0 * CLOSE * high**2)) ** 0.5
+    here, above = over(load), over(load * 1.01)
+    k = int(np.argmax(here - most))
+    return Rating(form, speed, load, names[k], float((above[k] - here[k]) / (0.01 * load)))
+
+
+def excess(model: Model, op: Operation, form: str, speed: float | None) -> Callable[[float], Array]:
+    """load -> largest temperatures (degC) of a form."""
+    if form == "S1":
+        return lambda load: model.rest(op, load, speed)
+    if form in TIMES:
+        begin = model.start(op, op.warm, None)
+        return lambda load: model.course(op, load, speed, begin, TIMES[form])[1].max(axis=0)
+    duty = S3 if form == "S3 40 %" else S6
+    return lambda load: model.repeated(op, load, speed, duty)
+
+
+def until(
+    model: Model, op: Operation, limits: Sequence[float], load: float, speed: float | None, warm: float | None,
+    longest: float = 86400.0,
+) -> float:  # fmt: skip
+    """Seconds until a limit is reached under a load, from cold or from rest under the load `warm`; inf if never."""
+    begin, most = model.start(op, warm, speed), np.asarray(limits)
+    if np.any(begin_at(model, op, begin, speed) >= most):
+        return 0.0
+
+    def left(seconds: float) -> float:
+        return float(np.max(model.course(op, load, speed, begin, seconds)[1][-1] - most))
+
+    low, high = 0.0, 1.0  # grown step by step: a run without rest goes astray long after the limit
+    while (over := left(high)) < 0.0:
+        if high >= longest:
+            return float("inf")
+        low, high = high, min(4.0 * high, longest)
+    low = max(low, 1e-3)
+    return float(brentq(left, low, high, rtol=1e-3)) if over > 0.0 > left(low) else low
+
+
+def begin_at(model: Model, op: Operation, begin: object, speed: float | None) -> Array:
+    """(n_rows,) degC at a start."""
+    x = begin.x  # type: ignore[attr-defined]
+    z = np.concatenate([x, [op.boundaries[b] for b in model.network.boundaries]])
+    return model.place_temperatures(z[None])[0]

@@ -1,0 +1,50 @@
+"""Places whose largest temperature is limited: the hot spot of a part that was meshed, else a node; or its mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope import Network
+from thermoscope.plugin import Row, Shapes
+
+Array = NDArray[np.float64]
+MEAN = ".mean"  # after the name of a place: its mean instead of its hottest point
+CHUNK = 64  # instants that are looked at together: a part of 10,000 points then takes 5 MB
+
+
+@dataclass(frozen=True)
+class HotSpots:
+    """name, limit (degC);  states (k,);  V (m, k) temperatures of points as sums over the states"""
+
+    name: str
+    limit: float
+    states: NDArray[np.int64]
+    V: Array
+
+    def along(self, z: Array) -> Array:
+        """(nt,) degC of the hottest point at every instant.  z : (nt, n_states + n_boundaries)"""
+        x = z[:, self.states]
+        return np.concatenate([(x[k : k + CHUNK] @ self.V.T).max(axis=1) for k in range(0, len(x), CHUNK)])
+
+    def hottest(self, z: Array) -> tuple[float, Row]:
+        """degC, and the point's row."""
+        T = self.V @ z[self.states]
+        k = int(np.argmax(T))
+        return float(T[k]), Row(self.states, self.V[k])
+
+
+def hot_spots(network: Network, rows: Mapping[str, Row], limits: Mapping[str, float]) -> tuple[HotSpots, ...]:
+    """One per limited place, by its hottest point; "NAME.mean" is the mean of a place.  rows : place -> its mean"""
+    parts = network.recovery.parts if isinstance(network.recovery, Shapes) else {}
+    out = []
+    for name, limit in limits.items():
+        if name in parts:
+            out.append(HotSpots(name, limit, parts[name].states, np.unique(parts[name].V, axis=0)))
+        else:
+            mean = rows[name if name in rows else name.removesuffix(MEAN)]
+            out.append(HotSpots(name, limit, mean.index, mean.weights[None, :]))
+    return tuple(out)

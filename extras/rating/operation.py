@@ -1,0 +1,134 @@
+"""How a machine is operated while it is rated: which inputs carry the load, which the speed, what lies around it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermoscope import InputError, Network
+from thermoscope.plugin import AIR, CLOCK, LIQUID, LOADS, Link, Radiation, Role, Scaled, suggestion
+
+Array = NDArray[np.float64]
+ISA = 2.25577e-5, 4.2559  # density over that at sea level: (1 - a h)^b, international standard atmosphere
+STILL, BLOWN = 0.5, 0.8  # h ~ density^n: Nu ~ Ra^(1/4) and Nu ~ Re^0.8
+
+
+@dataclass(frozen=True)
+class Operation:
+    """The point at which load counts as 1.
+
+    inputs : all that the laws read;  loads : those of them that the load multiplies;  speed : its input, if any
+    boundaries : degC;  warm : the load from whose rest short times begin; None: cold, at the mean of what is around
+    """
+
+    inputs: Mapping[str, float]
+    loads: tuple[str, ...]
+    speed: str | None
+    boundaries: Mapping[str, float]
+    warm: float | None = None
+
+    @property
+    def main(self) -> str:
+        """The input in which a rating is given: the largest of those that carry the load."""
+        return max(self.loads, key=lambda n: abs(self.inputs[n]))
+
+    def at(self, load: float | Array, speed: float | None = None) -> dict[str, Array | float]:
+        """Inputs at a load (1 is the reference) and a speed (its unit; the reference where None)."""
+        out: dict[str, Array | float] = {n: load * u if n in self.loads else u for n, u in self.inputs.items()}
+        return out if speed is None or self.speed is None else {**out, self.speed: speed}
+
+    def moved(
+        self, inputs: Mapping[str, float] | None = None, boundaries: Mapping[str, float] | None = None
+    ) -> Operation:
+        """With some inputs and boundaries at other values."""
+        return replace(
+            self, inputs={**self.inputs, **(inputs or {})}, boundaries={**self.boundaries, **(boundaries or {})}
+        )
+
+
+def operation(
+    network: Network, point: Mapping[str, float], fixed: Mapping[str, float], carry: Sequence[str] = ()
+) -> Operation:
+    """At a point, see `Reference.load_point`; `fixed` goes before.
+
+    point : value of inputs and boundaries (degC)
+    carry : inputs that the load multiplies; without any, those that measure one of LOADS
+
+    Raises InputError where nothing says what an input is, or nothing carries a load.
+    """
+    laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
+    reads = dict.fromkeys(n for law in laws for n in law.reads if n != CLOCK)
+    for name in fixed:
+        if name not in (*reads, *network.boundaries):
+            raise InputError(
+                f"'{name}' is no input or boundary of the model",
+                "--at",
+                suggestion(name, (*reads, *network.boundaries)),
+            )
+    for name in carry:
+        if name not in reads:
+            raise InputError(f"'{name}' is no input of the model", "--load", suggestion(name, tuple(reads)))
+    loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in LOADS)
+    if not loads:
+        raise InputError(
+            "no input carries the load",
+            f"network '{network.name}'",
+            f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
+        )
+    point = {**point, **fixed}
+    inputs = {n: v for n, v in point.items() if n in reads}
+    for name in reads:
+        if name not in inputs:
+            raise InputError(f"nothing says what '{name}' is", "--at", f"--at {name}=VALUE")
+    if not any(inputs[n] for n in loads):
+        raise InputError("the load is zero", "--at", f"--at {loads[0]}=VALUE")
+    for name in network.boundaries:
+        if name not in point:
+            raise InputError(f"nothing says how warm '{name}' is", "--at", f"--at {name}=DEGC")
+    speed = network.signal("speed")
+    return Operation(inputs, loads, speed if speed in reads else None, {b: float(point[b]) for b in network.boundaries})
+
+
+def air_boundaries(network: Network) -> tuple[str, ...]:
+    """Boundaries that are air around the machine; the coolant's otherwise."""
+    return tuple(b for b in network.boundaries if network.identities[b].role is not Role.COOLANT)
+
+
+def coolant_boundaries(network: Network) -> tuple[str, ...]:
+    return tuple(b for b in network.boundaries if network.identities[b].role is Role.COOLANT)
+
+
+def flows(network: Network, inputs: Mapping[str, float]) -> tuple[str, ...]:
+    """Inputs that are a flow of air or liquid."""
+    return tuple(n for n in inputs if network.measures(n) in (AIR, LIQUID))
+
+
+def density(altitude_m: float) -> float:
+    """Of air over that at sea level."""
+    a, b = ISA
+    return float((1.0 - a * altitude_m) ** b)
+
+
+def at_altitude(network: Network, altitude_m: float) -> Network:
+    """The network in thinner air: still films ~ density^0.5, blown ones ~ density^0.8, air streams ~ density.
+
+    Conduction, radiation and liquids stay as they are.
+    """
+    rho, wet = density(altitude_m), set(coolant_boundaries(network))
+    return replace(network, links=tuple(_thinner(network, x, rho, wet) for x in network.links))
+
+
+def _thinner(network: Network, link: Link, rho: float, wet: set[str]) -> Link:
+    fluids = {n for n in link.places if n in network.boundaries or _fluid(network, n)}
+    liquid = bool(fluids & wet) or any(network.measures(r) == LIQUID for r in link.law.reads)
+    if not fluids or liquid or isinstance(link.law.temperature, Radiation):
+        return link
+    exponent = 1.0 if link.kind == "stream" else BLOWN if link.law.reads else STILL
+    return replace(link, law=Scaled(link.law, rho**exponent))
+
+
+def _fluid(network: Network, name: str) -> bool:
+    return name in network.places and network.places[name].kind == "fluid"

@@ -1,0 +1,98 @@
+"""What a tab shows: one model, one test, one sensor. Every value from the browser is checked here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from extras.workbench import revisions as ledger
+from extras.workbench import tables as rows
+from extras.workbench.appearance import Appearance
+from extras.workbench.machines import Bench
+from thermoscope.plugin import DARK, LIGHT, History, Theme, by_interest, confusion, matrix
+from thermoscope.plugin import sensor as sensor_figure
+
+CONFUSED = 8  # names that a row holds
+NOTHING: dict[str, Any] = {"data": [], "layout": {}}
+START: dict[str, Any] = {
+    "busy": False, "comparing": False, "job": {"title": "", "message": "", "percent": None},
+    "error": "", "outcome": None, "report": "", "viewer": "", "viewer_rest": "", "preparing": "", "limits": {},
+    "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
+    "plotly": "", "plots": 0, "effects": [], "revision": 0, "steps": [], "can_undo": False,
+    "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
+    "drop": None, "dragged": "", "made": "",
+}  # fmt: skip
+
+
+class Display:
+    """The part of a tab that only looks. `server` is a trame server; the page is drawn from its state."""
+
+    look: Appearance | None  # None until the first comparison is there
+
+    def __init__(self, bench: Bench, server: Any) -> None:
+        self.bench, self.server, self.look = bench, server, None
+        self._scale = 0.0, 0.0
+        self.state.update({**START, "case_name": bench.folder.case.name, "why_flat": bench.why_flat})
+        self.state.test, self.state.revision = by_interest(bench.folder)[0].name, bench.folder.history.last.number
+        self.state.test_names = [test.name for test in bench.folder.case.tests]
+        self.state.change("test")(lambda **_: self.choose_test())
+
+    @property
+    def state(self) -> Any:
+        return self.server.state
+
+    @property
+    def theme(self) -> Theme:
+        return DARK if self.state.dark else LIGHT
+
+    def model(self, history: History, look: Appearance) -> None:
+        """Another model: its errors, curves and temperatures."""
+        if self.look is None:
+            self.state.test, self.state.sensor = rows.worst(look)
+        self.look, self.state.limits = look, look.limits
+        last, errors = history.last, look.errors
+        self.state.effects, self.state.revision = list(last.effects), last.number
+        self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
+        self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
+        (test, sensor), scale = rows.largest(look), self._scale
+        self._scale = max(test, scale[0]), max(sensor, scale[1])
+        self.state.tests = rows.tests(look, self._scale[0], {name: a for name, (a, _) in last.rmse_K.items()})
+        self.choose_test()
+
+    def choose_test(self) -> None:
+        """The sensors of the chosen test."""
+        if self.look is None or self.state.test not in self.look.curves:
+            return
+        self.state.sensors = rows.channels(self.look, self.state.test, self._scale[1])
+        self.select(self.state.sensor)
+
+    def select(self, name: str) -> None:
+        """The curves of a sensor; a name that is no sensor of the test means the first one."""
+        names = [s["name"] for s in self.state.sensors]
+        if self.look is None or not names:
+            return
+        self.state.sensor = name if name in names else names[0]
+        figure = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
+        self.state.curve = figure.to_plotly_json()
+
+    def next_sensor(self, step: int) -> None:
+        """The one below (1) or above (-1) in the list."""
+        names = [s["name"] for s in self.state.sensors] or [""]
+        self.select(names[(names.index(self.state.sensor) + step) % len(names)])
+
+    def paper(self, dark: bool, diagnosis: dict[str, Any] | None) -> None:
+        """Light or dark."""
+        self.state.dark = dark
+        self.select(self.state.sensor)
+        self.show_candidates(diagnosis)
+
+    def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:
+        """The candidates of a diagnosis, or none."""
+        if diagnosis is None:
+            self.state.update({"verdict": None, "candidates": [], "has_confusion": False})
+            return
+        self.state.verdict = rows.conclusion(diagnosis)
+        self.state.candidates = rows.candidates(diagnosis, tuple(self.state.effects))
+        names = [c["effect"] for c in diagnosis["candidates"] if c["effect"] in diagnosis["confusion"]][:CONFUSED]
+        self.state.has_confusion = len(names) > 1
+        figure = confusion(names, matrix(diagnosis["confusion"], names), theme=self.theme)
+        self.state.confusion = figure.to_plotly_json()

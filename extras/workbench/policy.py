@@ -1,0 +1,54 @@
+"""Content security policy: what the pages may load and run, and nothing from anywhere else."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from functools import cache
+from pathlib import Path
+
+INLINE = re.compile(rb"<script>(.*?)</script>", re.S)
+
+
+def _named(script: bytes) -> str:
+    """A script as a policy names it."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode()}'"
+
+
+@cache
+def hashes(page: Path) -> str:
+    """The scripts inside a page."""
+    return " ".join(_named(script) for script in INLINE.findall(page.read_bytes()))
+
+
+@cache
+def report_policy() -> str:
+    """Of the report: no script but the viewer's, which runs in a frame of its own."""
+    from thermoscope.plugin import script
+
+    return "; ".join([
+        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'",
+        "img-src 'self' data:", "font-src data:", "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'",
+    ])  # fmt: skip
+
+
+@cache
+def viewer_policy() -> str:
+    """Of the viewer: its one script, inside a page of ours."""
+    from thermoscope.plugin import script
+
+    return "; ".join([
+        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'", "base-uri 'none'",
+        "form-action 'none'", "frame-ancestors 'self'",
+    ])  # fmt: skip
+
+
+def policy(page: Path, host: str) -> str:
+    """Of a page of trame: its own scripts and socket. 'unsafe-eval': Vue compiles its templates in the browser."""
+    return "; ".join([
+        "default-src 'none'", f"script-src 'self' 'unsafe-eval' {hashes(page)}", "style-src 'self' 'unsafe-inline'",
+        "img-src 'self' data: blob:", "font-src 'self' data:", f"connect-src 'self' blob: ws://{host} wss://{host}",
+        "worker-src 'self' blob:", "manifest-src 'self'", "base-uri 'self'", "form-action 'none'", "object-src 'none'",
+        "frame-src 'self'", "frame-ancestors 'none'",
+    ])  # fmt: skip

@@ -1,0 +1,103 @@
+"""The long calculations, as a process of their own runs them: arguments in, results out, progress by `tell`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from extras.workbench.appearance import Appearance, appearance_of
+from extras.workbench.jobs import Job
+from extras.workbench.revisions import at
+from thermoscope.plugin import Folder, Progress
+from thermoscope.plugin import StoredRevision as Revision
+
+if TYPE_CHECKING:
+    from extras.workbench.dropped import Dropped
+    from thermoscope import Network
+    from thermoscope.plugin import Settings
+
+
+NICENESS = 15  # a process of ours gives way to the browser, which draws what it has: a twentieth of its share
+
+
+def first_appearance(folder: Folder, tell: Progress) -> Appearance:
+    """The model as it was opened; its machine, for which a page waits, goes first."""
+    _give_way()
+    return appearance(folder, tell)
+
+
+def appearance(folder: Folder, tell: Progress) -> Appearance:
+    """The model as it stands."""
+    tell("running the model on every test")
+    return appearance_of(folder)
+
+
+def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
+    """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
+    from thermoscope.plugin import viewer_documents
+
+    parts = viewer_documents(folder, tell)
+    yield next(parts)
+    _give_way()
+    yield from parts
+
+
+def _give_way() -> None:
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+
+
+def comparing_job(folder: Folder) -> Job:
+    """What compares a model with every test, in a process of its own."""
+    return Job(first_appearance, folder)
+
+
+def drawing_job(folder: Folder) -> Job:
+    """What draws the machine of a model, in a process of its own."""
+    return Job(machine_documents, folder)
+
+
+def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
+    """A `diagnose` document."""
+    from thermoscope.plugin import diagnose
+
+    diagnosis = diagnose(folder.case, folder.settings.kinds, tell)
+    return {"case": folder.case.name, "revision": folder.case.model.revision, **diagnosis.document()}
+
+
+def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[Revision, Mapping[str, Any], Appearance]:
+    """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
+    from thermoscope.plugin import evidence, recorded, revise
+
+    if action == "calibrate":
+        result = revise.calibrate(folder.case, progress=tell)
+    else:
+        result = {"add": revise.add, "remove": revise.remove}[action](folder.case, effect, progress=tell)
+    revision = recorded(result, evidence(folder, result))
+    after = at(folder, folder.history.and_then(revision))
+    return revision, result.document(), appearance(after, tell)
+
+
+def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
+    """What the columns of dropped files are taken for."""
+    from extras.workbench.dropped import read
+
+    return read(files, network, tell)
+
+
+def new_case(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> tuple[Folder, Appearance]:
+    """A new case of dropped files, opened, and its first comparison."""
+    from extras.workbench.dropped import write
+    from thermoscope.plugin import load_case
+
+    folder = load_case(write(dropped, settings, network, tell), tell)
+    return folder, appearance(folder, tell)
+
+
+def reported(folder: Folder, tell: Progress) -> Path:
+    """Write out/report.html with the last diagnosis there was."""
+    from thermoscope.plugin import write_page
+
+    return write_page(folder, str(folder.settings.path), folder.settings.out, tell)

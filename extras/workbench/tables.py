@@ -1,0 +1,106 @@
+"""What the page lists, as plain values: errors per test and sensor, steps, candidates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from extras.workbench.appearance import Appearance
+from thermoscope.plugin import History, amplitude, deciding, short, verdict
+from thermoscope.plugin import data_sensors as sensors
+
+Row = dict[str, Any]
+MOST_ROWS = 12  # candidates of a tab
+
+
+def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[Row]:
+    """A bar per test: error (K), its length as a share of `scale`, and the error before the last step."""
+    return [
+        {
+            "name": t["name"], "role": t["role"], "rmse": f"{t['rmse_K']:.2f}",
+            "width": percent(t["rmse_K"], scale), "was": percent(before.get(t["name"], t["rmse_K"]), scale),
+            "before": f"{before[t['name']]:.2f}" if t["name"] in before else "",
+        }
+        for t in look.errors["tests"]
+    ]  # fmt: skip
+
+
+def channels(look: Appearance, test: str, scale: float) -> list[Row]:
+    """A row per sensor of a test: what it misses (K), and whether that is more than its uncertainty."""
+    tone = {s.name: s.verdict for s in sensors(look.curves[test], dict.fromkeys(_names(look, test), (0.0, 0.0, 0.0)))}
+    return [
+        {
+            "name": c["channel"], "label": short(c["channel"]), "place": c["place"], "rmse": f"{c['rmse_K']:.2f}",
+            "width": percent(c["rmse_K"], scale), "sigma": f"{c['sigma_K']:.2g}", "verdict": c["verdict"],
+            "tone": "within" if c["verdict"] == "within" else tone.get(c["channel"], "unknown"),
+        }
+        for c in look.test(test)["channels"]
+    ]  # fmt: skip
+
+
+def worst(look: Appearance) -> tuple[str, str]:
+    """(test, channel) with the largest error against its limit, never-used tests first."""
+    errors = [
+        (t["role"] == "hold-out", c["rmse_K"] / c["limit_K"], t["name"], c["channel"])
+        for t in look.errors["tests"] for c in t["channels"]
+    ]  # fmt: skip
+    return max(errors)[2:]
+
+
+def largest(look: Appearance) -> tuple[float, float]:
+    """The largest error of a test and of a sensor (K): what the bars' lengths refer to."""
+    rows = look.errors["tests"]
+    return max(t["rmse_K"] for t in rows), max(c["rmse_K"] for t in rows for c in t["channels"])
+
+
+def steps(history: History) -> list[Row]:
+    """The revisions, the last first."""
+    words = [
+        {"number": r.number, "text": f"{r.action} {r.effect}".strip(), "why": r.why.replace("->", "→")}
+        for r in history.revisions
+    ]
+    return [*reversed(words), {"number": 0, "text": "as declared", "why": ""}]
+
+
+def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[Row]:
+    """The table of a diagnosis, best first."""
+    return [
+        {
+            "effect": c["effect"], "title": c.get("title", ""), "score": f"{100 * c['probability']:.0f} %",
+            "width": percent(c["probability"], 1.0),
+            "amplitude": amplitude(c), "error": arrow(c["rmse_K"]), "held": arrow(c["holdout_rmse_K"]),
+            "alike": ", ".join(c["confused_with"][:3]), "decision": c["decision"],
+            "test": c.get("isolating_test", ""), "inside": c["effect"] in effects,
+        }
+        for c in diagnosis["candidates"][:MOST_ROWS]
+    ]  # fmt: skip
+
+
+def conclusion(diagnosis: Mapping[str, Any]) -> Row:
+    """The verdict in a sentence, and what the tests cannot see."""
+    tone, sentence = verdict(diagnosis, None)
+    hidden = [h["effect"] for h in diagnosis["cannot_see"]]
+    further_tests = [
+        f"{o.kind} {o.what}{f' ({o.how})' if o.how else ''}: separates {', '.join(o.separates)}"
+        for o in deciding(diagnosis)[:3]
+    ]
+    hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
+    return {
+        "tone": tone,
+        "sentence": sentence,
+        "words": diagnosis["words"],
+        "unseen": hidden_words,
+        "ahead": further_tests,
+    }
+
+
+def percent(value: float, whole: float) -> float:
+    return round(100.0 * min(value / whole, 1.0), 2) if whole > 0 else 0.0
+
+
+def arrow(pair: Mapping[str, float] | None) -> str:
+    return f"{pair['before']:.2f} → {pair['after']:.2f} K" if pair else ""
+
+
+def _names(look: Appearance, test: str) -> list[str]:
+    return [c.name for c in look.curves[test].channels]

@@ -1,0 +1,141 @@
+"""A simulated fleet, by physics of its own: the fouled jacket, the loose joint, the drift, and what differs."""
+
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from extras.monitor.fleet import Statistics, UnitHistory, population
+from extras.monitor.rows.fleet import Reader, Recording
+from measured.recordings.sheet import load_sheet
+from simulated.fleet import DRIFT_YEAR, written
+from thermoscope.case_folder.folder import load_case
+
+pytestmark = pytest.mark.heavy
+
+NAMES, SD = ("a", "b"), np.array([0.5, 0.5])
+
+
+def history(name, theta, sd, rng, years=(2026.0,), drift=0.0):
+    """A motor whose parameters are read with a deviation sd."""
+    H = np.diag(1.0 / np.square(sd))
+    seen = [theta + drift * (y - 2026.0) + sd * rng.standard_normal(2) for y in years]
+    return UnitHistory(name, years, tuple(Statistics(NAMES, SD, np.full(2, 0.3), H, H @ s, 0.1, 100) for s in seen))
+
+
+def test_mean_spread_and_drift_of_a_normal_population_are_found():
+    rng, sd = np.random.default_rng(1), np.array([0.05, 0.05])
+    spread, mean, drift = np.array([0.2, 0.0]), np.array([0.1, -0.2]), np.array([-0.1, 0.0])
+    units = [history(f"u{i}", mean + spread * rng.standard_normal(2), sd, rng, (2025.0, 2026.0, 2027.0), drift)
+             for i in range(400)]  # fmt: skip
+    found = population(units)
+    assert_allclose(found.mean, mean, atol=3 * 0.2 / 20)
+    assert_allclose(found.spread, spread, atol=0.02)
+    assert found.spread_probability[0] < 1e-6
+    assert found.spread_probability[1] > 0.01
+    assert np.all(np.abs(found.drift - drift) < 3 * found.drift_sd)
+    assert found.drift_sd.max() < 0.05  # what one motor tells: 0.05 / sqrt(2) a year
+
+
+def test_equal_fleets_have_an_outlier_in_one_of_a_hundred():
+    alarms = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        units = [history(f"u{i}", 0.1 * rng.standard_normal(2), np.array([0.05, 0.05]), rng) for i in range(40)]
+        alarms += bool(population(units).outliers)
+    assert alarms <= 4  # 60 draws of at most 1 in 100; the weights widen nothing
+
+
+def test_a_motor_at_eight_spreads_is_named_and_does_not_widen_the_others():
+    rng = np.random.default_rng(3)
+    units = [history(f"u{i}", 0.1 * rng.standard_normal(2), np.array([0.05, 0.05]), rng) for i in range(40)]
+    units.append(history("odd", np.array([0.0, -0.8]), np.array([0.05, 0.05]), rng))
+    found = population(units)
+    assert [(o.unit, o.parameter) for o in found.outliers] == [("odd", "b")]
+    assert abs(found.outliers[0].change + 0.8) < 0.3
+    assert found.spread[1] < 0.15
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return written(tmp_path_factory.mktemp("fleet"), 24, 3, 7)
+
+
+@pytest.fixture(scope="module")
+def document(thermoscope, made):
+    case, fleet = made
+    done = thermoscope("use", "fleet", case, fleet, "--json", "-", cwd=case.parent)
+    assert done.code == 0, done.err
+    return done.document
+
+
+def test_the_fouled_jacket_and_the_loose_joint_are_found(document):
+    found = {(o["unit"], o["parameter"]): o for o in document["outliers"]}
+    assert set(found) == {("motor-004", "link.jacket"), ("motor-008", "link.joint")}
+    for o in found.values():
+        assert o["factor_ci95"][1] < 0.85
+
+
+def test_what_differs_and_what_drifts_is_said(document):
+    rows = {p["name"]: p for p in document["parameters"]}
+    assert rows["link.jacket"]["differs"]
+    low, high = rows["link.jacket"]["drift_ci95"]
+    assert low < 100 * DRIFT_YEAR < high
+    assert rows["link.jacket"]["drifts"]
+    assert not [n for n, p in rows.items() if p["drifts"] and n != "link.jacket"]
+    assert len(document["units"]) == 24
+
+
+def reader_of(case):
+    folder = load_case(case)
+    test = folder.case.tests[0]
+    return Reader(replace(folder.case, tests=()), test, load_sheet(folder.settings.tests[0].sheet), 20.0)
+
+
+def test_memory_does_not_grow_with_the_recording(made, tmp_path):
+    """Four times the rows, in pieces of a fixed size."""
+    case, fleet = made
+    reader, short = replace(reader_of(case), piece=1000), fleet / "motor-001@2025-01.csv"
+    head, *rows = short.read_text().splitlines()
+    long, rows = tmp_path / "long.csv", rows[:2000]
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join([head, *rows]))
+    late = [f"{float(r.split(',')[0]) + 6000.0 * k},{r.partition(',')[2]}" for k in range(4) for r in rows]
+    long.write_text("\n".join([head, *late]))
+    peaks = []
+    for file in (short, long):
+        reader.statistics(Recording(file, "m", 0.0))
+        tracemalloc.start()
+        found = reader.statistics(Recording(file, "m", 0.0))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert found.samples > 3 * 3 * 100
+    assert peaks[1] < 1.2 * peaks[0]
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (["a.csv", "b.csv"], "2 motors are no fleet"),
+        (["nothing.csv"], "no such file"),
+        (["empty"], "no recording in the folder"),
+        (["a.csv", "b.csv", "c@2026-01.csv"], "has no date, others have"),
+        (["a@2026-13.csv", "b.csv", "c.csv"], "holds no date that exists"),
+        (["a.csv", "b.csv", "short.csv"], "at least 60"),
+        (["a.csv", "b.csv", "other.csv"], "column 'current' is not in the header"),
+        (["a.csv", "b.csv", "c.csv", "--like", "moon"], "no test 'moon'"),
+    ],
+)
+def test_wrong_fleets_are_one_message(thermoscope, made, tmp_path, names, message):
+    case, fleet = made
+    rows = (fleet / "motor-001@2025-01.csv").read_text().splitlines()
+    for name in ("a.csv", "b.csv", "c.csv", "c@2026-01.csv", "a@2026-13.csv"):
+        (tmp_path / name).write_text("\n".join(rows[:200]))
+    (tmp_path / "short.csv").write_text("\n".join(rows[:20]))
+    (tmp_path / "other.csv").write_text("\n".join([rows[0].replace("current", "amps"), *rows[1:200]]))
+    (tmp_path / "empty").mkdir()
+    done = thermoscope("use", "fleet", case, *names, cwd=tmp_path)
+    assert (done.code, done.err.count("error:")) == (2, 1)
+    assert message in done.err

@@ -1,0 +1,39 @@
+"""Arguments and options that several commands have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from thermoscope.files import checked_out, checked_target
+
+Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
+Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
+Json = Annotated[
+    str | None,
+    typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),
+]
+Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
+Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
+Accuracy = Annotated[
+    float, typer.Option(min=0.01, max=100.0, help="Percent of a part's rise; means within half of it.")
+]
+Limit = Annotated[
+    list[str] | None,
+    typer.Option("--limit", metavar="PLACE=DEGC", help="For example winding=155; several are possible."),
+]
+HotLimit = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        metavar="PLACE=DEGC",
+        help="For example winding=155, of its hottest point, or winding.mean=145; several.",
+    ),
+]
+Sure = Annotated[
+    bool | None,
+    typer.Option("--bands/--no-bands", help="95 % bands of all temperatures; usual for networks of up to 40 states."),
+]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", callback=checked_out, help="Folder for the results.")]

@@ -1,0 +1,312 @@
+# The face for extras and plugins: what each name is, room by room from below.
+from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
+from geom.description.geometry import Group as Group
+from geom.description.identity import Identity as Identity
+from geom.description.machine import Machine as MachineDescription
+from geom.description.materials import winding_conductivity as winding_conductivity
+from geom.description.names import cut_short as cut_short, file_stem as file_stem
+from geom.description.parameters import Parameter as GeometryParameter, UNITS as GEOMETRY_UNITS
+from geom.description.part import Part as Part, Prism as Prism, Rod as Rod
+from geom.description.profile import ArcGrid as ArcGrid, loop_length as loop_length
+from geom.description.roles import Role as Role
+from geom.description.toml_file import read_toml as read_toml
+from geom.disk_cache import atomic_write as atomic_write, recalled as recalled
+from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
+from geom.families import families as families
+from geom.limits import DROP_BYTES as DROP_BYTES
+from geom.machine_file import library as library, machine_from as machine_from
+from geom.meshing.areas import PartRow as PartRow, part_table as part_table
+from geom.plugins import plugins as plugins
+from geom.storage import cache_folder as cache_folder, write_whole as write_whole
+from geom.text import visible as visible
+from fem.solvers.snapshots import Recipe as Recipe
+from lumped.build.pipeline import prepared as prepared, reduced as reduced
+from lumped.circuits.hydraulics import pressure_drop as pressure_drop, pumping_power as pumping_power
+from lumped.condensation.recovery import Shapes as Shapes
+from lumped.correlations.end_space import SCHUBERT as SCHUBERT
+from lumped.declarations.separated import FilmOver as FilmOver, Share as Share, over_grid as over_grid
+from lumped.drives.coupled import coupled as coupled
+from lumped.drives.drive import (
+    Controller as Controller,
+    SeriesMachine as SeriesMachine,
+    Vehicle as Vehicle,
+    drive_cycle as drive_cycle,
+)
+from lumped.drives.duty import s3 as s3
+from lumped.integration.assembly import Assembly as Assembly, assembly as assembly, input_sizes as input_sizes
+from lumped.integration.compiled import (
+    Compiled as Compiled,
+    READINGS as READINGS,
+    RUN as RUN,
+    capacity_multipliers as capacity_multipliers,
+    capacity_slopes as capacity_slopes,
+    compiled as compiled,
+    state_units as state_units,
+)
+from lumped.integration.ensemble import dask_cluster as dask_cluster
+from lumped.integration.runaway import grows as grows
+from lumped.integration.signals import Signals as Signals
+from lumped.integration.simulate import Stand as Stand, initial_state as initial_state
+from lumped.machine.air import Stirred as Stirred
+from lumped.machine.bases import Switched as Switched
+from lumped.machine.coolant import (
+    Cooling as Cooling,
+    FLOW as FLOW,
+    INLET as INLET,
+    channel_of as channel_of,
+    onto_outlet as onto_outlet,
+)
+from lumped.machine.films import Surroundings as Surroundings, face_films as face_films, surroundings as surroundings
+from lumped.machine.motor import (
+    boundaries as boundaries,
+    fluids as fluids,
+    motor_network as motor_network,
+    rated_inputs as rated_inputs,
+)
+from lumped.machine.outer import Cowl as Cowl, cowl_of as cowl_of
+from lumped.machine.path import stem as stem
+from lumped.machine.shapes import Fins as Fins, fins_of as fins_of
+from lumped.model.multipliers import (
+    multipliers as multipliers,
+    parameter_values as parameter_values,
+    slopes as slopes,
+    values_of as values_of,
+)
+from lumped.model.network import Link as Link, Place as Place, Row as Row, Source as Source
+from lumped.model.quantities import AIR as AIR, LIQUID as LIQUID, USUAL as USUAL_QUANTITIES
+from lumped.model.sites import ambient as ambient
+from lumped.numerics import stages as stages
+from lumped.numerics.instant import instant as instant
+from lumped.numerics.stages import stages as integration_stages, work as work
+from lumped.numerics.steady_start import CONVERGED_K as CONVERGED_K, solve_steady_start as solve_steady_start
+from lumped.numerics.terms import (
+    COLD as COLD,
+    END as END,
+    FILM as FILM,
+    HOT as HOT,
+    LAST as LAST,
+    PLACE as PLACE,
+    POINT as POINT,
+    ROW as ROW,
+    STREAM as STREAM,
+    Terms as Terms,
+)
+from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS as KEY_UNITS
+from lumped.schemas.reader import Table as Table, suggestion as suggestion
+from lumped.sources.loss_map import MapLoss as MapLoss
+from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
+from lumped.sources.losses import (
+    BrushLoss as BrushLoss,
+    CopperLoss as CopperLoss,
+    EDDY as EDDY,
+    EddyLoss as EddyLoss,
+    IronLoss as IronLoss,
+    PowerLoss as PowerLoss,
+)
+from lumped.transfer.exchanger import Rate as Rate
+from lumped.transfer.laws import (
+    CLOCK as CLOCK,
+    CONSTANT as CONSTANT,
+    Conductivity as Conductivity,
+    Constant as Constant,
+    FILMS as FILMS,
+    FIRST_C as FIRST_C,
+    FULL_UNITS as FULL_UNITS,
+    Fixed as Fixed,
+    InputPower as InputPower,
+    Inputs as Inputs,
+    LEAST as LEAST,
+    Law as Law,
+    Linear as Linear,
+    RUNNING as LAW_RUNNING,
+    Radiation as Radiation,
+    STEP_K as STEP_K,
+    Scaled as Scaled,
+    TemperatureLaw as TemperatureLaw,
+    WithTemperature as WithTemperature,
+)
+from lumped.transfer.properties import air as air
+from lumped.transfer.ranges import RangeWarning as RangeWarning, within_silence as within_silence
+from lumped.transfer.reversal import Direction as Direction, OneWay as OneWay
+from lumped.transfer.streamed import Streamed as Streamed
+from lumped.transfer.terms_value import (
+    coefficient as coefficient,
+    loss_slope as loss_slope,
+    separated as separated,
+    temperature_value as temperature_value,
+    turned as turned,
+)
+from measured.case import Case as MeasuredCase, Channel as Channel, Reference as Reference, Test as Test
+from measured.doubt import Doubt as Doubt, PRIOR as PRIOR, TEMPER as TEMPER, USUAL as USUAL_DOUBT, temper as temper
+from measured.electrical.meters import Meter as Meter, OHMMETER as OHMMETER, VOLTMETER as VOLTMETER
+from measured.electrical.propagation import PropagatedUncertainty as PropagatedUncertainty, Reading as Reading
+from measured.electrical.readings import (
+    COPPER as COPPER,
+    Magnets as Magnets,
+    NDFEB as NDFEB,
+    Saturation as Saturation,
+    Winding as Winding,
+)
+from measured.electrical.switch_off import (
+    Cooling as CoolingCurve,
+    Extrapolated as Extrapolated,
+    all_ways as all_ways,
+    allowed_delay as allowed_delay,
+)
+from measured.importing.aligned import Recording as Recording
+from measured.importing.cells import number as number
+from measured.importing.dialogue import Dialogue as Dialogue
+from measured.importing.draft import (
+    Draft as Draft,
+    missing_boundaries as missing_boundaries,
+    missing_inputs as missing_inputs,
+    squares_of as squares_of,
+    test_name as test_name,
+)
+from measured.importing.guess import assigned as assigned, guesses as guesses
+from measured.importing.target import Target as Target, target_of as target_of
+from measured.recordings.csv_file import read_csv as read_csv
+from measured.recordings.data_table import as_number as as_number, pairs as pairs
+from measured.recordings.electrical import meter_of as meter_of, saturation_of as saturation_of
+from measured.recordings.formats import read_recording as read_recording, recording as recording, stem_of as stem_of
+from measured.recordings.sheet import Column as Column, Sheet as Sheet, load_sheet as load_sheet
+from measured.recordings.units import QUANTITIES as QUANTITIES, converted as converted
+from measured.sensors.operators import head as head
+from validation.bands.at_rest import AtRest as AtRest
+from validation.bands.posterior import (
+    ParameterPosterior as ParameterPosterior,
+    acting as acting,
+    parameter_posterior as parameter_posterior,
+)
+from validation.bases.which_base import which_base as which_base
+from validation.calibration.calibrate import minimise as minimise
+from validation.calibration.model_error import neighbours as neighbours
+from validation.comparison.compare import errors as errors, physical as physical
+from validation.comparison.error_budget import model_of as model_of
+from validation.comparison.moved_inputs import moved_boundaries as moved_boundaries, moved_inputs as moved_inputs
+from validation.comparison.predict import (
+    heat_model as heat_model,
+    predict as predict,
+    record as record,
+    thermal as thermal,
+)
+from validation.comparison.uncertainty import RULE as RULE
+from validation.diagnosis.diagnose import diagnose as diagnose
+from validation.effects.build import copy_link as copy_link, heat as heat_source
+from validation.parameters.model_form import ExponentError as ExponentError, FARTHEST as FARTHEST
+from validation.parameters.reference import LOADS as LOADS
+from validation.parameters.unknowns import (
+    standing as standing,
+    standing_reference as standing_reference,
+    to_coordinate as to_coordinate,
+    to_value as to_value,
+    with_model as with_model,
+    working as working,
+)
+from validation.revision import revise as revise
+from validation.threads import one_blas_thread as one_blas_thread
+from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as Theme, heat as heat_colours
+from viz.data import Comparison as Comparison, Sensor as Sensor, sensors as data_sensors, short as short
+from viz.figures import paper as paper
+from viz.figures.candidates import amplitude as amplitude, matrix as matrix
+from viz.live.candidates import confusion as confusion
+from viz.live.curves import sensor as sensor
+from viz.live.style import as_text as as_text, figure as figure
+from viz.machine.animation import WRITERS as WRITERS
+from viz.machine.pulses import Pulses as Pulses
+from viz.pages.next_tests import deciding as deciding
+from viz.pages.words import verdict as verdict
+from viz.rendering import scene as scene
+from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed
+from viz.rendering.nodes import SplitMesh as SplitMesh, on_nodes as on_nodes
+from viz.rendering.scale import rounded as rounded
+from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
+from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
+from viz.viewer.page import render as render, script as script
+from thermoscope.bands import along as along, posterior_of as posterior_of, wanted as wanted
+from thermoscope.caches import recalled_result as recalled_result, store_result as store_result
+from thermoscope.case_folder.content import case_key as case_key
+from thermoscope.case_folder.cycle import find_cycle as find_cycle, load_cycle as load_cycle
+from thermoscope.case_folder.folder import (
+    Folder as Folder,
+    Progress as CaseProgress,
+    find_case as find_case,
+    load_case as load_case,
+    load_machine_file as load_machine_file,
+)
+from thermoscope.case_folder.history import (
+    History as History,
+    Revision as StoredRevision,
+    load_history as load_history,
+    save_history as save_history,
+)
+from thermoscope.case_folder.runs import (
+    at_revision as at_revision,
+    before_last as before_last,
+    by_interest as by_interest,
+    comparison_of as comparison_of,
+    mean_rows as mean_rows,
+    named_rows as named_rows,
+    sensors as sensors,
+)
+from thermoscope.case_folder.settings import Settings as Settings, read_settings as read_settings
+from thermoscope.case_folder.workbook import tables as tables, write_csvs as write_csvs, write_xlsx as write_xlsx
+from thermoscope.commands.explain.bases_table import hypotheses_table as hypotheses_table
+from thermoscope.commands.model.revise import evidence as evidence, recorded as recorded
+from thermoscope.commands.open_case import (
+    PACKAGE as PACKAGE,
+    open_case as open_case,
+    open_case_for_writing as open_case_for_writing,
+)
+from thermoscope.commands.pairs import read_limits as read_limits, read_pairs as read_pairs
+from thermoscope.commands.show.pages import write_page as write_page
+from thermoscope.commands.show.picture import Subject as Subject
+from thermoscope.commands.show.viewer import stored_documents as stored_documents, viewer_documents as viewer_documents
+from thermoscope.commands.stored_diagnosis import (
+    current_diagnosis as current_diagnosis,
+    save_diagnosis as save_diagnosis,
+)
+from thermoscope.commands.test.new import (
+    drafts_of as drafts_of,
+    model_of_case as model_of_case,
+    read_recording as read_case_recording,
+    save_case as save_case,
+)
+from thermoscope.commands.use.simulate_readings import short_of as short_of
+from thermoscope.console.answer import Answer as Answer, Grid as Grid, cell as cell
+from thermoscope.console.options import (
+    Case as CaseArgument,
+    HotLimit as HotLimitOption,
+    Json as JsonOption,
+    Limit as LimitOption,
+    Out as OutOption,
+    Sure as BandsOption,
+)
+from thermoscope.console.progress_bar import Progress as Progress, progress as progress
+from thermoscope.console.terminal import STDOUT as STDOUT, give as give, notes as notes, plain as plain, say as say
+from thermoscope.parts import required as required
+
+__all__ = [
+    "BandsOption",
+    "CaseArgument",
+    "CaseProgress",
+    "CoolingCurve",
+    "GEOMETRY_UNITS",
+    "GeometryParameter",
+    "HotLimitOption",
+    "JsonOption",
+    "KEY_UNITS",
+    "LAW_RUNNING",
+    "LimitOption",
+    "MachineDescription",
+    "MeasuredCase",
+    "OutOption",
+    "StoredRevision",
+    "USUAL_DOUBT",
+    "USUAL_QUANTITIES",
+    "data_sensors",
+    "heat_colours",
+    "heat_source",
+    "integration_stages",
+    "read_case_recording",
+]  # what is called otherwise than at home: a type checker passes on no other name
