@@ -81,9 +81,15 @@ def machine(name: str, seed: int) -> Iterator[Held]:
             T = true.mean(kind.parts[node], kind.spans.get(node, (0.0, 1.0))) if spot is None else true.at_spot(spot)
             off = np.abs(found.y[:, k] - T)
             yield Held(
-                name, seed, node, plan.name, node in measured_places, float(np.mean(off <= found.half95[:, k])),
-                float(2.0 * found.half95[:, k].mean()), float(off.mean()),
-            )  # fmt: skip
+                name,
+                seed,
+                node,
+                plan.name,
+                node in measured_places,
+                float(np.mean(off <= found.half95[:, k])),
+                float(2.0 * found.half95[:, k].mean()),
+                float(off.mean()),
+            )
 
 
 def rows(held: list[Held]) -> list[dict]:
@@ -93,15 +99,24 @@ def rows(held: list[Held]) -> list[dict]:
         mine = [h for h in held if kind in (h.kind, "all")]
         for seen, word in ((False, "without a sensor"), (True, "with a sensor")):
             some = [h for h in mine if h.seen is seen]
-            each = [np.mean([h.inside for h in some if (h.kind, h.seed) == one])
-                    for one in dict.fromkeys((h.kind, h.seed) for h in some)]  # fmt: skip
+            each = [
+                np.mean([h.inside for h in some if (h.kind, h.seed) == one])
+                for one in dict.fromkeys((h.kind, h.seed) for h in some)
+            ]
             mean = float(np.mean([h.inside for h in some]))
             half = float(np.std(each, ddof=1) / len(each) ** 0.5 * T_95.get(len(each), 2.0)) if len(each) > 1 else 0.0
-            out.append({
-                "case": kind, "measure": f"inside the 95 % band, {word}", "unit": "1", "ours": mean, "n": len(some),
-                "ci95": [max(mean - half, 0.0), min(mean + half, 1.0)],
-                "width_K": float(np.mean([h.width for h in some])), "error_K": float(np.mean([h.error for h in some])),
-            })  # fmt: skip
+            out.append(
+                {
+                    "case": kind,
+                    "measure": f"inside the 95 % band, {word}",
+                    "unit": "1",
+                    "ours": mean,
+                    "n": len(some),
+                    "ci95": [max(mean - half, 0.0), min(mean + half, 1.0)],
+                    "width_K": float(np.mean([h.width for h in some])),
+                    "error_K": float(np.mean([h.error for h in some])),
+                }
+            )
     return out
 
 
@@ -130,14 +145,27 @@ def main() -> None:
             held += own
             for h in own if a.all else ():
                 word = "seen" if h.seen else ""
-                print(f"{h.kind:10s} {h.seed} {h.test:16s} {h.place:16s} {word:4s} {h.inside:5.2f} "
-                      f"width {h.width:6.1f} error {h.error:5.1f}", flush=True)  # fmt: skip
+                print(
+                    f"{h.kind:10s} {h.seed} {h.test:16s} {h.place:16s} {word:4s} {h.inside:5.2f} "
+                    f"width {h.width:6.1f} error {h.error:5.1f}",
+                    flush=True,
+                )
     table = rows(held)
     print(markdown(table))
     if a.json:
         computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
-        a.json.write_text(json.dumps({"benchmark": "bands", "computer": computer, "seeds": a.seeds,
-                                      "date": datetime.date.today().isoformat(), "rows": table}, indent=1))  # fmt: skip
+        a.json.write_text(
+            json.dumps(
+                {
+                    "benchmark": "bands",
+                    "computer": computer,
+                    "seeds": a.seeds,
+                    "date": datetime.date.today().isoformat(),
+                    "rows": table,
+                },
+                indent=1,
+            )
+        )
 
 
 if __name__ == "__main__":

@@ -69,8 +69,9 @@ def after_step(pair: Pair, point: Point) -> dict[str, Errors]:
     out = {}
     for t, T, z in pair.stepped(point):
         own, largest = over_loads(pair.network, T, z), over_loads(pair.network, T, z, floor=1.0)
-        out[f"{t:g} s"] = Errors(own.mean, largest.hot, largest.point, own.mean_part, largest.hot_part,
-                                 largest.point_part, own.parts)  # fmt: skip
+        out[f"{t:g} s"] = Errors(
+            own.mean, largest.hot, largest.point, own.mean_part, largest.hot_part, largest.point_part, own.parts
+        )
     return out
 
 
@@ -127,8 +128,12 @@ def recovery_rows(found: NetworkSize, z: np.ndarray) -> Iterator[Row]:
     part = max(field.blocks, key=lambda p: len(field.blocks[p].points))
     xyz = field.blocks[part].xyz[field.blocks[part].tets[0]].mean(0)
     yield row(found.built.machine.name, "the whole field from a state", "ms", milliseconds(lambda: shapes.field(x)))
-    yield row(found.built.machine.name, "every part's hot spot", "ms",
-              milliseconds(lambda: [shapes.hot_spot(p, x) for p in field.blocks]))  # fmt: skip
+    yield row(
+        found.built.machine.name,
+        "every part's hot spot",
+        "ms",
+        milliseconds(lambda: [shapes.hot_spot(p, x) for p in field.blocks]),
+    )
     shapes.row(part, xyz)
     yield row(found.built.machine.name, "one more sensor at x, y, z", "ms", milliseconds(lambda: shapes.row(part, xyz)))
 
@@ -143,13 +148,23 @@ def milliseconds(job: Callable[[], object], times: int = 20) -> float:
 def shown(r: Row) -> Row:
     """The same row, printed beside the document."""
     peer = f"   {r['peer_name']} {r['peer']:.3g}{'' if r['ratio'] <= 1 else '   MISSED'}" if r["peer"] else ""
-    print(f"{r['case']:34} {r['measure']:42} {r['ours']:10.3g} {r['unit']:6}{peer:24} {r.get('where', '')}",
-          file=sys.stderr)  # fmt: skip
+    print(
+        f"{r['case']:34} {r['measure']:42} {r['ours']:10.3g} {r['unit']:6}{peer:24} {r.get('where', '')}",
+        file=sys.stderr,
+    )
     return r
 
 
-GROUPS = ("nominal", "all films", "one film x10", "contacts", "gap, flow", "random", "step of loss, nominal",
-          "step of loss, random")  # fmt: skip
+GROUPS = (
+    "nominal",
+    "all films",
+    "one film x10",
+    "contacts",
+    "gap, flow",
+    "random",
+    "step of loss, nominal",
+    "step of loss, random",
+)
 
 
 def table(rows: list[Row]) -> str:

@@ -43,17 +43,32 @@ MORE = 1.25  # memory for four times the samples
 
 def motor() -> Network:
     """A chain of 20 nodes with a film on every third, two windings, an iron loss and friction."""
-    names = ["winding.a", "winding.b", "yoke", "rotor", "shaft", "bearing.a", "bearing.b", "flange.a", "flange.b",
-             *(f"housing.{i}" for i in range(NODES - 9))]  # fmt: skip
+    names = [
+        "winding.a",
+        "winding.b",
+        "yoke",
+        "rotor",
+        "shaft",
+        "bearing.a",
+        "bearing.b",
+        "flange.a",
+        "flange.b",
+        *(f"housing.{i}" for i in range(NODES - 9)),
+    ]
     net = bare_network("motor", dict.fromkeys(names, 4000.0), ("ambient",))
     links = [node_link(net, f"g{i}", "link", a, b, Fixed(8.0)) for i, (a, b) in enumerate(pairwise(names))]
-    links += [node_link(net, f"film{i}", "link", n, "ambient", Fixed(0.6, Power(0.25)))
-              for i, n in enumerate(names) if i % 3 == 0]  # fmt: skip
+    links += [
+        node_link(net, f"film{i}", "link", n, "ambient", Fixed(0.6, Power(0.25)))
+        for i, n in enumerate(names)
+        if i % 3 == 0
+    ]
     hot = Linear(0.0039, 20.0)
-    losses = {"copper.a": ("winding.a", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
-              "copper.b": ("winding.b", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
-              "iron": ("yoke", InputPower(60.0, (("speed_rpm", 1000.0, 1.5),))),
-              "friction": ("bearing.a", InputPower(8.0, (("speed_rpm", 1000.0, 1.0),)))}  # fmt: skip
+    losses = {
+        "copper.a": ("winding.a", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
+        "copper.b": ("winding.b", InputPower(0.02, (("current_A", 1.0, 2.0),), hot)),
+        "iron": ("yoke", InputPower(60.0, (("speed_rpm", 1000.0, 1.5),))),
+        "friction": ("bearing.a", InputPower(8.0, (("speed_rpm", 1000.0, 1.0),))),
+    }
     sources = [node_source(net, n, n.split(".")[0], {at: 1.0}, law) for n, (at, law) in losses.items()]
     free = [Parameter(x.name, ((x.name, 1.0),), prior_sd=0.25) for x in links[::4]]
     free += [Parameter(s.name, ((s.name, 1.0),), prior_sd=0.1) for s in sources]
@@ -123,8 +138,13 @@ def _short(test: Test) -> Test:
     cut = slice(0, n)
     channels = tuple(replace(c, y=c.y[cut]) for c in test.channels)
     inputs = {k: v[cut] for k, v in test.inputs.items()}
-    return replace(test, time=test.time[cut], inputs=inputs, channels=channels,
-                   boundaries={k: v[cut] for k, v in test.boundaries.items()})  # fmt: skip
+    return replace(
+        test,
+        time=test.time[cut],
+        inputs=inputs,
+        channels=channels,
+        boundaries={k: v[cut] for k, v in test.boundaries.items()},
+    )
 
 
 def rows(samples: int) -> list[dict[str, Any]]:
@@ -152,8 +172,15 @@ def rows_of(folder: Path) -> list[dict[str, Any]]:
 
 
 def row(name: str, measure: str, unit: str, ours: float, limit: float) -> dict[str, Any]:
-    return {"case": name, "measure": measure, "unit": unit, "ours": ours, "peer": limit, "peer_name": "limit",
-            "ratio": ours / limit}  # fmt: skip
+    return {
+        "case": name,
+        "measure": measure,
+        "unit": unit,
+        "ours": ours,
+        "peer": limit,
+        "peer_name": "limit",
+        "ratio": ours / limit,
+    }
 
 
 def main() -> None:
@@ -163,8 +190,12 @@ def main() -> None:
     parser.add_argument("--case", type=Path)
     options = parser.parse_args()
     found = rows_of(options.case) if options.case else rows(options.samples)
-    document = {"benchmark": "diagnosis", "computer": platform.processor() or platform.machine(),
-                "date": datetime.date.today().isoformat(), "rows": found}  # fmt: skip
+    document = {
+        "benchmark": "diagnosis",
+        "computer": platform.processor() or platform.machine(),
+        "date": datetime.date.today().isoformat(),
+        "rows": found,
+    }
     for r in found:
         print(f"{r['case']:34} {r['measure']:34} {r['ours']:10.2f} {r['unit']}   limit {r['peer']:g}")
     if options.json:

@@ -166,10 +166,13 @@ def refusals(family: Family, machines: int) -> dict[str, int]:
         times = beyond(family, draw, machines)
         several = [n for n in times if n is not None and n > 1]
         values = {
-            "machines": machines, "built": times[0], "one change cures": times[1],
-            "several changes cure": sum(times[n] for n in several), "most changes": max(several, default=0),
+            "machines": machines,
+            "built": times[0],
+            "one change cures": times[1],
+            "several changes cure": sum(times[n] for n in several),
+            "most changes": max(several, default=0),
             "refused without advice": times[None],
-        }  # fmt: skip
+        }
         out |= {f"{what}: {name}": n for name, n in values.items()}
     return out
 
@@ -180,12 +183,16 @@ def rows(family: Family, machines: int, sections: int, partitions: int, wide: in
     for what, times in Counter([*refused, *(d.fault for d in drawn if d.fault)]).most_common(9):
         print(f"    {times} x {what}", file=sys.stderr)
     found = {
-        "machines drawn": machines, "built": machines - len(refused),
-        "looked at prism by prism": len(drawn), "closed": sum(not d.fault for d in drawn),
-        "within 1 % of the exact volume": sum(d.right for d in drawn), "largest error": max(d.error for d in drawn),
-        "partitions made": partitions, "without gap or overlap": sum(tiled(family, seed) for seed in range(partitions)),
+        "machines drawn": machines,
+        "built": machines - len(refused),
+        "looked at prism by prism": len(drawn),
+        "closed": sum(not d.fault for d in drawn),
+        "within 1 % of the exact volume": sum(d.right for d in drawn),
+        "largest error": max(d.error for d in drawn),
+        "partitions made": partitions,
+        "without gap or overlap": sum(tiled(family, seed) for seed in range(partitions)),
         **refusals(family, wide),
-    }  # fmt: skip
+    }
     return [{"case": family.name, "measure": measure, "unit": "1", "ours": value} for measure, value in found.items()]
 
 

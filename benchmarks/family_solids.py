@@ -43,11 +43,16 @@ def checked(family: Family, seed: int) -> dict[str, Any]:
     worst = max(checks, key=lambda c: abs(c.solid_volume / c.volume - 1.0))
     open_parts = [c.part for c in checks if not c.watertight]
     return {
-        **line, "prisms": sum(len(part.prisms) for part in machine.parts), "helical": helical(machine),
-        "solids": sum(c.pieces for c in checks), "watertight": not open_parts, "open": open_parts,
-        "error": abs(worst.solid_volume / worst.volume - 1.0), "worst": worst.part,
+        **line,
+        "prisms": sum(len(part.prisms) for part in machine.parts),
+        "helical": helical(machine),
+        "solids": sum(c.pieces for c in checks),
+        "watertight": not open_parts,
+        "open": open_parts,
+        "error": abs(worst.solid_volume / worst.volume - 1.0),
+        "worst": worst.part,
         "seconds": round(time.process_time() - start, 1),
-    }  # fmt: skip
+    }
 
 
 def counts(lines: list[dict[str, Any]], name: str) -> str:

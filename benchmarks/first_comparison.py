@@ -31,8 +31,16 @@ ROOT = Path(__file__).resolve().parents[1]
 HUST, TCLAB = ROOT / "cases" / "hust-ipmsm", ROOT / "cases" / "tclab"
 WISHED_S = 60.0
 ROWS, STEP_S = 3600, 1.0
-UNITS = {"current": "A", "speed": "1/min", "torque": "Nm", "T_winding": "°C", "T_core": "°C", "T_housing": "°C",
-         "T_bearing": "°C", "T_air": "°C"}  # fmt: skip
+UNITS = {
+    "current": "A",
+    "speed": "1/min",
+    "torque": "Nm",
+    "T_winding": "°C",
+    "T_core": "°C",
+    "T_housing": "°C",
+    "T_bearing": "°C",
+    "T_air": "°C",
+}
 Writer = Callable[[pd.DataFrame, Path], list[Path]]
 
 
@@ -130,8 +138,11 @@ def as_parquet(table: pd.DataFrame, folder: Path) -> list[Path]:
 def as_recorders(table: pd.DataFrame, folder: Path) -> list[Path]:
     """Three instruments, started one after the other, each with seconds of its own."""
     paths = []
-    parts = {"power": ["current", "speed", "torque"], "logger": ["T_winding", "T_core", "T_housing"],
-             "second": ["T_bearing", "T_air"]}  # fmt: skip
+    parts = {
+        "power": ["current", "speed", "torque"],
+        "logger": ["T_winding", "T_core", "T_housing"],
+        "second": ["T_bearing", "T_air"],
+    }
     for late, (name, columns) in zip((0, 73, 140), parts.items(), strict=True):
         own = headed(table[["time", *columns]].iloc[late:])
         paths.append(folder / f"{name}.csv")
@@ -140,10 +151,15 @@ def as_recorders(table: pd.DataFrame, folder: Path) -> list[Path]:
 
 
 FORMATS: dict[str, Writer] = {
-    "text: preamble, decimal comma, m:ss,f": as_german, "text: dates with a zone, UTF-16": as_zoned,
-    "text: date and clock in two columns": as_clock, "xlsx": as_xlsx, "TDMS": as_tdms, "MF4": as_mf4,
-    "Parquet": as_parquet, "three recorders, no common clock": as_recorders,
-}  # fmt: skip
+    "text: preamble, decimal comma, m:ss,f": as_german,
+    "text: dates with a zone, UTF-16": as_zoned,
+    "text: date and clock in two columns": as_clock,
+    "xlsx": as_xlsx,
+    "TDMS": as_tdms,
+    "MF4": as_mf4,
+    "Parquet": as_parquet,
+    "three recorders, no common clock": as_recorders,
+}
 
 
 @dataclass(frozen=True)
@@ -158,8 +174,13 @@ class Trial:
 
 def trials(folder: Path, machine: bool) -> list[Trial]:
     table = bench_hour()
-    published = {name: [p for n in names for p in case.glob(f"tests/{n}.csv*")] for name, case, names in (
-        ("HUST", HUST, ("id_0", "id_1", "id_5")), ("TCLab", TCLAB, ("steps", "random-1", "random-2")))}  # fmt: skip
+    published = {
+        name: [p for n in names for p in case.glob(f"tests/{n}.csv*")]
+        for name, case, names in (
+            ("HUST", HUST, ("id_0", "id_1", "id_5")),
+            ("TCLab", TCLAB, ("steps", "random-1", "random-2")),
+        )
+    }
     hust = ("--network", str(HUST / "network.toml"), "--period", "1")
     board = ("--network", str(TCLAB / "network.toml"), "--set", "ambient=20.4")
     exports = [Trial(name, write(table, folder)) for name, write in FORMATS.items()]
@@ -177,8 +198,10 @@ def run(trial: Trial, out: Path) -> dict[str, float | str]:
     empty = {"NUMBA_CACHE_DIR": f"{out}-kernel", "THERMOSCOPE_CACHE": f"{out}-cache"} if trial.cold else {}
     env = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80", **empty}
     before, begun = cpu(), time.monotonic()
-    for words in (["test", "new", *map(str, trial.files), *trial.options, "--yes", "--out", str(out)],
-                  ["test", "compare", str(out)]):  # fmt: skip
+    for words in (
+        ["test", "new", *map(str, trial.files), *trial.options, "--yes", "--out", str(out)],
+        ["test", "compare", str(out)],
+    ):
         done = subprocess.run([sys.executable, "-m", "thermoscope", *words], env=env, text=True, capture_output=True)
         if done.returncode > 1:
             raise SystemExit(f"{trial.name}: {done.stderr}")

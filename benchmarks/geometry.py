@@ -34,7 +34,7 @@ from geom import (
     load_machine,
     mesh_quality,
     part_table,
-)  # fmt: skip
+)
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
@@ -140,12 +140,7 @@ def main() -> None:
     target = parser.parse_args().json
     found = [*motor_rows(), *library_rows()]
     computer = f"{platform.machine()}, Python {platform.python_version()}"
-    document = {
-        "benchmark": "geometry",
-        "computer": computer,
-        "date": datetime.date.today().isoformat(),
-        "rows": found,
-    }
+    document = {"benchmark": "geometry", "computer": computer, "date": datetime.date.today().isoformat(), "rows": found}
     if target == "-":
         json.dump(document, sys.stdout, indent=1)
     elif target:

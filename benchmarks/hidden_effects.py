@@ -79,10 +79,13 @@ def main() -> None:
     if a.json:
         computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
         document = {
-            "benchmark": "hidden effects", "computer": computer,
-            "date": datetime.date.today().isoformat(), "seeds": a.seeds, "cases": len(answered(out)),
+            "benchmark": "hidden effects",
+            "computer": computer,
+            "date": datetime.date.today().isoformat(),
+            "seeds": a.seeds,
+            "cases": len(answered(out)),
             "rows": table,
-        }  # fmt: skip
+        }
         a.json.write_text(json.dumps(document, indent=1))
 
 

@@ -40,14 +40,16 @@ ALLOWED = 0.02
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
 COIL = {**CHANNEL, "length_m": 3.0, "coil_diameter_mm": 250}
 COOLANTS = (
-    {"name": "water"}, {"name": "ethylene glycol", "mass_percent": 50},
+    {"name": "water"},
+    {"name": "ethylene glycol", "mass_percent": 50},
     {"name": "propylene glycol", "volume_percent": 40},
-)  # fmt: skip
+)
 CIRCUITS: dict[str, list[dict[str, object]]] = {
-    "one channel": [CHANNEL], "a coil": [COIL],
+    "one channel": [CHANNEL],
+    "a coil": [COIL],
     "two branches": [{**CHANNEL, "branch": "a"}, {**COIL, "branch": "b"}],
     "three branches": [{**CHANNEL, "branch": b, "length_m": x} for b, x in (("a", 0.5), ("b", 1.5), ("c", 5.0))],
-}  # fmt: skip
+}
 Pair = tuple[float, float]  # ours, the correlation's
 
 
@@ -143,10 +145,14 @@ def circuit_points(
     """Films and shares of a circuit, and at rest what its network takes up and gives."""
     table = {"at_degC": 60.0, "flow_l_min": 8.0, "flow_l_min_input": FLOW, "inlet": "inlet", **data}
     circuit = read_circuits(Table({"circuits": {"c": dict(table)}}, "t"), ["housing"], ["inlet"])["c"]
-    network = read_network({
-        "network": {"name": name, "boundaries": ["inlet"]}, "nodes": {"housing": {"C_J_K": 2e4}},
-        "losses": {"all": {"kind": "constant", "at": "housing", "P_W": 2000.0}}, "circuits": {"c": dict(table)},
-    })  # fmt: skip
+    network = read_network(
+        {
+            "network": {"name": name, "boundaries": ["inlet"]},
+            "nodes": {"housing": {"C_J_K": 2e4}},
+            "losses": {"all": {"kind": "constant", "at": "housing", "P_W": 2000.0}},
+            "circuits": {"c": dict(table)},
+        }
+    )
     films = [x for x in network.links if x.name.startswith("film:")]
     streams = [x for x in network.links if x.name.startswith("stream:c.")]
     shares, closed = [], []

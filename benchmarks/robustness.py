@@ -49,9 +49,17 @@ COMMANDS = {
     "add": ("add", "{case}", "convection@flange", "--anyway"),
     "undo": ("undo", "{case}"),
     "improve": ("improve", "{case}", "--yes", "--most", "1"),
-    "new": ("new", "{case}/tests/stand.csv", "{case}/tests/road.csv", "--network", "{case}/network.toml", "--yes",
-            "--out", "{case}/../made"),
-}  # fmt: skip
+    "new": (
+        "new",
+        "{case}/tests/stand.csv",
+        "{case}/tests/road.csv",
+        "--network",
+        "{case}/network.toml",
+        "--yes",
+        "--out",
+        "{case}/../made",
+    ),
+}
 SERVE = "serve"
 MADE = "made"
 MISSES = 5  # trials for every hit at most: a command may end before it is struck

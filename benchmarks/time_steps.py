@@ -49,10 +49,14 @@ def measured(seed: int, folder: Path | None = None, parameters: int = 0) -> dict
     x, exact, (low, high) = run.z[:, : m.C.size], exactly(m, seed, folder), admissible(m)
     span = max(exact.max(), m.around.max()) - min(exact.min(), m.around.min())
     return {
-        "seed": seed, "error_K": float(np.abs(x - exact).max()), "allowed_K": max(WRONG_K, WRONG_SHARE * span),
-        "outside_K": float(max(low - x.min(), x.max() - high, 0.0)), "estimate_K": float(run.time_error_K.max()),
-        "steps": run.steps.knot.size / m.time.size, "tangent": tangent_error(network, record, rows, parameters),
-    }  # fmt: skip
+        "seed": seed,
+        "error_K": float(np.abs(x - exact).max()),
+        "allowed_K": max(WRONG_K, WRONG_SHARE * span),
+        "outside_K": float(max(low - x.min(), x.max() - high, 0.0)),
+        "estimate_K": float(run.time_error_K.max()),
+        "steps": run.steps.knot.size / m.time.size,
+        "tangent": tangent_error(network, record, rows, parameters),
+    }
 
 
 def tangent_error(network: Network, record: Record, rows: list[Row], count: int) -> float:
@@ -93,8 +97,10 @@ def main() -> None:
     outside = sum(r["outside_K"] > OUTSIDE_K for r in rows)
     print(f"{len(rows)} networks: {wrong} beyond the allowed error, {outside} outside by {OUTSIDE_K} K")
     print(f"error (K): median {np.median(error):.4f}, 99 % {np.quantile(error, 0.99):.4f}, largest {error.max():.4f}")
-    print(f"told error over the error: {(estimate / error).min():.2f} to {(estimate / error).max():.2f}; "
-          f"{np.mean([r['steps'] for r in rows]):.1f} steps per sample")  # fmt: skip
+    print(
+        f"told error over the error: {(estimate / error).min():.2f} to {(estimate / error).max():.2f}; "
+        f"{np.mean([r['steps'] for r in rows]):.1f} steps per sample"
+    )
     apart = np.array([r["tangent"] for r in rows])
     print(
         f"tangents from finite differences, over the largest: median {np.median(apart):.1e}, largest {apart.max():.1e}"

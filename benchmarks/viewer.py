@@ -47,11 +47,16 @@ from viz.viewer.page import Recorded, document, render
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 MEASURES = (
-    ("bytes sent", "MB"), ("first picture", "s"), ("first picture, CPU of the browser", "s"),
-    ("pictures a second while turned", "1/s"), ("a turned picture, CPU of the script", "ms"),
-    ("a turned picture, CPU of GL", "ms"), ("pictures a second while played", "1/s"),
-    ("a played picture, CPU of the script", "ms"), ("a played picture, CPU of GL", "ms"),
-)  # fmt: skip
+    ("bytes sent", "MB"),
+    ("first picture", "s"),
+    ("first picture, CPU of the browser", "s"),
+    ("pictures a second while turned", "1/s"),
+    ("a turned picture, CPU of the script", "ms"),
+    ("a turned picture, CPU of GL", "ms"),
+    ("pictures a second while played", "1/s"),
+    ("a played picture, CPU of the script", "ms"),
+    ("a played picture, CPU of GL", "ms"),
+)
 MACHINE = "series-dc-100kw"
 FRAMES, WAIT_S = 61, 120
 PICTURE = 2000  # bytes of a message from which it holds a picture
@@ -309,9 +314,12 @@ def main() -> None:
         return
     found = rows(asked.size_mm / 1e3, asked.seconds)
     document = {
-        "benchmark": "viz", "computer": f"{platform.machine()}, Python {platform.python_version()}",
-        "date": datetime.date.today().isoformat(), "load": os.getloadavg()[0], "rows": found,
-    }  # fmt: skip
+        "benchmark": "viz",
+        "computer": f"{platform.machine()}, Python {platform.python_version()}",
+        "date": datetime.date.today().isoformat(),
+        "load": os.getloadavg()[0],
+        "rows": found,
+    }
     for one in found:
         beside = f" {one['peer_name']} {one['peer']:8.3g}" if "peer" in one else ""
         beside += f"  ratio {one['ratio']:.2g}" if "ratio" in one else ""

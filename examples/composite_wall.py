@@ -15,14 +15,19 @@ H_HOT, H_COLD, HOT, COLD = 25.0, 8.0, 400.0, 20.0  # W/m2/K, degC; all for 1 m2
 
 # %% A node on each face of a layer; faces hold no heat worth naming.
 faces = [f"face {i}" for i in range(len(LAYERS) + 1)]
-links = {"hot film": {"between": ["furnace", faces[0]], "h_W_m2K": H_HOT, "area_m2": 1.0},
-         "cold film": {"between": [faces[-1], "room"], "h_W_m2K": H_COLD, "area_m2": 1.0}}  # fmt: skip
+links = {
+    "hot film": {"between": ["furnace", faces[0]], "h_W_m2K": H_HOT, "area_m2": 1.0},
+    "cold film": {"between": [faces[-1], "room"], "h_W_m2K": H_COLD, "area_m2": 1.0},
+}
 for (name, (thick, k)), a, b in zip(LAYERS.items(), faces, faces[1:]):
     links[name] = {"between": [a, b], "R_K_W": thick / k}
-network = ts.read_network({
-    "network": {"name": "wall", "boundaries": ["furnace", "room"]},
-    "nodes": {face: {"C_J_K": 1.0} for face in faces}, "links": links,
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "wall", "boundaries": ["furnace", "room"]},
+        "nodes": {face: {"C_J_K": 1.0} for face in faces},
+        "links": links,
+    }
+)
 rest = ts.steady(network, {}, {"furnace": HOT, "room": COLD})
 
 # %% Temperatures of all faces.

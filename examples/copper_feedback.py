@@ -12,14 +12,16 @@ import thermoscope as ts
 G, R20, ALPHA, AIR, CURRENT = 4.0, 0.02, 0.00393, 40.0, 150.0  # W/K, ohm, 1/K, degC, A
 
 # %%
-network = ts.read_network({
-    "network": {"name": "winding", "boundaries": ["air"]},
-    "nodes": {"winding": {"C_J_K": 2000.0}},
-    "links": {"film": {"between": ["winding", "air"], "G_W_K": G}},
-    "losses": {
-        "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R20, "alpha_1_K": ALPHA},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "winding", "boundaries": ["air"]},
+        "nodes": {"winding": {"C_J_K": 2000.0}},
+        "links": {"film": {"between": ["winding", "air"], "G_W_K": G}},
+        "losses": {
+            "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R20, "alpha_1_K": ALPHA}
+        },
+    }
+)
 P20 = R20 * CURRENT**2
 computed = ts.steady(network, {"current_A": CURRENT}, {"air": AIR})["winding"]
 expected = AIR + P20 * (1 + ALPHA * (AIR - 20.0)) / (G - ALPHA * P20)

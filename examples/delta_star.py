@@ -17,15 +17,20 @@ FILM = {"film": {"between": ["c", "air"], "R_K_W": 2.0}}
 LOSSES = {"p": {"kind": "constant", "at": "a", "P_W": 30.0}, "q": {"kind": "constant", "at": "b", "P_W": 10.0}}
 
 # %%
-delta = {"ab": {"between": ["a", "b"], "R_K_W": AB}, "bc": {"between": ["b", "c"], "R_K_W": BC},
-         "ca": {"between": ["c", "a"], "R_K_W": CA}}  # fmt: skip
+delta = {
+    "ab": {"between": ["a", "b"], "R_K_W": AB},
+    "bc": {"between": ["b", "c"], "R_K_W": BC},
+    "ca": {"between": ["c", "a"], "R_K_W": CA},
+}
 total = AB + BC + CA
-star = {f"{body} star": {"between": [body, "star"], "R_K_W": x * y / total}
-        for body, x, y in (("a", AB, CA), ("b", AB, BC), ("c", BC, CA))}  # fmt: skip
+star = {
+    f"{body} star": {"between": [body, "star"], "R_K_W": x * y / total}
+    for body, x, y in (("a", AB, CA), ("b", AB, BC), ("c", BC, CA))
+}
 one = ts.read_network({"network": HEAD, "nodes": NODES, "links": {**delta, **FILM}, "losses": LOSSES})
-other = ts.read_network({
-    "network": HEAD, "nodes": {**NODES, "star": {"C_J_K": 1.0}}, "links": {**star, **FILM}, "losses": LOSSES,
-})  # fmt: skip
+other = ts.read_network(
+    {"network": HEAD, "nodes": {**NODES, "star": {"C_J_K": 1.0}}, "links": {**star, **FILM}, "losses": LOSSES}
+)
 
 # %%
 computed = np.array([ts.steady(one, {}, {"air": 20.0})[body] for body in NODES])

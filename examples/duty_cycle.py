@@ -14,15 +14,21 @@ C, G, P, AIR = 9000.0, 5.0, 600.0, 25.0  # J/K, W/K, W, degC
 ON, PERIOD, CYCLES = 600.0, 1800.0, 12  # s
 
 # %% The loss is P times the input "load_percent" over 100.
-network = ts.read_network({
-    "network": {"name": "motor", "boundaries": ["air"]},
-    "nodes": {"motor": {"C_J_K": C}},
-    "links": {"film": {"between": ["motor", "air"], "G_W_K": G}},
-    "losses": {
-        "all": {"kind": "friction", "at": "motor", "P_W": P,
-                "of": {"input": "load_percent", "at": 100.0, "exponent": 1.0}},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "motor", "boundaries": ["air"]},
+        "nodes": {"motor": {"C_J_K": C}},
+        "links": {"film": {"between": ["motor", "air"], "G_W_K": G}},
+        "losses": {
+            "all": {
+                "kind": "friction",
+                "at": "motor",
+                "P_W": P,
+                "of": {"input": "load_percent", "at": 100.0, "exponent": 1.0},
+            }
+        },
+    }
+)
 
 # %% A time that is given twice is a jump of the load.
 edges = np.array([[0.0, ON, ON, PERIOD]]) + PERIOD * np.arange(CYCLES)[:, None]

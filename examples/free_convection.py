@@ -14,11 +14,13 @@ import thermoscope as ts
 C, G1, AIR, HOT = 900.0, 0.4, 20.0, 120.0  # J/K, W/K at 1 K of difference, degC, degC
 
 # %%
-network = ts.read_network({
-    "network": {"name": "plate", "boundaries": ["air"]},
-    "nodes": {"plate": {"C_J_K": C}},
-    "links": {"film": {"between": ["plate", "air"], "power": {"G_W_K": G1, "exponent": 0.25}}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "plate", "boundaries": ["air"]},
+        "nodes": {"plate": {"C_J_K": C}},
+        "links": {"film": {"between": ["plate", "air"], "power": {"G_W_K": G1, "exponent": 0.25}}},
+    }
+)
 time = np.arange(0.0, 3601.0, 10.0)
 run = ts.simulate(network, ts.Record(time, {}, {"air": AIR}, HOT), keep_states=True)
 

@@ -16,9 +16,9 @@ nodes = {f"cell {i}": {"C_J_K": 2.5e6 * CELL} for i in range(N)}
 links = {f"layer {i}": {"between": [f"cell {i}", f"cell {i + 1}"], "G_W_K": K / CELL} for i in range(N - 1)}
 links["plate"] = {"between": [f"cell {N - 1}", "plate"], "G_W_K": 2 * K / CELL}
 losses = {f"heat {i}": {"kind": "constant", "at": f"cell {i}", "P_W": Q * CELL} for i in range(N)}
-network = ts.read_network({
-    "network": {"name": "coil", "boundaries": ["plate"]}, "nodes": nodes, "links": links, "losses": losses,
-})  # fmt: skip
+network = ts.read_network(
+    {"network": {"name": "coil", "boundaries": ["plate"]}, "nodes": nodes, "links": links, "losses": losses}
+)
 
 # %% The heat of every layer through the layers before it sums to N^2 / 2 cells exactly.
 computed = ts.steady(network, {}, {"plate": PLATE})["cell 0"] - PLATE

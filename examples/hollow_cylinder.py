@@ -17,12 +17,14 @@ OUTER, INNER, LENGTH, K, P, FACE = 0.12, 0.08, 0.2, 25.0, 500.0, 60.0  # m, W/m/
 
 # %% Nothing leaves inside or at the ends: outer and mean resistance in series, the second of them negative.
 circuit = mellor(OUTER, INNER, LENGTH, K, K)
-network = ts.read_network({
-    "network": {"name": "Mellor", "boundaries": ["face"]},
-    "nodes": {"mean": {"C_J_K": 1000.0}},
-    "links": {"outer": {"between": ["mean", "face"], "R_K_W": circuit.outer + circuit.radial_mean}},
-    "losses": {"iron": {"kind": "constant", "at": "mean", "P_W": P}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "Mellor", "boundaries": ["face"]},
+        "nodes": {"mean": {"C_J_K": 1000.0}},
+        "links": {"outer": {"between": ["mean", "face"], "R_K_W": circuit.outer + circuit.radial_mean}},
+        "losses": {"iron": {"kind": "constant", "at": "mean", "P_W": P}},
+    }
+)
 computed = ts.steady(network, {}, {"face": FACE})["mean"]
 
 # %% Exact: T(r) from the heat equation with an insulated inner face, averaged over the section by quadrature.

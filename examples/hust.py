@@ -33,9 +33,7 @@ from thermoscope.validation.revision import revise
 from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
 
 CHANNELS = ("winding", "stator", "rotor")
-EVIDENCE = (
-    "| added | size (95 % interval) | probability | verdict | confused with |", "|---|---|---|---|---|",
-)  # fmt: skip
+EVIDENCE = ("| added | size (95 % interval) | probability | verdict | confused with |", "|---|---|---|---|---|")
 
 
 def history(stairs: Sequence[Step]) -> History:
@@ -137,12 +135,20 @@ def table(stairs: Sequence[Step]) -> str:
     for a, b in zip(first.tests, last.tests, strict=True):
         if a.role == "hold-out":
             ends = {c.channel: c for c in b.channels}
-            lines += [f"| {a.name} | {c.channel} | {number(c.rmse_K)} | {number(ends[c.channel].rmse_K)} | "
-                      f"{number(ends[c.channel].fitted_rmse_K)} |" for c in a.channels]  # fmt: skip
-            lines.append(f"| **{a.name}** | **all** | **{number(a.rmse_K)}** | **{number(b.rmse_K)}** | "
-                         f"**{number(b.fitted_rmse_K)}** |")  # fmt: skip
-    lines += ["", "| model | role | winding (K) | stator (K) | rotor (K) | all (K) | all, sensors as fitted (K) |",
-              "|---|---|---|---|---|---|---|"]  # fmt: skip
+            lines += [
+                f"| {a.name} | {c.channel} | {number(c.rmse_K)} | {number(ends[c.channel].rmse_K)} | "
+                f"{number(ends[c.channel].fitted_rmse_K)} |"
+                for c in a.channels
+            ]
+            lines.append(
+                f"| **{a.name}** | **all** | **{number(a.rmse_K)}** | **{number(b.rmse_K)}** | "
+                f"**{number(b.fitted_rmse_K)}** |"
+            )
+    lines += [
+        "",
+        "| model | role | winding (K) | stator (K) | rotor (K) | all (K) | all, sensors as fitted (K) |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for stair in stairs:
         for role in ("calibrate", "validate", "hold-out"):
             read, fitted = role_errors(stair.comparison, role)

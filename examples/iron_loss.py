@@ -13,14 +13,16 @@ import thermoscope as ts
 HYSTERESIS, EDDY, RATED, G, AIR = 40.0, 60.0, 3000.0, 2.5, 25.0  # W and W at RATED rpm, W/K, degC
 
 # %%
-network = ts.read_network({
-    "network": {"name": "core", "boundaries": ["air"]},
-    "nodes": {"core": {"C_J_K": 4000.0}},
-    "links": {"film": {"between": ["core", "air"], "G_W_K": G}},
-    "losses": {
-        "iron": {"kind": "iron", "at": "core", "hysteresis_W": HYSTERESIS, "eddy_W": EDDY, "speed_at": RATED},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "core", "boundaries": ["air"]},
+        "nodes": {"core": {"C_J_K": 4000.0}},
+        "links": {"film": {"between": ["core", "air"], "G_W_K": G}},
+        "losses": {
+            "iron": {"kind": "iron", "at": "core", "hysteresis_W": HYSTERESIS, "eddy_W": EDDY, "speed_at": RATED}
+        },
+    }
+)
 speeds = np.array([600.0, 1500.0, 3000.0, 4500.0])
 rises = np.array([ts.steady(network, {"speed_rpm": n}, {"air": AIR})["core"] - AIR for n in speeds])
 

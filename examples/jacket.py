@@ -15,14 +15,16 @@ H, AREA, MCP, WALL, INLET, N = 2000.0, 0.12, 400.0, 90.0, 40.0, 60  # W/m2/K, m2
 
 # %% Each cell takes its share of the wall's area; the stream carries the heat to the next one.
 cells = [f"cell {i}" for i in range(N)]
-network = ts.read_network({
-    "network": {"name": "jacket", "boundaries": ["inlet", "wall"]},
-    "nodes": {cell: {"kind": "fluid", "C_J_K": 5.0} for cell in cells},
-    "links": {
-        f"film {i}": {"between": [cell, "wall"], "h_W_m2K": H, "area_m2": AREA / N} for i, cell in enumerate(cells)
-    },
-    "streams": {"water": {"path": ["inlet", *cells], "mcp_W_K": MCP}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "jacket", "boundaries": ["inlet", "wall"]},
+        "nodes": {cell: {"kind": "fluid", "C_J_K": 5.0} for cell in cells},
+        "links": {
+            f"film {i}": {"between": [cell, "wall"], "h_W_m2K": H, "area_m2": AREA / N} for i, cell in enumerate(cells)
+        },
+        "streams": {"water": {"path": ["inlet", *cells], "mcp_W_K": MCP}},
+    }
+)
 
 # %% The cells are mixed: they err by half of a cell's number of transfer units, here 0.3 % of the rise.
 found = ts.steady(network, {}, {"inlet": INLET, "wall": WALL})

@@ -14,14 +14,16 @@ import thermoscope as ts
 C, R20, ALPHA, CURRENT, START, LIMIT = 1500.0, 0.4, 0.00393, 120.0, 40.0, 155.0  # J/K, ohm, 1/K, A, degC, degC
 
 # %%
-network = ts.read_network({
-    "network": {"name": "locked", "boundaries": ["air"]},
-    "nodes": {"winding": {"C_J_K": C}},
-    "links": {"film": {"between": ["winding", "air"], "G_W_K": 1e-6}},  # a network has to touch a boundary
-    "losses": {
-        "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R20, "alpha_1_K": ALPHA},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "locked", "boundaries": ["air"]},
+        "nodes": {"winding": {"C_J_K": C}},
+        "links": {"film": {"between": ["winding", "air"], "G_W_K": 1e-6}},  # a network has to touch a boundary
+        "losses": {
+            "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R20, "alpha_1_K": ALPHA}
+        },
+    }
+)
 time = np.arange(0.0, 40.01, 0.1)
 record = ts.Record(time, {"current_A": np.full_like(time, CURRENT)}, {"air": START}, START)
 T = ts.simulate(network, record, keep_states=True).z[:, network.column("winding")]

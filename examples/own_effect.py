@@ -43,11 +43,13 @@ sys.path.insert(0, str(home))
 
 # %% A housing without losses that stands in the sun: 30 W over 1.5 W/K.
 G, AIR, Q = 1.5, 20.0, 30.0
-network = ts.read_network({
-    "network": {"name": "housing", "boundaries": ["air"]},
-    "nodes": {"housing": {"C_J_K": 5000.0}},
-    "links": {"film": {"between": ["housing", "air"], "G_W_K": G}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "housing", "boundaries": ["air"]},
+        "nodes": {"housing": {"C_J_K": 5000.0}},
+        "links": {"film": {"between": ["housing", "air"], "G_W_K": G}},
+    }
+)
 sun = ts.effects()["acme.sun"]("housing")
 places = sun.candidate_places(Scene(network))
 sunny = extended(network, [sun])

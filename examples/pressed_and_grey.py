@@ -23,12 +23,14 @@ HEAT, AREA, ROOM = 400.0, 0.01, 20.0  # W, m2, degC
 
 # %%
 joint = cooper_mikic_yovanovich(k=180.0, slope=0.1, roughness=2e-6, pressure=1e6, hardness=1e9)[0]
-network = ts.read_network({
-    "network": {"name": "plate", "boundaries": ["cooler"]},
-    "nodes": {"plate": {"C_J_K": 900.0}},
-    "links": {"joint": {"between": ["plate", "cooler"], "area_m2": AREA, "h_W_m2K": joint}},
-    "losses": {"heat": {"kind": "constant", "at": "plate", "P_W": HEAT}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "plate", "boundaries": ["cooler"]},
+        "nodes": {"plate": {"C_J_K": 900.0}},
+        "links": {"joint": {"between": ["plate", "cooler"], "area_m2": AREA, "h_W_m2K": joint}},
+        "losses": {"heat": {"kind": "constant", "at": "plate", "P_W": HEAT}},
+    }
+)
 pressed = ts.steady(network, {}, {"cooler": ROOM})["plate"]
 
 # %%

@@ -14,11 +14,13 @@ C, AREA, EMISSIVITY, WALLS, HOT = 2000.0, 0.1, 0.9, 20.0, 300.0  # J/K, m2, 1, d
 SIGMA, ZERO = 5.670374e-8, 273.15
 
 # %%
-network = ts.read_network({
-    "network": {"name": "body", "boundaries": ["walls"]},
-    "nodes": {"body": {"C_J_K": C}},
-    "links": {"cooling": {"between": ["body", "walls"], "area_m2": AREA, "radiation": {"emissivity": EMISSIVITY}}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "body", "boundaries": ["walls"]},
+        "nodes": {"body": {"C_J_K": C}},
+        "links": {"cooling": {"between": ["body", "walls"], "area_m2": AREA, "radiation": {"emissivity": EMISSIVITY}}},
+    }
+)
 time = np.arange(0.0, 3601.0, 10.0)
 run = ts.simulate(network, ts.Record(time, {}, {"walls": WALLS}, HOT), keep_states=True)
 T = run.z[:, network.column("body")] + ZERO

@@ -12,10 +12,13 @@ C, G, RATE, START = 20.0, 0.5, 0.05, 20.0  # J/K, W/K: tau = 40 s; K/s, degC
 tau = C / G
 
 # %%
-network = ts.read_network({
-    "network": {"name": "thermometer", "boundaries": ["chamber"]},
-    "nodes": {"bulb": {"C_J_K": C}}, "links": {"film": {"between": ["bulb", "chamber"], "G_W_K": G}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "thermometer", "boundaries": ["chamber"]},
+        "nodes": {"bulb": {"C_J_K": C}},
+        "links": {"film": {"between": ["bulb", "chamber"], "G_W_K": G}},
+    }
+)
 time = np.arange(0.0, 601.0, 2.0)
 chamber = START + RATE * time
 run = ts.simulate(network, ts.Record(time, {}, {"chamber": chamber}, START), keep_states=True)

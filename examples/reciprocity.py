@@ -13,18 +13,24 @@ import thermoscope as ts
 RNG, NODES = np.random.default_rng(7), [f"n{i}" for i in range(8)]
 links = {
     f"{a}-{b}": {"between": [a, b], "G_W_K": float(RNG.uniform(0.5, 20.0))}
-    for i, a in enumerate(NODES) for b in NODES[i + 1 :] if RNG.random() < 0.5
-}  # fmt: skip
+    for i, a in enumerate(NODES)
+    for b in NODES[i + 1 :]
+    if RNG.random() < 0.5
+}
 links |= {f"{a}-air": {"between": [a, "air"], "G_W_K": float(RNG.uniform(0.1, 3.0))} for a in NODES}
 
 
 # %%
 def rises(at: str) -> list[float]:
     """Rise (K) of every node by 1 W in one of them."""
-    network = ts.read_network({
-        "network": {"name": "eight nodes", "boundaries": ["air"]}, "nodes": {n: {"C_J_K": 1.0} for n in NODES},
-        "links": links, "losses": {"watt": {"kind": "constant", "at": at, "P_W": 1.0}},
-    })  # fmt: skip
+    network = ts.read_network(
+        {
+            "network": {"name": "eight nodes", "boundaries": ["air"]},
+            "nodes": {n: {"C_J_K": 1.0} for n in NODES},
+            "links": links,
+            "losses": {"watt": {"kind": "constant", "at": at, "P_W": 1.0}},
+        }
+    )
     found = ts.steady(network, {}, {"air": 0.0})
     return [found[n] for n in NODES]
 
@@ -42,5 +48,7 @@ for link in links.values():
         G[a, b] -= link["G_W_K"]
         G[b, a] -= link["G_W_K"]
 inverse = np.linalg.inv(G)
-print(f"largest asymmetry {np.abs(computed - expected).max():.1e} K/W; off the inverse by "
-      f"{np.abs(computed - inverse).max():.1e} K/W")  # fmt: skip
+print(
+    f"largest asymmetry {np.abs(computed - expected).max():.1e} K/W; off the inverse by "
+    f"{np.abs(computed - inverse).max():.1e} K/W"
+)

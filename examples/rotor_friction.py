@@ -22,12 +22,14 @@ watts = {
     "brushes": brush_friction(2e-4, OMEGA * 0.05),
 }
 bearing = kylander_bearing(BORE, OMEGA)[0]
-network = ts.read_network({
-    "network": {"name": "rotor", "boundaries": ["housing"]},
-    "nodes": {"rotor": {"C_J_K": 9000.0}},
-    "links": {side: {"between": ["rotor", "housing"], "R_K_W": bearing} for side in ("drive end", "other end")},
-    "losses": {name: {"kind": "friction", "at": "rotor", "P_W": heat} for name, heat in watts.items()},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "rotor", "boundaries": ["housing"]},
+        "nodes": {"rotor": {"C_J_K": 9000.0}},
+        "links": {side: {"between": ["rotor", "housing"], "R_K_W": bearing} for side in ("drive end", "other end")},
+        "losses": {name: {"kind": "friction", "at": "rotor", "P_W": heat} for name, heat in watts.items()},
+    }
+)
 computed = ts.steady(network, {}, {"housing": AIR})["rotor"]
 
 # %%

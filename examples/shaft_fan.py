@@ -15,18 +15,20 @@ import thermoscope as ts
 C_WINDING, C_HOUSING, G, H, AREA, P, AIR = 3000.0, 12000.0, 12.0, 40.0, 0.5, 400.0, 25.0
 
 # %% The network, and the hour.
-network = ts.read_network({
-    "network": {"name": "enclosed motor", "boundaries": ["ambient"]},
-    "nodes": {
-        "winding": {"C_J_K": C_WINDING},
-        "housing": {"C_J_K": C_HOUSING, "area_m2": AREA, "washed_by": "ambient"},
-    },
-    "links": {
-        "slot": {"between": ["winding", "housing"], "G_W_K": G},
-        "film": {"between": ["housing.outer", "ambient"], "fan": {"h_W_m2K": H, "at_rpm": 1500.0, "exponent": 0.8}},
-    },
-    "losses": {"copper": {"kind": "constant", "at": "winding", "P_W": P}},
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "enclosed motor", "boundaries": ["ambient"]},
+        "nodes": {
+            "winding": {"C_J_K": C_WINDING},
+            "housing": {"C_J_K": C_HOUSING, "area_m2": AREA, "washed_by": "ambient"},
+        },
+        "links": {
+            "slot": {"between": ["winding", "housing"], "G_W_K": G},
+            "film": {"between": ["housing.outer", "ambient"], "fan": {"h_W_m2K": H, "at_rpm": 1500.0, "exponent": 0.8}},
+        },
+        "losses": {"copper": {"kind": "constant", "at": "winding", "P_W": P}},
+    }
+)
 time = np.arange(0.0, 3601.0, 10.0)
 speed = 1500.0 * (0.6 - 0.4 * np.cos(2 * np.pi * time / 1800.0))
 run = ts.simulate(network, ts.Record(time, {"speed_rpm": speed}, {"ambient": AIR}, AIR), keep_states=True)

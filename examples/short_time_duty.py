@@ -15,14 +15,16 @@ LIMIT = AIR + R * RATED**2 / G  # what the rated current reaches in the end: 72 
 OVERLOAD = 2.0 * RATED
 
 # %% Copper with constant resistance, so that one exponential is exact.
-network = ts.read_network({
-    "network": {"name": "machine", "boundaries": ["air"]},
-    "nodes": {"winding": {"C_J_K": C}},
-    "links": {"film": {"between": ["winding", "air"], "G_W_K": G}},
-    "losses": {
-        "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R, "alpha_1_K": 0.0},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "machine", "boundaries": ["air"]},
+        "nodes": {"winding": {"C_J_K": C}},
+        "links": {"film": {"between": ["winding", "air"], "G_W_K": G}},
+        "losses": {
+            "copper": {"kind": "copper", "at": "winding", "currents": ["current_A"], "R20_ohm": R, "alpha_1_K": 0.0}
+        },
+    }
+)
 time = np.arange(0.0, 1801.0, 1.0)
 current = np.full(time.size, OVERLOAD)
 run = ts.simulate(network, ts.Record(time, {"current_A": current}, {"air": AIR}, AIR), keep_states=True)

@@ -19,15 +19,18 @@ def rise(at: list[str], still_air: bool = False) -> np.ndarray:
     film = {"between": ["housing", "air"], "G_W_K": 6.0}
     if still_air:
         film = {"between": ["housing", "air"], "power": {"G_W_K": 3.0, "exponent": 0.25}}
-    network = ts.read_network({
-        "network": {"name": "motor", "boundaries": ["air"]},
-        "nodes": {"winding": {"C_J_K": 900.0}, "iron": {"C_J_K": 4000.0}, "housing": {"C_J_K": 6000.0}},
-        "links": {
-            "slot": {"between": ["winding", "iron"], "G_W_K": 12.0},
-            "fit": {"between": ["iron", "housing"], "G_W_K": 30.0}, "film": film,
-        },
-        "losses": {n: {"kind": "constant", "at": n, "P_W": LOSSES[n]} for n in at},
-    })  # fmt: skip
+    network = ts.read_network(
+        {
+            "network": {"name": "motor", "boundaries": ["air"]},
+            "nodes": {"winding": {"C_J_K": 900.0}, "iron": {"C_J_K": 4000.0}, "housing": {"C_J_K": 6000.0}},
+            "links": {
+                "slot": {"between": ["winding", "iron"], "G_W_K": 12.0},
+                "fit": {"between": ["iron", "housing"], "G_W_K": 30.0},
+                "film": film,
+            },
+            "losses": {n: {"kind": "constant", "at": n, "P_W": LOSSES[n]} for n in at},
+        }
+    )
     run = ts.simulate(network, ts.Record(TIME, {}, {"air": AIR}, AIR), keep_states=True)
     return run.z[:, network.column("winding")] - AIR
 

@@ -27,8 +27,10 @@ def ladder(tell: Callable[[str], None], most: int = 8) -> Improvement:
 
 def table(done: Improvement) -> str:
     """Markdown: error (K) per recording after every rung, the effect's size, and what it could also have been."""
-    lines = ["| model | steps | random-1 | **random-2 (held out)** | size (95 %) | verdict | also possible |",
-             "|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| model | steps | random-1 | **random-2 (held out)** | size (95 %) | verdict | also possible |",
+        "|---|---|---|---|---|---|---|",
+    ]
     return "\n".join([*lines, *(row(stair) for stair in done.stairs)])
 
 

@@ -30,5 +30,6 @@ last, depth = time >= 11 * PERIOD, (np.arange(30) + 0.5) * CELL
 computed = run.z[np.ix_(last, [network.column(f"cell {i}") for i in range(30)])]
 late = depth / d
 expected = MEAN + SWING * np.exp(-late) * np.sin(w * time[last, None] - late)
-print(f"d = {1e3 * d:.2f} mm; at d the swing is {np.ptp(computed[:, 9:11].mean(1)) / 2:.3f} K, "
-      f"exact {SWING / np.e:.3f} K")  # fmt: skip
+print(
+    f"d = {1e3 * d:.2f} mm; at d the swing is {np.ptp(computed[:, 9:11].mean(1)) / 2:.3f} K, exact {SWING / np.e:.3f} K"
+)

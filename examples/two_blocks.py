@@ -14,14 +14,16 @@ C = np.array([500.0, 2000.0])  # J/K
 G, HOT, COLD = 4.0, 150.0, 20.0  # W/K, degC, degC
 
 # %% The wire to the room is a millionth of the joint: a network needs somewhere for heat to go in the end.
-network = ts.read_network({
-    "network": {"name": "blocks", "boundaries": ["room"]},
-    "nodes": {"hot": {"C_J_K": C[0]}, "cold": {"C_J_K": C[1]}},
-    "links": {
-        "joint": {"between": ["hot", "cold"], "G_W_K": G},
-        "wire": {"between": ["cold", "room"], "G_W_K": 1e-6 * G},
-    },
-})  # fmt: skip
+network = ts.read_network(
+    {
+        "network": {"name": "blocks", "boundaries": ["room"]},
+        "nodes": {"hot": {"C_J_K": C[0]}, "cold": {"C_J_K": C[1]}},
+        "links": {
+            "joint": {"between": ["hot", "cold"], "G_W_K": G},
+            "wire": {"between": ["cold", "room"], "G_W_K": 1e-6 * G},
+        },
+    }
+)
 time = np.arange(0.0, 601.0, 2.0)
 start = {"hot": HOT, "cold": COLD}
 run = ts.simulate(network, ts.Record(time, {}, {"room": COLD}, start), keep_states=True)

@@ -17,13 +17,20 @@ PARTS = ("cad", "view", "bench", "oil")
 # What a package's own record leaves out, from the licence file that it brings.
 UNSAID = {"CoolProp": "MIT"}
 SHORT = {  # classifiers and long names -> SPDX
-    "MIT License": "MIT", "Apache Software License": "Apache-2.0", "Apache 2.0": "Apache-2.0",
-    "BSD License": "BSD", "BSD 3-Clause License": "BSD-3-Clause", "new BSD": "BSD-3-Clause",
-    "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0", "Python Software Foundation License": "PSF-2.0",
+    "MIT License": "MIT",
+    "Apache Software License": "Apache-2.0",
+    "Apache 2.0": "Apache-2.0",
+    "BSD License": "BSD",
+    "BSD 3-Clause License": "BSD-3-Clause",
+    "new BSD": "BSD-3-Clause",
+    "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0",
+    "Python Software Foundation License": "PSF-2.0",
     "GNU Lesser General Public License v3 (LGPLv3)": "LGPL-3.0",
-    "GNU Lesser General Public License v3 or later (LGPLv3+)": "LGPL-3.0-or-later", "ISC License (ISCL)": "ISC",
-    "GNU Library or Lesser General Public License (LGPL)": "LGPL", "The Unlicense (Unlicense)": "Unlicense",
-}  # fmt: skip
+    "GNU Lesser General Public License v3 or later (LGPLv3+)": "LGPL-3.0-or-later",
+    "ISC License (ISCL)": "ISC",
+    "GNU Library or Lesser General Public License (LGPL)": "LGPL",
+    "The Unlicense (Unlicense)": "Unlicense",
+}
 
 
 def needed(part: str | None) -> list[str]:
@@ -76,19 +83,22 @@ def page() -> str:
     found = parts_of()
     rows = [f"| {name} | {part} | {licence(name)} |" for name, part in found.items()]
     count = {part: sum(p == part for p in found.values()) for part in dict.fromkeys(found.values())}
-    return "\n".join([
-        "# Licences of what comes along",
-        "",
-        "Written by `scripts/licences.py`. thermoscope itself is under the MIT licence. `pip install thermoscope`",
-        f"brings the core, {count['core']} packages; {', '.join(f'`[{part}]`' for part in PARTS)} bring the others.",
-        "Nothing in the core is under the GPL or the LGPL. What makes films (`[video]`) has an encoder under the GPL,",
-        "so it is in no other part.",
-        "",
-        "| package | part | licence |",
-        "|---|---|---|",
-        *rows,
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            "# Licences of what comes along",
+            "",
+            "Written by `scripts/licences.py`. thermoscope itself is under the MIT licence.",
+            f"`pip install thermoscope` brings the core, {count['core']} packages; "
+            f"{', '.join(f'`[{part}]`' for part in PARTS)} bring the others.",
+            "Nothing in the core is under the GPL or the LGPL.",
+            "What makes films (`[video]`) has an encoder under the GPL, so it is in no other part.",
+            "",
+            "| package | part | licence |",
+            "|---|---|---|",
+            *rows,
+            "",
+        ]
+    )
 
 
 if __name__ == "__main__":

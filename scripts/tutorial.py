@@ -51,9 +51,13 @@ def run(lines: list[str], folder: Path) -> dict[str, list[str]]:
             continue
         begun = time.monotonic()
         done = subprocess.run(
-            line, shell=True, cwd=folder, env={**os.environ, "PATH": path, "COLUMNS": "80"}, text=True,
+            line,
+            shell=True,
+            cwd=folder,
+            env={**os.environ, "PATH": path, "COLUMNS": "80"},
+            text=True,
             stdout=subprocess.PIPE,
-        )  # fmt: skip
+        )
         print(f"{time.monotonic() - begun:6.0f} s  exit {done.returncode}  {line}", file=sys.stderr)
         if done.returncode > 1:
             raise SystemExit(f"{line} ended with {done.returncode}")

@@ -104,7 +104,7 @@ place = "ambient"
 """ + "".join(
     f'[columns.{name}]\nquantity = "temperature"\nunit = "degC"\nplace = "{name}"\nsigma_K = 0.3\n'
     for name in ("winding", "stator", "housing")
-)  # fmt: skip
+)
 HEADER = "time_s,current,speed,water,room,winding,stator,housing"
 
 

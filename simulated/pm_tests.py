@@ -131,7 +131,7 @@ def write(out: Path, name: str, loaded: Course, cooling: Course, draws: Draws) -
         "cold_ohm": float(pm_meters.read("ohm", loaded.ohm[0], f"{name}.cold", draws)),
         "cold_V": float(pm_meters.read("volt", cold_emf, f"{name}.cold", draws)),
         "cold_degC": float(pm_meters.thermometer(loaded.ambient[0], f"{name}.cold", draws)),
-    }  # fmt: skip
+    }
     ohm = pm_meters.read("ohm", loaded.ohm, f"{name}.hot", draws)
     volt = pm_meters.read("volt", pm_meters.emf(plan.emf_V, alpha, loaded.magnets), f"{name}.hot", draws)
     air = pm_meters.thermometer(loaded.ambient, f"{name}.hot", draws)

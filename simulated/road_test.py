@@ -88,8 +88,10 @@ def _hidden(draws: Draws, done: dict[tuple[str, bool], tuple[Result, float]]) ->
         change = done[test, True][0].T - done[test, False][0].T
         largest = change[np.abs(change).argmax(axis=0), np.arange(change.shape[1])]
         names = [*sensors.THERMOCOUPLES, sensors.EXHAUST[0]]
-        imprint[test] = {n: {"at_end_K": round(float(e), 2), "largest_K": round(float(m), 2)}
-                         for n, e, m in zip(names, change[-1], largest)}  # fmt: skip
+        imprint[test] = {
+            n: {"at_end_K": round(float(e), 2), "largest_K": round(float(m), 2)}
+            for n, e, m in zip(names, change[-1], largest)
+        }
     return {
         "effect": "forced convection by road wind on flange.right.outer",
         "law": "Nu = 0.25 Re^0.63, Re = shelter v D / nu, D = 0.48 m; joined with natural convection by cubes",

@@ -119,9 +119,10 @@ def documents(bands: Bands) -> dict[str, dict[str, Any]]:
     for k, name in enumerate(bands.names):
         hottest = int(np.argmax(bands.y[:, k]))
         out[name] = {
-            "max_ci95": interval(bands, hottest, k), "end_ci95": interval(bands, -1, k),
+            "max_ci95": interval(bands, hottest, k),
+            "end_ci95": interval(bands, -1, k),
             "widest_ci95_K": float(2.0 * bands.half95[:, k].max()),
-        }  # fmt: skip
+        }
     return out
 
 

@@ -36,8 +36,13 @@ class Finding:
 
     @property
     def document(self) -> dict[str, Any]:
-        return {"name": self.name, "found": self.present, "needed_for": self.needed_for, "needed": self.needed,
-                "fix": self.fix}  # fmt: skip
+        return {
+            "name": self.name,
+            "found": self.present,
+            "needed_for": self.needed_for,
+            "needed": self.needed,
+            "fix": self.fix,
+        }
 
 
 def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:

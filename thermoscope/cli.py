@@ -25,8 +25,11 @@ app = typer.Typer(
     help="See where your motor's thermal model is wrong, and why.",
     epilog="Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 the input is wrong. "
     "--all after any command shows all it knows; --debug where an error came from.",
-    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None,
-)  # fmt: skip
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
 
 UsageError: Any = typer.BadParameter.__base__  # of click, wherever this version of typer keeps it
 LATEST_S = 1e9  # as [test] from_s in a sheet
@@ -84,9 +87,7 @@ def new(
 
 
 @app.command()
-def build(
-    machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None,
-) -> None:  # fmt: skip
+def build(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json: Json = None) -> None:
     """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
     from thermoscope.commands.model.build import build as run
 
@@ -105,8 +106,10 @@ def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, json
 def simulate(
     case: Case,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle; else all tests.")] = None,
-    out: Out = None, bands: Sure = None, json: Json = None,
-) -> None:  # fmt: skip
+    out: Out = None,
+    bands: Sure = None,
+    json: Json = None,
+) -> None:
     """Drive cycle in, temperatures out: a CSV per run, and how well its heat balance closed."""
     from thermoscope.commands.use.simulate import simulate as run
 
@@ -150,7 +153,7 @@ def answer(
     word: Annotated[str, typer.Argument(metavar="yes|no", help="To the question that `diagnose` ended with.")],
     about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
     json: Json = None,
-) -> None:  # fmt: skip
+) -> None:
     """Answer what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
     from thermoscope.commands.explain.answer import answer as run
 
@@ -330,7 +333,7 @@ grouped(app)
 
 @cache
 def whole_app() -> typer.Typer:
-    """The app with the commands of the installed extras: entry points of the group "thermoscope.commands"."""
+    """All commands, with those of the installed extras (entry points of the group "thermoscope.commands")."""
     return added(app, plugins("commands").values())
 
 
@@ -358,8 +361,10 @@ def main() -> None:
         print(one_line(fault), file=sys.stderr)
         raise SystemExit(2) from None
     if code == STOPPED:
-        print(f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",
-              file=sys.stderr)  # fmt: skip
+        print(
+            f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",
+            file=sys.stderr,
+        )
     raise SystemExit(code if isinstance(code, int) else 0)
 
 

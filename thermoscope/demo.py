@@ -247,9 +247,14 @@ def answer(stages: Sequence[Stage], out: Path, seconds: float) -> Answer:
     rows = [[s.name, *(t["rmse_K"] for t in s.errors["tests"])] for s in stages]
     flange = [[s.name, *(right_flange(t) for t in s.errors["tests"])] for s in stages]
     sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
-    return Answer(sentence, [Grid("Error of all sensors, rms (K)", headers, rows, keep=headers),
-                             Grid("Error on the right flange alone, rms (K)", headers, flange, keep=headers)],
-                  f"recording {out}/*.rrd; thermoscope show serve {out / CASE}")  # fmt: skip
+    return Answer(
+        sentence,
+        [
+            Grid("Error of all sensors, rms (K)", headers, rows, keep=headers),
+            Grid("Error on the right flange alone, rms (K)", headers, flange, keep=headers),
+        ],
+        f"recording {out}/*.rrd; thermoscope show serve {out / CASE}",
+    )
 
 
 def right_flange(test: Mapping[str, Any]) -> float:

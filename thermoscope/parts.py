@@ -24,25 +24,40 @@ class Extra:
 
 
 EXTRAS = {
-    e.name: e for e in (
-        Extra("cad", ("cadquery", "OCP", "meshio", "pyamg", "skfem", "shapely", "trimesh"),
-              "machines from a file of dimensions: solids, mesh, field"),
-        Extra("view", ("aiohttp", "kaleido", "matplotlib", "PIL", "plotly", "pyvista", "vtk", "vtkmodules", "rerun",
-                       "trame"), "pictures, the report, the workbench"),
-        Extra("bench", ("asammdf", "nptdms", "pyarrow", "SALib"),
-              "recordings in TDMS, MF4 and Parquet; sensitivities of a screening"),
+    e.name: e
+    for e in (
+        Extra(
+            "cad",
+            ("cadquery", "OCP", "meshio", "pyamg", "skfem", "shapely", "trimesh"),
+            "machines from a file of dimensions: solids, mesh, field",
+        ),
+        Extra(
+            "view",
+            ("aiohttp", "kaleido", "matplotlib", "PIL", "plotly", "pyvista", "vtk", "vtkmodules", "rerun", "trame"),
+            "pictures, the report, the workbench",
+        ),
+        Extra(
+            "bench",
+            ("asammdf", "nptdms", "pyarrow", "SALib"),
+            "recordings in TDMS, MF4 and Parquet; sensitivities of a screening",
+        ),
         Extra("oil", ("CoolProp",), "properties of oil"),
         Extra("optimise", ("pymoo",), "designs that trade one aim for another"),
         Extra("video", ("imageio_ffmpeg",), "films as .mp4"),
         Extra("cluster", ("distributed",), "runs on a Dask cluster"),
     )
-}  # fmt: skip
+}
 # Command -> packages without which it does nothing, whatever its case.
 NEEDS = {
-    "build": ("cadquery", "skfem"), "crosscheck": ("skfem",), "report": ("matplotlib",), "render": ("matplotlib",),
-    "picture": ("matplotlib",), "plan": ("matplotlib",), "serve": ("aiohttp", "trame", "plotly"),
+    "build": ("cadquery", "skfem"),
+    "crosscheck": ("skfem",),
+    "report": ("matplotlib",),
+    "render": ("matplotlib",),
+    "picture": ("matplotlib",),
+    "plan": ("matplotlib",),
+    "serve": ("aiohttp", "trame", "plotly"),
     "optimise": ("pymoo", "plotly"),
-}  # fmt: skip
+}
 
 
 def lacking(name: str) -> list[str]:

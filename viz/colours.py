@@ -18,8 +18,14 @@ if TYPE_CHECKING:
 
 # Okabe & Ito 2008, the colour-blind safe set
 BLUE, ORANGE, GREEN, VERMILION, SKY, PURPLE, YELLOW = (
-    "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#F0E442",
-)  # fmt: skip
+    "#0072B2",
+    "#E69F00",
+    "#009E73",
+    "#D55E00",
+    "#56B4E9",
+    "#CC79A7",
+    "#F0E442",
+)
 # of Okabe & Ito's hues, dark enough for white letters on them (contrast 4.5 and more, WCAG 2.2 AA)
 VERDICT = {"within": "#00795A", "hot": "#B34700", "cold": BLUE, "unknown": "#5B6470"}
 
@@ -92,11 +98,22 @@ def _oklab_to_srgb(L: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np
 
 
 _OF_ROLE = {
-    Role.WINDING: "#C77B4A", Role.INSULATION: "#E3C565", Role.COMMUTATOR: "#B08D57", Role.ROTOR: "#7C8FA6",
-    Role.CAGE: "#7C8FA6", Role.MAGNET: "#7C8FA6", Role.FAN: "#7C8FA6", Role.IRON: "#98A7B8", Role.SHAFT: "#5B6B7B",
-    Role.BEARING: "#5B6B7B", Role.HOUSING: "#B9C6C9", Role.END_SHIELD: "#A7B9AE", Role.FOOT: "#8B8F94",
-    Role.BASE: "#8B8F94", Role.BRUSH: "#4A4F55",
-}  # fmt: skip
+    Role.WINDING: "#C77B4A",
+    Role.INSULATION: "#E3C565",
+    Role.COMMUTATOR: "#B08D57",
+    Role.ROTOR: "#7C8FA6",
+    Role.CAGE: "#7C8FA6",
+    Role.MAGNET: "#7C8FA6",
+    Role.FAN: "#7C8FA6",
+    Role.IRON: "#98A7B8",
+    Role.SHAFT: "#5B6B7B",
+    Role.BEARING: "#5B6B7B",
+    Role.HOUSING: "#B9C6C9",
+    Role.END_SHIELD: "#A7B9AE",
+    Role.FOOT: "#8B8F94",
+    Role.BASE: "#8B8F94",
+    Role.BRUSH: "#4A4F55",
+}
 
 
 def part_colours(parts: Iterable[str], identities: Mapping[str, Identity]) -> dict[str, str]:

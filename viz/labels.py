@@ -45,6 +45,13 @@ def end_labels(
     ax.set_ylim(low, high)
     for i, y in zip(order, heights, strict=True):
         ax.annotate(
-            names[i], (1.0, y), xycoords=("axes fraction", "data"), xytext=(6, 0), textcoords="offset points",
-            va="center", color=colours[i], fontsize=size, annotation_clip=False,
-        )  # fmt: skip
+            names[i],
+            (1.0, y),
+            xycoords=("axes fraction", "data"),
+            xytext=(6, 0),
+            textcoords="offset points",
+            va="center",
+            color=colours[i],
+            fontsize=size,
+            annotation_clip=False,
+        )

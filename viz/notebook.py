@@ -71,8 +71,13 @@ def titled(text: str) -> str:
 
 
 SHOWS = {
-    Compared: compared, Diagnosis: diagnosed, Revision: revised, Comparison: comparison_html,
-    Machine: machine, Network: network, Report: report,
-}  # fmt: skip
+    Compared: compared,
+    Diagnosis: diagnosed,
+    Revision: revised,
+    Comparison: comparison_html,
+    Machine: machine,
+    Network: network,
+    Report: report,
+}
 for _kind, _show in SHOWS.items():
     _kind._repr_html_ = _show  # type: ignore[attr-defined]

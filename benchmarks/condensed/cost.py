@@ -30,8 +30,11 @@ def offline_rows() -> Iterator[Row]:
     how = Meshing(**MOTOR, axial_m=1.5 * MOTOR["size_m"])
     ready = Prepared(machine, mesh, field_of(machine, mesh), films, contacts, how)
     case = f"motor, {len(mesh.points)} nodes, {ready.field.n} unknowns"
-    changed = replace(ready, films={**films, "housing.fins": 2 * films["housing.fins"]},
-                      contacts={**contacts, "housing|yoke": 0.5 * contacts["housing|yoke"]})  # fmt: skip
+    changed = replace(
+        ready,
+        films={**films, "housing.fins": 2 * films["housing.fins"]},
+        contacts={**contacts, "housing|yoke": 0.5 * contacts["housing|yoke"]},
+    )
     for what, one in (("condensed", ready), ("a film and a contact changed", changed)):
         with counted() as solves:
             start = time.process_time()

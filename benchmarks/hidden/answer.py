@@ -20,14 +20,21 @@ def summary(found: dict[str, Any]) -> dict:
     """What is kept of a document of a diagnosis."""
     rows = {c["effect"]: _row(c) for c in found["candidates"]}
     return {
-        "lead": lead(found), "verdict": found["verdict"], "words": found["words"], "groups": found["groups"],
-        "odds": found.get("odds", []), "p_nothing": found.get("p_nothing"),
-        "rmse_K": found["rmse_K"], "floor_K": found.get("floor_K", 0.0), "threshold": found.get("threshold", 0.0),
-        "candidates": rows, "where": [[w["place"], w["evidence_nats"]] for w in found["where"][:5]],
+        "lead": lead(found),
+        "verdict": found["verdict"],
+        "words": found["words"],
+        "groups": found["groups"],
+        "odds": found.get("odds", []),
+        "p_nothing": found.get("p_nothing"),
+        "rmse_K": found["rmse_K"],
+        "floor_K": found.get("floor_K", 0.0),
+        "threshold": found.get("threshold", 0.0),
+        "candidates": rows,
+        "where": [[w["place"], w["evidence_nats"]] for w in found["where"][:5]],
         "next": [[t["test"], t["predicted_gain"], t["hours"], t["current_factor"]] for t in found["next_tests"][:5]],
         "pulls": [list(p.values()) if isinstance(p, dict) else list(p) for p in found["pulls"]],
         "cannot_see": [h["effect"] for h in found["cannot_see"]],
-    }  # fmt: skip
+    }
 
 
 def lead(found: dict[str, Any]) -> str:
@@ -39,5 +46,9 @@ def lead(found: dict[str, Any]) -> str:
 
 
 def _row(c: dict[str, Any]) -> dict:
-    return {"score": c["score"], "value": c["amplitude"]["value"], "ci95": c["amplitude"]["ci95"],
-            "decision": c["decision"]}  # fmt: skip
+    return {
+        "score": c["score"],
+        "value": c["amplitude"]["value"],
+        "ci95": c["amplitude"]["ci95"],
+        "decision": c["decision"],
+    }

@@ -15,8 +15,17 @@ from hidden.truth.oracle import DEVIATION
 from hidden.user import area_of
 
 DECISIVE, ALIKE = 20.0, 5.0  # squared deviation by which an explanation must be worse; at which it is as good
-SHARES = {"nothing": 300, "one": 300, "two": 100, "pair": 100, "condition": 100, "foreign": 60, "absorbed": 40,
-          "fault": 60, "tense": 60}  # fmt: skip
+SHARES = {
+    "nothing": 300,
+    "one": 300,
+    "two": 100,
+    "pair": 100,
+    "condition": 100,
+    "foreign": 60,
+    "absorbed": 40,
+    "fault": 60,
+    "tense": 60,
+}
 FIRST_SEED = {"dev": 0, "test": 500000}
 
 
@@ -93,12 +102,14 @@ def _hide(kind: Archetype, bare: Label, chosen: Sequence[Hidden], size: float) -
     own = [_room(kind, h, h.name) if h.declared else size for h in chosen]
     table = sizes()[kind.name]
     return replace(
-        bare, truth=tuple(h.name for h in chosen), right=tuple(right(kind, h.name) for h in chosen),
+        bare,
+        truth=tuple(h.name for h in chosen),
+        right=tuple(right(kind, h.name) for h in chosen),
         twins=tuple(twins(kind, h.name, s) for h, s in zip(chosen, own, strict=True)),
         size=0.0 if any(h.declared for h in chosen) else size,
         amplitude=tuple(s * table[h.name]["size"] for h, s in zip(chosen, own, strict=True)),
         area=area_of(kind.name, right(kind, chosen[0].name)[0]),
-    )  # fmt: skip
+    )
 
 
 def _one(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
@@ -119,8 +130,9 @@ def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
 
 def _pair(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
     """An effect with a twin that is as good at a size that would be plain otherwise."""
-    usable = [(h, s) for s in MULTIPLES[1:] for h in _possible(kind, s)
-              if not h.declared and twins(kind, h.name, s, ALIKE)]  # fmt: skip
+    usable = [
+        (h, s) for s in MULTIPLES[1:] for h in _possible(kind, s) if not h.declared and twins(kind, h.name, s, ALIKE)
+    ]
     usable = usable or [(h, 1.0) for h in _possible(kind, 1.0) if twins(kind, h.name, 1.0, ALIKE)]
     chosen, size = usable[int(rng.integers(len(usable)))]
     return _hide(kind, bare, [chosen], size)
@@ -135,9 +147,15 @@ def _condition(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator
     share = PART if "in part of" in key else (0.0, 1.0)
     whole = f"{h.name} in {p.name}"
     return replace(
-        bare, truth=(h.name,), right=(right(kind, h.name),), twins=(twins(kind, whole, size),), size=size, test=p.name,
-        amplitude=(size * sizes()[kind.name][key]["size"],), span=tuple(60.0 * p.minutes * s for s in share),
-    )  # fmt: skip
+        bare,
+        truth=(h.name,),
+        right=(right(kind, h.name),),
+        twins=(twins(kind, whole, size),),
+        size=size,
+        test=p.name,
+        amplitude=(size * sizes()[kind.name][key]["size"],),
+        span=tuple(60.0 * p.minutes * s for s in share),
+    )
 
 
 def _fault(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> Label:
@@ -161,8 +179,17 @@ def _bare(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> 
     return bare
 
 
-DRAWN = {"nothing": _bare, "one": _one, "two": _two, "pair": _pair, "condition": _condition, "foreign": _foreign,
-         "absorbed": _absorbed, "fault": _fault, "tense": _bare}  # fmt: skip
+DRAWN = {
+    "nothing": _bare,
+    "one": _one,
+    "two": _two,
+    "pair": _pair,
+    "condition": _condition,
+    "foreign": _foreign,
+    "absorbed": _absorbed,
+    "fault": _fault,
+    "tense": _bare,
+}
 
 
 def hidden_in(kind: Archetype, label: Label) -> Change:

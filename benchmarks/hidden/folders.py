@@ -27,16 +27,28 @@ CLASSES = {"confounded": "pair", "data": "fault", "outside": "foreign"}
 SIZES = {"small": 1.0, "medium": 2.0, "large": 4.0}
 JOINT = "joint at the place"
 WORDS: Mapping[str, tuple[str, ...]] = {
-    "bench_conduction": ("conduction.bench",), "road_wind": ("convection",),
-    "shaft_fan": ("convection.fan", "convection.rotation"), "convection": ("convection.constant",
-    "convection.buoyant"),
-    "radiation": ("radiation",), "coupling_heat": ("conduction.shaft", "loss.constant"), "windage": ("windage",),
-    "bearing_friction": ("bearing.friction",), "friction": ("bearing.friction",), "ac_copper": ("copper.ac",),
-    "copper_tempco": ("copper.feedback",), "impregnation_void": (JOINT,), "pwm_iron": ("iron.pwm",),
-    "sensor_gain": ("sensor.gain",), "sensor_bias": ("sensor.bias",), "sensor_lag": ("sensor.lag",),
-    "sensor_drift": ("sensor.drift",), "sensor_swap": ("sensor.swap",), "sensor_frozen": ("frozen",),
-    "clock": ("time.offset",), "cable_heat": ("unknown heat",),
-}  # fmt: skip
+    "bench_conduction": ("conduction.bench",),
+    "road_wind": ("convection",),
+    "shaft_fan": ("convection.fan", "convection.rotation"),
+    "convection": ("convection.constant", "convection.buoyant"),
+    "radiation": ("radiation",),
+    "coupling_heat": ("conduction.shaft", "loss.constant"),
+    "windage": ("windage",),
+    "bearing_friction": ("bearing.friction",),
+    "friction": ("bearing.friction",),
+    "ac_copper": ("copper.ac",),
+    "copper_tempco": ("copper.feedback",),
+    "impregnation_void": (JOINT,),
+    "pwm_iron": ("iron.pwm",),
+    "sensor_gain": ("sensor.gain",),
+    "sensor_bias": ("sensor.bias",),
+    "sensor_lag": ("sensor.lag",),
+    "sensor_drift": ("sensor.drift",),
+    "sensor_swap": ("sensor.swap",),
+    "sensor_frozen": ("frozen",),
+    "clock": ("time.offset",),
+    "cable_heat": ("unknown heat",),
+}
 
 
 def words_of(file: Path | None) -> Mapping[str, tuple[str, ...]]:
@@ -53,13 +65,17 @@ def names(effect: str, words: Mapping[str, tuple[str, ...]], network: Network) -
         else:
             out.append(f"{word}@{place}")
         if word == "copper.feedback":
-            out += [f"{word}@{s.name.split(':', 1)[-1]}" for s in network.sources
-                    if s.kind == "copper" and not s.name.endswith(":eddy")]  # fmt: skip
+            out += [
+                f"{word}@{s.name.split(':', 1)[-1]}"
+                for s in network.sources
+                if s.kind == "copper" and not s.name.endswith(":eddy")
+            ]
     return tuple(out)
 
 
-def label_of(name: str, machine: str, truth: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], network: Network
-             ) -> Label:  # fmt: skip
+def label_of(
+    name: str, machine: str, truth: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], network: Network
+) -> Label:
     """The label of one folder."""
 
     def all_names(effects: Iterable[str]) -> tuple[str, ...]:
@@ -69,12 +85,18 @@ def label_of(name: str, machine: str, truth: Mapping[str, Any], words: Mapping[s
     near = [[*e.get("group", ()), *truth.get("rival", ())] for e in hidden]
     place = hidden[0]["effect"].partition("@")[2] if hidden and group == "foreign" else ""
     return Label(
-        f"{machine}-{group}-{name}", machine, group, 0, tuple(e["effect"] for e in hidden),
-        tuple(all_names([e["effect"]]) for e in hidden), tuple(all_names(n) for n in near),
+        f"{machine}-{group}-{name}",
+        machine,
+        group,
+        0,
+        tuple(e["effect"] for e in hidden),
+        tuple(all_names([e["effect"]]) for e in hidden),
+        tuple(all_names(n) for n in near),
         max((SIZES.get(e.get("size", ""), 0.0) for e in hidden), default=0.0),
         place=place,  # its amplitudes are in units of its own
-        test=truth.get("test", ""), span=tuple(truth.get("span_s", ())),
-    )  # fmt: skip
+        test=truth.get("test", ""),
+        span=tuple(truth.get("span_s", ())),
+    )
 
 
 def found_in(root: Path, only: Sequence[str], count: int) -> dict[str, Mapping[str, Any]]:
@@ -88,8 +110,9 @@ def found_in(root: Path, only: Sequence[str], count: int) -> dict[str, Mapping[s
     return out
 
 
-def diagnosed(folder: Path, truth: Mapping[str, Any], words: Mapping[str, tuple[str, ...]]
-              ) -> tuple[Label, dict[str, Any]]:  # fmt: skip
+def diagnosed(
+    folder: Path, truth: Mapping[str, Any], words: Mapping[str, tuple[str, ...]]
+) -> tuple[Label, dict[str, Any]]:
     """Only the folder goes to the diagnosis; its truth makes the label."""
     start = time.process_time()
     case = load_case(folder).case

@@ -176,8 +176,11 @@ def reliability(pairs: Sequence[tuple[Answer, Answer]]) -> list[tuple[float, flo
     """(from, to, statements, mean probability, share right) per bin of probability."""
     p, hit = (np.array(x, float) for x in zip(*statements(pairs), strict=True))
     bins = np.clip(np.searchsorted(EDGES, p, side="right") - 1, 0, len(EDGES) - 2)
-    return [(EDGES[k], EDGES[k + 1], int(own.sum()), float(p[own].mean()), float(hit[own].mean()))
-            for k in range(len(EDGES) - 1) if (own := bins == k).any()]  # fmt: skip
+    return [
+        (EDGES[k], EDGES[k + 1], int(own.sum()), float(p[own].mean()), float(hit[own].mean()))
+        for k in range(len(EDGES) - 1)
+        if (own := bins == k).any()
+    ]
 
 
 def calibration_error(pairs: Sequence[tuple[Answer, Answer]]) -> float:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 MEANING = {
-    "largest residual": "node of the largest residual", "correlation": "plain correlation",
-    "forward BIC": "forward selection by BIC", "forward LRT": "forward selection by likelihood ratio",
+    "largest residual": "node of the largest residual",
+    "correlation": "plain correlation",
+    "forward BIC": "forward selection by BIC",
+    "forward LRT": "forward selection by likelihood ratio",
     "AIC refit": "AIC after refits",
-}  # fmt: skip
+}
 
 
 def markdown(table: Sequence[dict]) -> str:
@@ -43,8 +45,9 @@ def entry(row: dict | None) -> str:
 def diagram(table: Sequence[tuple[float, float, int, float, float]]) -> list[str]:
     """A reliability diagram as a table: what was said, and how much of it was right."""
     lines = ["| said with | statements | mean | right |", "|---|---|---|---|"]
-    return lines + [f"| {percent(a)} to {percent(b)} | {n} | {percent(p)} | {percent(right)} |"
-                    for a, b, n, p, right in table]  # fmt: skip
+    return lines + [
+        f"| {percent(a)} to {percent(b)} | {n} | {percent(p)} | {percent(right)} |" for a, b, n, p, right in table
+    ]
 
 
 def guesses(against: Sequence[dict]) -> list[str]:

@@ -38,26 +38,41 @@ def promises(pairs: Iterable[Pair]) -> list[tuple[str, str, str, list[bool | Non
     return [
         ("false alarm", "<= 0.05", "nothing missing", over(judge.false_alarm)),
         *((f"seen, {t}", "", "one effect", over(judge.seen, s)) for t, s in sizes),
-        *((f"right name, {t}", {2.0: ">= 0.90", 4.0: ">= 0.97"}.get(s, ""), "one effect without a twin",
-           over(judge.right_name, s, True)) for t, s in sizes),
+        *(
+            (
+                f"right name, {t}",
+                {2.0: ">= 0.90", 4.0: ">= 0.97"}.get(s, ""),
+                "one effect without a twin",
+                over(judge.right_name, s, True),
+            )
+            for t, s in sizes
+        ),
         *((f"right name, {t}", "", "one effect", over(judge.right_name, s, False)) for t, s in sizes),
-        *((f"truth inside the group, {t}", ">= 0.97", "one effect, something reported",
-           over(judge.truth_inside, s)) for t, s in sizes),
-        *((f"kind and place, {t}", {4.0: ">= 0.80"}.get(s, ""), "condition",
-           over(judge.condition_seen, s)) for t, s in sizes[1:]),
+        *(
+            (f"truth inside the group, {t}", ">= 0.97", "one effect, something reported", over(judge.truth_inside, s))
+            for t, s in sizes
+        ),
+        *(
+            (f"kind and place, {t}", {4.0: ">= 0.80"}.get(s, ""), "condition", over(judge.condition_seen, s))
+            for t, s in sizes[1:]
+        ),
         ("false event", "<= 0.05", "all that lasts", over(judge.false_event)),
         ("confidently wrong", "<= 0.01", "all classes", over(judge.confidently_wrong)),
         ("group with both", ">= 0.90", "confounded pair", over(judge.pair_as_group)),
         ("said so or abstained", ">= 0.85", "outside the catalogue", over(judge.foreign_said)),
-        ("place within one link", ">= 0.70", "outside the catalogue, seen",
-         [judge.foreign_found(a, b, near.get(a["machine"], {})) for a, b in pairs]),
+        (
+            "place within one link",
+            ">= 0.70",
+            "outside the catalogue, seen",
+            [judge.foreign_found(a, b, near.get(a["machine"], {})) for a, b in pairs],
+        ),
         ("both found, none false", ">= 0.85", "two effects", over(judge.both_found)),
         ("absorbed, parameter named", "", "absorbed by calibration", over(judge.absorbed_said)),
         ("fault found", "", "data faults", over(judge.fault_found)),
         ("no effect claimed", "", "wrong priors", over(judge.quiet)),
         ("next test resolves the group", ">= 0.80", "one effect or a pair, reported as a group", over(judge.resolved)),
         ("90 % interval covers", "0.85 to 0.95", "one effect, refitted", over(judge.covered)),
-    ]  # fmt: skip
+    ]
 
 
 def contest(pairs: Iterable[Pair]) -> list[dict]:
@@ -76,8 +91,17 @@ def contest(pairs: Iterable[Pair]) -> list[dict]:
 
 
 def _against(group: str, measure: str, name: str, ours: tuple, their: tuple) -> dict:
-    return {"case": group, "measure": measure, "unit": "1", "ours": ours[0], "peer": their[0], "peer_name": name,
-            "n": ours[1], "ci95": list(ours[2]), "peer_ci95": list(their[2])}  # fmt: skip
+    return {
+        "case": group,
+        "measure": measure,
+        "unit": "1",
+        "ours": ours[0],
+        "peer": their[0],
+        "peer_name": name,
+        "n": ours[1],
+        "ci95": list(ours[2]),
+        "peer_ci95": list(their[2]),
+    }
 
 
 def rows(pairs: Iterable[Pair]) -> list[dict]:
@@ -86,8 +110,17 @@ def rows(pairs: Iterable[Pair]) -> list[dict]:
     for measure, target, group, hits in promises(pairs):
         value, n, interval = judge.rate(hits)
         if n:
-            out.append({"case": group, "measure": measure, "unit": "1", "ours": value, "n": n, "ci95": list(interval),
-                        "target": target})  # fmt: skip
+            out.append(
+                {
+                    "case": group,
+                    "measure": measure,
+                    "unit": "1",
+                    "ours": value,
+                    "n": n,
+                    "ci95": list(interval),
+                    "target": target,
+                }
+            )
     cost = [b["cpu_s"] for _, b in pairs]
     time = {"case": "diagnose", "measure": "time, median", "unit": "s", "ours": float(np.median(cost or [np.nan]))}
     return [*out, *fall(pairs), *contest(pairs), *folds(pairs), time]
@@ -106,9 +139,10 @@ def fold(name: str, pairs: Sequence[Pair]) -> list[dict]:
     out = [_plain(name, m, unit, float(np.mean([of(a, b) for a, b in pairs])), len(pairs)) for m, unit, of in means]
     out += [
         _plain(name, "expected calibration error", "1", odds.calibration_error(pairs), len(pairs)),
-        _plain(name, "90 % set, median size", "1", float(np.median([len(odds.credible(b)) for _, b in pairs])),
-            len(pairs)),
-    ]  # fmt: skip
+        _plain(
+            name, "90 % set, median size", "1", float(np.median([len(odds.credible(b)) for _, b in pairs])), len(pairs)
+        ),
+    ]
     for measure, target, test in RATES:
         value, n, interval = judge.rate([test(a, b) for a, b in pairs])
         if n:
@@ -157,5 +191,14 @@ def fall(pairs: Iterable[Pair]) -> list[dict]:
     if not share:
         return []
     low, high = (share[int(k)] for k in binom.ppf((0.025, 0.975), len(share), 0.5).clip(0, len(share) - 1))
-    return [{"case": "one effect", "measure": "held-out error, share of possible fall", "unit": "1",
-             "ours": float(np.median(share)), "n": len(share), "ci95": [low, high], "target": ">= 0.85"}]  # fmt: skip
+    return [
+        {
+            "case": "one effect",
+            "measure": "held-out error, share of possible fall",
+            "unit": "1",
+            "ours": float(np.median(share)),
+            "n": len(share),
+            "ci95": [low, high],
+            "target": ">= 0.85",
+        }
+    ]

@@ -44,8 +44,12 @@ def measure(kind: Archetype) -> dict[str, dict]:
     of TEST"): size, the amplitude of deviation ten; shown, the catalogue's amplitude over the true law's; unlike, the
     share of the squared deviation that other explanations leave."""
     tests = {p.name: 60.0 * p.minutes for p in kind.plans if p.role in ROLES}
-    inside = {(f"{h.name} in part of {t}",): part_of(h, t, s) for h in kind.passing for t, s in tests.items()
-              if h.make(1.0).lasts}  # fmt: skip
+    inside = {
+        (f"{h.name} in part of {t}",): part_of(h, t, s)
+        for h in kind.passing
+        for t, s in tests.items()
+        if h.make(1.0).lasts
+    }
     changes = {(f"true {h.name}",): h.make(1.0) for h in (*kind.missing, *kind.passing)}
     changes |= hypotheses(kind) | bridges(kind) | inside
     found = [_table(kind, seen(kind, seed, changes, ROLES), tests) for seed in SEEDS]
@@ -59,8 +63,11 @@ def _table(kind: Archetype, answers: Seen, tests: Sequence[str]) -> dict[str, di
     for test in tests:
         own = answers.left(test)
         out |= {f"{h.name} in {test}": _row(kind, answers, own, h, index) for h in kind.passing}
-        out |= {name: {"size": max(_unit(V, index[name]), h.least), "shown": 1.0, "unlike": {}}
-                for h in kind.passing if (name := f"{h.name} in part of {test}") in index}  # fmt: skip
+        out |= {
+            name: {"size": max(_unit(V, index[name]), h.least), "shown": 1.0, "unlike": {}}
+            for h in kind.passing
+            if (name := f"{h.name} in part of {test}") in index
+        }
     return out
 
 

@@ -62,19 +62,28 @@ def folds(cases: Sequence[Pair]) -> list[dict[str, Any]]:
         others = [c for c in cases if c[0]["machine"] != kind]
         temper = best(others) if others else NONE
         then = [(label, tempered(answer, temper)) for label, answer in own]
-        out.append({
-            "kind": kind, "n": len(own), "temper": temper, "untempered": log_score(own, NONE),
-            "log_score": log_score(own, temper),
-            "brier": float(np.mean([brier(*c) for c in then])), "in_set": float(np.mean([in_set(*c) for c in then])),
-            "sure_and_wrong": float(np.mean([surely_another(*c) for c in then])),
-        })  # fmt: skip
+        out.append(
+            {
+                "kind": kind,
+                "n": len(own),
+                "temper": temper,
+                "untempered": log_score(own, NONE),
+                "log_score": log_score(own, temper),
+                "brier": float(np.mean([brier(*c) for c in then])),
+                "in_set": float(np.mean([in_set(*c) for c in then])),
+                "sure_and_wrong": float(np.mean([surely_another(*c) for c in then])),
+            }
+        )
     return out
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """The folds as a table."""
-    lines = ["| kind left out | cases | temper of the others, and per nat | log score at 1 | at that temper | Brier "
-             "| truth in the 90 % set | sure and wrong |", "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| kind left out | cases | temper of the others, and per nat | log score at 1 | at that temper | Brier "
+        "| truth in the 90 % set | sure and wrong |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     return lines + [
         f"| {r['kind']} | {r['n']} | {r['temper'][0]:g} + {r['temper'][1]:g} | {r['untempered']:.2f} "
         f"| {r['log_score']:.2f} | {r['brier']:.3f} | {100 * r['in_set']:.0f} % | {100 * r['sure_and_wrong']:.0f} % |"

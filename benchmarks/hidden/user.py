@@ -56,8 +56,14 @@ def test_of(kind: Archetype, network: Network, record: Record) -> Test:
         Channel(name, name, network.places[name].mean, y, SIGMA_K, lag) for name, y in called(record.readings).items()
     )
     return Test(
-        record.name, record.role, record.time, called(record.inputs), called(record.boundaries), channels, record.start  # type: ignore[arg-type]
-    )  # fmt: skip
+        record.name,
+        record.role,
+        record.time,
+        called(record.inputs),
+        called(record.boundaries),
+        channels,
+        record.start,  # type: ignore[arg-type]
+    )
 
 
 test_of.__test__ = False  # type: ignore[attr-defined]

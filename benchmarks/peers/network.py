@@ -102,10 +102,18 @@ def scipy_runs(method: str, compiled: bool, steps: bool) -> Callable[[Equations,
             return _rate(t, x, *args)
 
         largest = step if steps else np.inf
-        return lambda: solve_ivp(
-            fast if compiled else plain, (eq.time[0], eq.time[-1]), x0, method, t_eval=eq.time, rtol=rtol,
-            atol=10.0 * rtol, max_step=largest,
-        ).y.T  # fmt: skip
+        return lambda: (
+            solve_ivp(
+                fast if compiled else plain,
+                (eq.time[0], eq.time[-1]),
+                x0,
+                method,
+                t_eval=eq.time,
+                rtol=rtol,
+                atol=10.0 * rtol,
+                max_step=largest,
+            ).y.T
+        )
 
     return run
 
@@ -152,9 +160,16 @@ def diffrax_kvaerno(steps: bool) -> Callable[[Equations, np.ndarray, float], Run
         @jax.jit
         def run(start: Any) -> Any:
             return diffrax.diffeqsolve(
-                term, diffrax.Kvaerno5(), eq.time[0], eq.time[-1], 0.1, start, stepsize_controller=control,
-                saveat=diffrax.SaveAt(ts=jnp.asarray(eq.time)), max_steps=100_000,
-            ).ys  # fmt: skip
+                term,
+                diffrax.Kvaerno5(),
+                eq.time[0],
+                eq.time[-1],
+                0.1,
+                start,
+                stepsize_controller=control,
+                saveat=diffrax.SaveAt(ts=jnp.asarray(eq.time)),
+                max_steps=100_000,
+            ).ys
 
         return lambda: np.asarray(run(jnp.asarray(x0)))
 

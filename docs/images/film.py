@@ -32,9 +32,18 @@ def draw(case: Path, gif: Path) -> None:
         T.append(values)
         seen += rows
         titles += [title(test, t, words, row) for t, row in zip(times, rows, strict=True)]
-    moving(folder.built.machine, nodes, np.concatenate(T), gif, titles=titles, sensors=seen,
-           limits=temperature_range(folder, nodes), width=WIDTH, frames_per_second=PER_SECOND,
-           tell=lambda k: print(f"\r{k}", end=""))  # fmt: skip
+    moving(
+        folder.built.machine,
+        nodes,
+        np.concatenate(T),
+        gif,
+        titles=titles,
+        sensors=seen,
+        limits=temperature_range(folder, nodes),
+        width=WIDTH,
+        frames_per_second=PER_SECOND,
+        tell=lambda k: print(f"\r{k}", end=""),
+    )
     assert gif.stat().st_size <= LARGEST, f"{gif.stat().st_size / 1e6:.1f} MB"
 
 

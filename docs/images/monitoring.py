@@ -52,8 +52,12 @@ def watched(folder: Path) -> None:
 def fleet(folder: Path) -> None:
     """Two hundred simulated motors, jacket against joint."""
     subprocess.run([sys.executable, "-m", "simulated.fleet", "--out", folder], cwd=ROOT, check=True)
-    subprocess.run([*RUN, "use", "fleet", folder / "case", folder / "fleet", "--json", folder / "fleet.json"], cwd=ROOT,
-                   check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+    subprocess.run(
+        [*RUN, "use", "fleet", folder / "case", folder / "fleet", "--json", folder / "fleet.json"],
+        cwd=ROOT,
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     drawn(json.loads((folder / "fleet.json").read_text()))
 
 
@@ -65,8 +69,16 @@ def drawn(document: dict) -> None:
         x, y = u["parameters"][a], u["parameters"][b]
         low, high = u["ci95"][a], u["ci95"][b]
         colour = "tab:red" if u["unit"] in odd else "tab:blue"
-        axes.errorbar(x, y, xerr=[[x - low[0]], [low[1] - x]], yerr=[[y - high[0]], [high[1] - y]], fmt="o", ms=3,
-                      lw=0.5, color=colour)  # fmt: skip
+        axes.errorbar(
+            x,
+            y,
+            xerr=[[x - low[0]], [low[1] - x]],
+            yerr=[[y - high[0]], [high[1] - y]],
+            fmt="o",
+            ms=3,
+            lw=0.5,
+            color=colour,
+        )
         if u["unit"] in odd:
             axes.annotate(
                 f"{u['unit']}: {odd[u['unit']]['parameter']}", (x, y), textcoords="offset points", xytext=(8, 4)

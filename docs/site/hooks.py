@@ -56,8 +56,12 @@ def machine() -> str:
 
 def gallery(examples: list[Path]) -> str:
     """One section per example: its first sentence, its pictures, its code."""
-    parts = ["# Gallery", f"[A motor to turn, cut and play]({MACHINE}), an hour on the road: one file, no network.",
-             "Each of these runs as it stands: `python examples/NAME.py`. The tests run them too.", ""]  # fmt: skip
+    parts = [
+        "# Gallery",
+        f"[A motor to turn, cut and play]({MACHINE}), an hour on the road: one file, no network.",
+        "Each of these runs as it stands: `python examples/NAME.py`. The tests run them too.",
+        "",
+    ]
     return "\n\n".join(parts + [section(path) for path in examples]) + "\n"
 
 

@@ -30,7 +30,7 @@ def curves(
     case: Case,
     resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
     json: Json = None,
-) -> None:  # fmt: skip
+) -> None:
     """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
     from extras.bench.commands.curves import curves as run
 
@@ -49,8 +49,9 @@ def bases(case: Case, json: Json = None) -> None:
 def screen(
     machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
     design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
+    out: Out = None,
+    json: Json = None,
+) -> None:
     """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
     from extras.bench.commands.screen import screen as run
 
@@ -72,9 +73,10 @@ def two_paths(
 
 @commands.command()
 def carry(
-    source: Case, targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
+    source: Case,
+    targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
     json: Json = None,
-) -> None:  # fmt: skip
+) -> None:
     """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
     from extras.bench.commands.screen import carry as run
 

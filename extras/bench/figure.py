@@ -32,8 +32,12 @@ def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path 
     rows = sorted(effects["effects"], key=lambda e: abs(e["value"]))
     figure, (left, right) = paper.subplots(9.6, 4.0, columns=2)
     _half_normal(left, rows)
-    _bars(right, [e["words"] for e in rows[-TOP:]], [abs(e["value"]) for e in rows[-TOP:]],
-          [BLUE if e["active"] else LIGHT.faint for e in rows[-TOP:]])  # fmt: skip
+    _bars(
+        right,
+        [e["words"] for e in rows[-TOP:]],
+        [abs(e["value"]) for e in rows[-TOP:]],
+        [BLUE if e["active"] else LIGHT.faint for e in rows[-TOP:]],
+    )
     for ax in (left, right):
         for key, words, line in LENTH:
             ax.axvline(effects[key], color=LIGHT.ink, lw=1.0, ls=line, label=words)

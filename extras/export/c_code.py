@@ -45,16 +45,27 @@ def sizes(model: Model) -> str:
     """The header: what the model is, its inputs and outputs, and the sizes of its arrays."""
     T = model.terms
     counts = {
-        "STATES": len(model.states), "BOUNDARIES": len(model.boundaries), "INPUTS": len(model.inputs),
-        "SIGNALS": len(model.signals), "OUTPUTS": len(model.outputs), "TERMS": len(model.factors),
+        "STATES": len(model.states),
+        "BOUNDARIES": len(model.boundaries),
+        "INPUTS": len(model.inputs),
+        "SIGNALS": len(model.signals),
+        "OUTPUTS": len(model.outputs),
+        "TERMS": len(model.factors),
         "FACTORS": len(model.factors) + len(model.sizes),
         "ROWS": T.begin.size - 1,
-    }  # fmt: skip
+    }
     numbers = {
-        "C21": stages.C21, "C31": stages.C31, "C32": stages.C32, "SLOPE2": stages.SLOPE2, "END1": stages.END1,
-        "END2": stages.END2, "END3": stages.END3, "ERROR_K": model.tolerance[0], "ERROR_SHARE": model.tolerance[1],
+        "C21": stages.C21,
+        "C31": stages.C31,
+        "C32": stages.C32,
+        "SLOPE2": stages.SLOPE2,
+        "END1": stages.END1,
+        "END2": stages.END2,
+        "END3": stages.END3,
+        "ERROR_K": model.tolerance[0],
+        "ERROR_SHARE": model.tolerance[1],
         "REST_K": CONVERGED_K,
-    }  # fmt: skip
+    }
     lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
     lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
     macro = "THERMAL_NETWORK_SIZES_H"
@@ -68,29 +79,51 @@ def data(model: Model) -> str:
     rows = [o.row for o in model.outputs]
     starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
     parts = [
-        reals("C", model.C), _matrix("K0", model.K0), reals("UNIT", model.unit), ints("NODE", model.node),
-        ints("ENTRY_START", T.begin), ints("ENTRY_AT", T.at), reals("ENTRY_WEIGHT", T.weight),
-        ints("ROW_FIRST", T.part[:, ROW]), ints("ROW_END", T.part[:, END]), ints("ROW", T.row),
-        ints("HOT", T.part[:, HOT]), ints("COLD", T.part[:, COLD]),
-        ints("LAW", T.kind[:, 0]), reals("LAW_A", T.par[:, 0]), reals("LAW_B", T.par[:, 1]),
-        ints("POINT_START", T.part[:, POINT]), ints("POINT_END", T.part[:, LAST]), reals("POINT_X", T.point[:, 0]),
-        reals("POINT_Y", T.point[:, 1]), ints("PLACE", T.part[:, PLACE]),
+        reals("C", model.C),
+        _matrix("K0", model.K0),
+        reals("UNIT", model.unit),
+        ints("NODE", model.node),
+        ints("ENTRY_START", T.begin),
+        ints("ENTRY_AT", T.at),
+        reals("ENTRY_WEIGHT", T.weight),
+        ints("ROW_FIRST", T.part[:, ROW]),
+        ints("ROW_END", T.part[:, END]),
+        ints("ROW", T.row),
+        ints("HOT", T.part[:, HOT]),
+        ints("COLD", T.part[:, COLD]),
+        ints("LAW", T.kind[:, 0]),
+        reals("LAW_A", T.par[:, 0]),
+        reals("LAW_B", T.par[:, 1]),
+        ints("POINT_START", T.part[:, POINT]),
+        ints("POINT_END", T.part[:, LAST]),
+        reals("POINT_X", T.point[:, 0]),
+        reals("POINT_Y", T.point[:, 1]),
+        ints("PLACE", T.part[:, PLACE]),
         ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
         reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
-        *_functions(F), ints("OUTPUT_START", starts), ints("OUTPUT_AT", joined(r.index for r in rows)),
-        reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)), f"#define FILMS {FILMS}",
-        f"#define FILM_FIRST ((thermal_real){FIRST_C})", f"#define FILM_STEP ((thermal_real){STEP_K})",
-        f"#define LEAST ((thermal_real){LEAST})", f"#define FULL_UNITS ((thermal_real){FULL_UNITS})",
-    ]  # fmt: skip
+        *_functions(F),
+        ints("OUTPUT_START", starts),
+        ints("OUTPUT_AT", joined(r.index for r in rows)),
+        reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)),
+        f"#define FILMS {FILMS}",
+        f"#define FILM_FIRST ((thermal_real){FIRST_C})",
+        f"#define FILM_STEP ((thermal_real){STEP_K})",
+        f"#define LEAST ((thermal_real){LEAST})",
+        f"#define FULL_UNITS ((thermal_real){FULL_UNITS})",
+    ]
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
 
 
 def _functions(F: Flat) -> list[str]:
     return [
-        ints("PRODUCT_START", F.product_start), reals("PRODUCT", F.coefficient),
-        ints("FUNCTION_START", F.function_start), _matrix("FUNCTION", F.function, "int"),
-        _matrix("FUNCTION_A", F.parameters), reals("FUNCTION_X", F.x), reals("FUNCTION_Y", F.y),
-    ]  # fmt: skip
+        ints("PRODUCT_START", F.product_start),
+        reals("PRODUCT", F.coefficient),
+        ints("FUNCTION_START", F.function_start),
+        _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters),
+        reals("FUNCTION_X", F.x),
+        reals("FUNCTION_Y", F.y),
+    ]
 
 
 def joined(parts: Iterable[np.ndarray]) -> np.ndarray:

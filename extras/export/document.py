@@ -15,8 +15,12 @@ from extras.export.products import Function, Mapped, Positive, Powered, Straight
 from thermoscope.plugin import COLD, END, FILM, FILMS, FIRST_C, HOT, LAST, PLACE, POINT, ROW, STEP_K, STREAM, Terms
 
 KINDS: dict[type, str] = {
-    Powered: "power", Straight: "straight", Positive: "positive", Tabulated: "table", Mapped: "map",
-}  # fmt: skip
+    Powered: "power",
+    Straight: "straight",
+    Positive: "positive",
+    Tabulated: "table",
+    Mapped: "map",
+}
 LAWS = ("constant", "power", "radiation", "linear", "table", "film table", "inverse", "stream table")
 
 
@@ -26,19 +30,30 @@ def document(model: Model) -> dict[str, Any]:
     P is given by its triplets row, col, val over the states; hot and cold are weighted sums of z.
     """
     return {
-        "about": heading(model), "name": model.name, "revision": model.revision, "effects": list(model.effects),
-        "states": list(model.states), "inputs": [asdict(s) for s in model.inputs],
-        "boundaries": [asdict(s) for s in model.boundaries], "initial_degC": model.initial_degC, "C": model.C,
-        "K0": model.K0, "terms": [_term(model, e) for e in range(len(model.factors))],
+        "about": heading(model),
+        "name": model.name,
+        "revision": model.revision,
+        "effects": list(model.effects),
+        "states": list(model.states),
+        "inputs": [asdict(s) for s in model.inputs],
+        "boundaries": [asdict(s) for s in model.boundaries],
+        "initial_degC": model.initial_degC,
+        "C": model.C,
+        "K0": model.K0,
+        "terms": [_term(model, e) for e in range(len(model.factors))],
         "outputs": [_output(o) for o in model.outputs],
-    }  # fmt: skip
+    }
 
 
 def _output(o: Output) -> dict[str, Any]:
     return {
-        "name": o.name, "col": o.row.index, "val": o.row.weights, "limit_degC": o.limit, "error_K": o.error_K,
+        "name": o.name,
+        "col": o.row.index,
+        "val": o.row.weights,
+        "limit_degC": o.limit,
+        "error_K": o.error_K,
         "role": o.role,
-    }  # fmt: skip
+    }
 
 
 def _term(model: Model, e: int) -> dict[str, Any]:
@@ -46,11 +61,15 @@ def _term(model: Model, e: int) -> dict[str, Any]:
     first, end = T.part[e, [ROW, END]]
     entries = slice(T.begin[first], T.begin[end])
     return {
-        "name": model.term_names[e], "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
-        "col": T.at[entries], "val": T.weight[entries],
-        "hot": _weighted_sum(T, T.part[e, HOT]), "cold": _weighted_sum(T, T.part[e, COLD]),
-        "law": _law(model, e), "factor": factor(model.factors[e]),
-    }  # fmt: skip
+        "name": model.term_names[e],
+        "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
+        "col": T.at[entries],
+        "val": T.weight[entries],
+        "hot": _weighted_sum(T, T.part[e, HOT]),
+        "cold": _weighted_sum(T, T.part[e, COLD]),
+        "law": _law(model, e),
+        "factor": factor(model.factors[e]),
+    }
 
 
 def _weighted_sum(T: Terms, row: int) -> dict[str, Any]:

@@ -39,10 +39,14 @@ def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
     at_x, at_y = _starts(xs), _starts(ys)
     table = [_integers(f, signals, at_x[i], at_y[i]) for i, f in enumerate(functions)]
     return Flat(
-        _starts(factors), np.array([p.coefficient for p in products]), _starts([p.functions for p in products]),
-        np.array(table, np.int64).reshape(-1, 8), np.array([_numbers(f) for f in functions], float).reshape(-1, 2),
-        np.concatenate([np.empty(0), *xs]), np.concatenate([np.empty(0), *ys]),
-    )  # fmt: skip
+        _starts(factors),
+        np.array([p.coefficient for p in products]),
+        _starts([p.functions for p in products]),
+        np.array(table, np.int64).reshape(-1, 8),
+        np.array([_numbers(f) for f in functions], float).reshape(-1, 2),
+        np.concatenate([np.empty(0), *xs]),
+        np.concatenate([np.empty(0), *ys]),
+    )
 
 
 def _starts(parts: Sequence[Sequence]) -> NDArray[np.int64]:

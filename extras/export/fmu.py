@@ -80,11 +80,12 @@ def sources(model: Model, version: int) -> dict[str, str]:
     states = np.flatnonzero(model.node)
     starts = ", ".join(f"{start_of(s, model):.17g}" for s in model.signals) or "0"
     lines = [
-        f'#define FMU_TOKEN "{token(model)}"', f"#define THERMAL_NODES {states.size}",
+        f'#define FMU_TOKEN "{token(model)}"',
+        f"#define THERMAL_NODES {states.size}",
         f"static const double START_SIGNAL[] = {{{starts}}};",
         f"static const double START_NODE[] = {{{', '.join([f'{model.initial_degC:.17g}'] * states.size)}}};",
         f"static const int NODE_STATE[] = {{{', '.join(map(str, states))}}};",
-    ]  # fmt: skip
+    ]
     runtime_files = ("fmu.h", f"fmi{version}.c")
     fixed = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in runtime_files}
     return {**c_files(model), **fixed, "thermal_network_fmu.h": "\n".join([*lines, ""])}
@@ -144,9 +145,14 @@ def description(model: Model, version: int) -> bytes:
     """modelDescription.xml"""
     key: Attributes = {"guid" if version == 2 else "instantiationToken": token(model)}
     root = Element(
-        "fmiModelDescription", fmiVersion=f"{version}.0", modelName=model.name, generationTool=TOOL,
-        description=heading(model)[0], variableNamingConvention="flat", **key,
-    )  # fmt: skip
+        "fmiModelDescription",
+        fmiVersion=f"{version}.0",
+        modelName=model.name,
+        generationTool=TOOL,
+        description=heading(model)[0],
+        variableNamingConvention="flat",
+        **key,
+    )
     _co_simulation(root, model, version)
     fmi_variables = variables(model)
     units = SubElement(root, "UnitDefinitions")

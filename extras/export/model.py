@@ -114,15 +114,23 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
     inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in _read(every, live))
     hidden = np.array(["#" in s for s in network.states], bool)
     return Model(
-        network.name, 0, (), network.states, network.C * capacity_multipliers(network, m),
-        every.matrix(acting * np.array(constant)), every.packed(live, steady),
+        network.name,
+        0,
+        (),
+        network.states,
+        network.C * capacity_multipliers(network, m),
+        every.matrix(acting * np.array(constant)),
+        every.packed(live, steady),
         tuple(n for n, on in zip(every.names, live, strict=True) if on),
         tuple(_factors(every, live, acting, _reaches(inputs))),
         inputs,
         tuple(Signal(b, "degC", *_range(reference, b)) for b in network.boundaries),
-        tuple(looks), state_units(network), (~hidden).astype(np.int64), _sizes(every, live),
+        tuple(looks),
+        state_units(network),
+        (~hidden).astype(np.int64),
+        _sizes(every, live),
         initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
-    )  # fmt: skip
+    )
 
 
 def _sizes(every: Assembly, live: NDArray[np.bool_]) -> tuple[tuple[str | None, float], ...]:

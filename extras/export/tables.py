@@ -87,8 +87,10 @@ def _table(name: str, law: Law, ranges: Ranges) -> Sum:
         return (Product(1.0, (_plane(name, law, reads, ranges),)),)
     raise InputError(
         f"the law {type(law).__name__} of '{name}' follows {len(reads)} inputs at once ({', '.join(reads)}) and has "
-        "no form in C", "--as", "a law of one or two inputs, or a product of such laws",
-    )  # fmt: skip
+        "no form in C",
+        "--as",
+        "a law of one or two inputs, or a product of such laws",
+    )
 
 
 def _line(name: str, law: Law, of: str, ranges: Ranges) -> Tabulated:
@@ -134,6 +136,7 @@ def _denser_at_zero(low: float, high: float) -> Array:
 
 def _coarse(name: str, law: Law, reads: Iterable[str]) -> InputError:
     return InputError(
-        f"the law {type(law).__name__} of '{name}' over {', '.join(reads)} is too rough for a table", "--as",
+        f"the law {type(law).__name__} of '{name}' over {', '.join(reads)} is too rough for a table",
+        "--as",
         "a law without jumps over the range of its inputs",
-    )  # fmt: skip
+    )

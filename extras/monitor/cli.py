@@ -20,8 +20,9 @@ def watch(
     follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
     like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
+    out: Out = None,
+    json: Json = None,
+) -> None:
     """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
     from extras.monitor.commands.watch import watch as run
 

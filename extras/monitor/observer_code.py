@@ -66,9 +66,15 @@ class ObserverModel:
 
 
 def observer_model(
-    process: Process, noise: ProcessNoise, table_sd: Array, rise_K: float, sensors: Sequence[Channel],
-    reference: Reference, looks: Sequence[Any], bias: Array | None = None,
-) -> ObserverModel:  # fmt: skip
+    process: Process,
+    noise: ProcessNoise,
+    table_sd: Array,
+    rise_K: float,
+    sensors: Sequence[Channel],
+    reference: Reference,
+    looks: Sequence[Any],
+    bias: Array | None = None,
+) -> ObserverModel:
     """Raises InputError where it would not fit on a controller."""
     writer = code_writer()
     network, names = with_missing_heat(process.network, process.bodies)
@@ -104,8 +110,12 @@ def observer_files(of: ObserverModel) -> dict[str, str]:
 
 
 def _sizes(of: ObserverModel) -> str:
-    counts = {"SLOW": of.process.slow.size, "BODIES": len(of.process.bodies), "SENSORS": len(of.sensors),
-              "GIVEN": len(of.input_names)}  # fmt: skip
+    counts = {
+        "SLOW": of.process.slow.size,
+        "BODIES": len(of.process.bodies),
+        "SENSORS": len(of.sensors),
+        "GIVEN": len(of.input_names),
+    }
     comments = [
         f"Observer of '{of.model.name}': {of.bytes} bytes from step to step; single precision but for temperatures.",
         f"Inputs u, in this order: {', '.join(of.input_names)}.",
@@ -126,26 +136,46 @@ def _data(of: ObserverModel) -> str:
     names = tuple(c.name for c in of.sensors)
     odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
     numbers: Mapping[str, float] = {
-        "NOISE_S": of.noise.time_s, "LONGEST_S": LONGEST_S, "HELD_FOR_S": CORRELATION_S, "START_K": USUAL["start"],
-        "COLDEST_C": COLDEST, "HOTTEST_C": HOTTEST, "OUTLIER_SD": faults.OUTLIER, "LOST_AFTER_S": faults.LOST_S,
-        "BACK_AFTER_S": faults.BACK_S, "FROZEN_AFTER_S": faults.FROZEN_S, "LONGER_RUN": faults.LONGER,
-        "MOVED_SD": faults.MOTION, "FORGETS_AFTER_S": tests_of.FORGETS_S, "SURE_FROM": tests_of.SURE,
-        "DOUBT_SD": tests_of.TOLERANCE, "TEMPER_BY": TEMPER["temper"].share,
+        "NOISE_S": of.noise.time_s,
+        "LONGEST_S": LONGEST_S,
+        "HELD_FOR_S": CORRELATION_S,
+        "START_K": USUAL["start"],
+        "COLDEST_C": COLDEST,
+        "HOTTEST_C": HOTTEST,
+        "OUTLIER_SD": faults.OUTLIER,
+        "LOST_AFTER_S": faults.LOST_S,
+        "BACK_AFTER_S": faults.BACK_S,
+        "FROZEN_AFTER_S": faults.FROZEN_S,
+        "LONGER_RUN": faults.LONGER,
+        "MOVED_SD": faults.MOTION,
+        "FORGETS_AFTER_S": tests_of.FORGETS_S,
+        "SURE_FROM": tests_of.SURE,
+        "DOUBT_SD": tests_of.TOLERANCE,
+        "TEMPER_BY": TEMPER["temper"].share,
         "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
-    }  # fmt: skip
+    }
     m = len(of.process.bodies)
     root = "},\n{".join(", ".join(f"{v:.17g}" for v in row) for row in of.noise.root)
-    return "\n".join([
-        "/* The numbers of the observer; see thermal_observer_sizes.h. */",
-        *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
-        ints("SLOW", of.process.slow), ints("BODY_STATE", [network.column(b) for b in of.process.bodies]),
-        ints("HEAT_SIGNAL", [signals.index(n) for n in of.heats]),
-        ints("GIVEN_SIGNAL", [signals.index(n) for n in of.input_names]),
-        f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
-        ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
-        ints("SENSOR_AT", chained(r.index for r in rows)), reals("SENSOR_WEIGHT", chained(r.weights for r in rows)),
-        ints("SENSOR_STATE", [of.process.state(c) for c in of.sensors]), reals("SENSOR_SD", sigma),
-        reals("SENSOR_BIAS", of.bias),
-        reals("LAG_S", [c.lag_s for c in of.sensors]), reals("TABLE_SD", of.table_sd),
-        reals("ALLOWED_SD", odds.tolerance), reals("SPREAD_SD", odds.spread), reals("LOG_PRIOR", odds.prior), "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            "/* The numbers of the observer; see thermal_observer_sizes.h. */",
+            *(f"#define {name} {value:.17g}" for name, value in numbers.items()),
+            ints("SLOW", of.process.slow),
+            ints("BODY_STATE", [network.column(b) for b in of.process.bodies]),
+            ints("HEAT_SIGNAL", [signals.index(n) for n in of.heats]),
+            ints("GIVEN_SIGNAL", [signals.index(n) for n in of.input_names]),
+            f"static const double NOISE_ROOT[][{max(m, 1)}] = {{{{{root or '0'}}}}};",
+            ints("SENSOR_START", np.concatenate([[0], np.cumsum([r.index.size for r in rows])])),
+            ints("SENSOR_AT", chained(r.index for r in rows)),
+            reals("SENSOR_WEIGHT", chained(r.weights for r in rows)),
+            ints("SENSOR_STATE", [of.process.state(c) for c in of.sensors]),
+            reals("SENSOR_SD", sigma),
+            reals("SENSOR_BIAS", of.bias),
+            reals("LAG_S", [c.lag_s for c in of.sensors]),
+            reals("TABLE_SD", of.table_sd),
+            reals("ALLOWED_SD", odds.tolerance),
+            reals("SPREAD_SD", odds.spread),
+            reals("LOG_PRIOR", odds.prior),
+            "",
+        ]
+    )

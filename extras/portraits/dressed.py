@@ -18,11 +18,19 @@ from thermoscope.plugin import MachineDescription as Machine
 from thermoscope.plugin import Part, Role
 
 FINISH = {
-    Role.IRON: Finish.LAMINATIONS, Role.ROTOR: Finish.ROTOR, Role.CAGE: Finish.CAST, Role.MAGNET: Finish.MAGNET,
-    Role.INSULATION: Finish.INSULATION, Role.WINDING: Finish.COPPER, Role.COMMUTATOR: Finish.BRASS,
-    Role.FAN: Finish.RUBBER, Role.BEARING: Finish.STEEL, Role.SHAFT: Finish.STEEL, Role.BASE: Finish.PLATE,
+    Role.IRON: Finish.LAMINATIONS,
+    Role.ROTOR: Finish.ROTOR,
+    Role.CAGE: Finish.CAST,
+    Role.MAGNET: Finish.MAGNET,
+    Role.INSULATION: Finish.INSULATION,
+    Role.WINDING: Finish.COPPER,
+    Role.COMMUTATOR: Finish.BRASS,
+    Role.FAN: Finish.RUBBER,
+    Role.BEARING: Finish.STEEL,
+    Role.SHAFT: Finish.STEEL,
+    Role.BASE: Finish.PLATE,
     Role.BRUSH: Finish.CARBON,
-}  # fmt: skip
+}
 EDGE = 0.0006  # m; edges of plain parts are rounded by this
 
 
@@ -64,6 +72,13 @@ def _or_plain(maker: Callable[[Outlines, Part], list[Body]]) -> Callable[[Outlin
 
 
 _MAKERS: dict[Role, Callable[[Outlines, Part], list[Body]]] = {
-    Role.WINDING: wound, Role.END_SHIELD: _or_plain(shield), Role.BEARING: _or_plain(bearing), Role.SHAFT: shaft,
-    Role.HOUSING: _housing, Role.FOOT: standing, Role.BASE: standing, Role.FAN: wheel, Role.COMMUTATOR: commutator,
-}  # fmt: skip
+    Role.WINDING: wound,
+    Role.END_SHIELD: _or_plain(shield),
+    Role.BEARING: _or_plain(bearing),
+    Role.SHAFT: shaft,
+    Role.HOUSING: _housing,
+    Role.FOOT: standing,
+    Role.BASE: standing,
+    Role.FAN: wheel,
+    Role.COMMUTATOR: commutator,
+}

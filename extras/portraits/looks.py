@@ -96,10 +96,13 @@ def _packed(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> dict[str, Any]:
             size += len(place)
     corners = framed(machine, bodies)
     return {
-        "points": packed_numbers(np.concatenate(points), STEP_M), "mix": packed_integers(np.concatenate(weights)),
-        "triangles": packed_integers(np.concatenate(triangles)), "counts": counts, "wedge": [wedge.start, wedge.span],
+        "points": packed_numbers(np.concatenate(points), STEP_M),
+        "mix": packed_integers(np.concatenate(weights)),
+        "triangles": packed_integers(np.concatenate(triangles)),
+        "counts": counts,
+        "wedge": [wedge.start, wedge.span],
         "frame": [corners.min(axis=0).tolist(), corners.max(axis=0).tolist()],
-    }  # fmt: skip
+    }
 
 
 def coarse(body: Body) -> Body:

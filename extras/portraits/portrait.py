@@ -72,9 +72,14 @@ def portrait(
 
 
 def staged(
-    machine: Machine, warm: Warm | None, wedge: Wedge | None, view: View, theme: Theme, size: tuple[int, int],
+    machine: Machine,
+    warm: Warm | None,
+    wedge: Wedge | None,
+    view: View,
+    theme: Theme,
+    size: tuple[int, int],
     room: Room,
-) -> tuple[pyvista.Plotter, list[Painted]]:  # fmt: skip
+) -> tuple[pyvista.Plotter, list[Painted]]:
     """The machine lit and standing, with room around it; and what of it is coloured by temperature."""
     p, bodies = _stage(theme, size), dressed(machine)
     painted = [_add(p, pieces, *kind, warm) for kind, pieces in _gathered(bodies, wedge).items()]
@@ -130,9 +135,7 @@ def _gathered(bodies: Sequence[Body], wedge: Wedge | None) -> dict[tuple[Finish,
     return out
 
 
-def _add(
-    p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm: Warm | None
-) -> Painted | None:  # fmt: skip
+def _add(p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm: Warm | None) -> Painted | None:
     """One thing to draw; with the rows that give its temperatures, where it shows any."""
     shine, sharpness = finish.shine
     look: dict[str, Any] = {"ambient": 0.40, "diffuse": 0.75, "smooth_shading": False}

@@ -79,9 +79,11 @@ def shaft_fan(o: Outlines) -> list[Body]:
         Body(body.name, Finish.PAINT, revolved(shell), added=True),
         Body(body.name, Finish.STEEL, _cover(0.71 * reach, back), added=True),
         Body(shield.name, Finish.RUBBER, fan, added=True),
-        *(Body(p.name, Finish.STEEL, rod(radius, 0.85 * deep).flipped().moved((0, 0, face)), added=True)
-          for p in o.parts(Role.SHAFT)[:1]),
-    ]  # fmt: skip
+        *(
+            Body(p.name, Finish.STEEL, rod(radius, 0.85 * deep).flipped().moved((0, 0, face)), added=True)
+            for p in o.parts(Role.SHAFT)[:1]
+        ),
+    ]
 
 
 def _radial_fan(radius: float, tip: float, z0: float, z1: float) -> Shape:
@@ -118,8 +120,10 @@ def _bars(
     out = []
     for outline, z0, z1 in outlines:
         reach = 2 * radii_of(outline)[1]
-        gap = [shapely.LineString([(0, 0), (reach * np.cos(a), reach * np.sin(a))]).buffer(0.0004)
-               for a in 2 * np.pi * np.arange(BARS * slots) / (BARS * slots)]  # fmt: skip
+        gap = [
+            shapely.LineString([(0, 0), (reach * np.cos(a), reach * np.sin(a))]).buffer(0.0004)
+            for a in 2 * np.pi * np.arange(BARS * slots) / (BARS * slots)
+        ]
         pieces = outline.difference(shapely.union_all(gap))
         out += [(piece, z0, z1) for piece in pieces.geoms]
     return out

@@ -28,8 +28,9 @@ def rate(
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
     mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
     start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
-    bands: Sure = None, json: Json = None,
-) -> None:  # fmt: skip
+    bands: Sure = None,
+    json: Json = None,
+) -> None:
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
     from extras.rating.commands.rate import rate as run
 
@@ -54,8 +55,9 @@ def optimise(
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
     robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
-    out: Out = None, json: Json = None,
-) -> None:  # fmt: skip
+    out: Out = None,
+    json: Json = None,
+) -> None:
     """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
     from extras.rating.commands.optimise import optimise as run
     from extras.rating.optimisation.search import Effort

@@ -11,8 +11,12 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 SCALE = "Viridis"
-WORDS = {"peak_degC": "peak (degC)", "settling_s": "settling (min)", "copper_W": "copper (W)",
-         "auxiliary_W": "pump and fan (W)"}  # fmt: skip
+WORDS = {
+    "peak_degC": "peak (degC)",
+    "settling_s": "settling (min)",
+    "copper_W": "copper (W)",
+    "auxiliary_W": "pump and fan (W)",
+}
 DISPLAY_UNIT = {"settling_s": 1.0 / 60.0}  # objective -> its unit in the table over that of the rows
 EYE = {"x": 2.1, "y": -1.2, "z": 0.7}  # across the diagonal: cooler designs settle sooner, and would hide each other
 DECADES = 100.0  # largest over smallest value of an axis from which on it is logarithmic
@@ -46,20 +50,29 @@ def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Th
     axes = [*objectives, *objectives][:3] if len(objectives) < 3 else [objectives[0], objectives[1], objectives[-1]]
     colour = next((o for o in objectives if o not in axes), objectives[0])
     x, y, z, c = (column(rows, o) for o in (*axes, colour))
-    out = go.Figure(go.Scatter3d(
-        x=x, y=y, z=z, mode="markers", text=[str(r["design"]) for r in rows],
-        marker={"size": 5, "color": c, "colorscale": SCALE, "colorbar": {"title": WORDS.get(colour, colour)}},
-        hovertemplate="%{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
-    ))  # fmt: skip
+    out = go.Figure(
+        go.Scatter3d(
+            x=x,
+            y=y,
+            z=z,
+            mode="markers",
+            text=[str(r["design"]) for r in rows],
+            marker={"size": 5, "color": c, "colorscale": SCALE, "colorbar": {"title": WORDS.get(colour, colour)}},
+            hovertemplate="%{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
+        )
+    )
     titles = [{"title": WORDS.get(o, o), "type": _type(u)} for o, u in zip(axes, (x, y, z), strict=True)]
     scene = {
         **dict(zip(("xaxis", "yaxis", "zaxis"), titles, strict=True)),
         "camera": {"eye": EYE, "center": {"z": -0.15}},
     }
     out.update_layout(
-        title={"text": "The Pareto set", "x": 0.02}, scene=scene, height=620, paper_bgcolor=theme.paper,
+        title={"text": "The Pareto set", "x": 0.02},
+        scene=scene,
+        height=620,
+        paper_bgcolor=theme.paper,
         font={"color": theme.ink, "family": "DejaVu Sans, Arial, sans-serif"},
-    )  # fmt: skip
+    )
     return out
 
 

@@ -63,13 +63,15 @@ def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: s
         k = int(np.argmax(T - most))
         if T[k] >= RUNAWAY_C:
             raise InputError(
-                "the model does not come to rest even without any load", f"rating {form}",
+                "the model does not come to rest even without any load",
+                f"rating {form}",
                 "a way for heat to leave every part; effects add one (explain diagnose)",
-            )  # fmt: skip
+            )
         raise InputError(
             f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
-            "--limit", "a higher limit, cooler surroundings or a lower speed",
-        )  # fmt: skip
+            "--limit",
+            "a higher limit, cooler surroundings or a lower speed",
+        )
     high = 1.0
     while worst(high) < 0.0:
         high *= 1.5
@@ -94,9 +96,14 @@ def excess(model: Model, op: Operation, form: str, speed: float | None) -> Calla
 
 
 def until(
-    model: Model, op: Operation, limits: Sequence[float], load: float, speed: float | None, warm: float | None,
+    model: Model,
+    op: Operation,
+    limits: Sequence[float],
+    load: float,
+    speed: float | None,
+    warm: float | None,
     longest: float = 86400.0,
-) -> float:  # fmt: skip
+) -> float:
     """Seconds until a limit is reached under a load, from cold or from rest under the load `warm`; inf if never."""
     begin, most = model.start(op, warm, speed), np.asarray(limits)
     if np.any(begin_at(model, op, begin, speed) >= most):

@@ -61,8 +61,11 @@ def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = 
     for n in names:
         watts[n][tuple(index)] = columns[f"{n}_W"]
         if not np.all((watts[n] >= 0.0) & (watts[n] <= UNITS["W"].high)):
-            raise InputError(f"'{n}_W' has negative, missing or impossible values", where,
-                             f"watts that become heat, {UNITS['W'].words}")  # fmt: skip
+            raise InputError(
+                f"'{n}_W' has negative, missing or impossible values",
+                where,
+                f"watts that become heat, {UNITS['W'].words}",
+            )
     _balanced(columns, names, where)
     return LossGrid(axes[2], axes[1], axes[0], watts)
 
@@ -87,9 +90,10 @@ def _complete(count: NDArray[np.int64], axes: list[Array], where: str) -> None:
     holes = [at for at in bad if count[at] == 0]
     what = f"{len(holes)} of {count.size} points are missing" if holes else f"{len(bad)} points are given twice"
     raise InputError(
-        f"the map has holes or doubles: {what}, the first at {M:g} Nm, {n:g} 1/min, {T:g} degC", where,
+        f"the map has holes or doubles: {what}, the first at {M:g} Nm, {n:g} 1/min, {T:g} degC",
+        where,
         "every torque at every speed, once; fill what the machine cannot reach with the nearest point",
-    )  # fmt: skip
+    )
 
 
 def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> None:
@@ -104,9 +108,10 @@ def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> Non
         k = int(np.argmax(off - tolerance))
         raise InputError(
             f"the powers do not balance: at {columns[TORQUE][k]:g} Nm, {columns[SPEED][k]:g} 1/min input less shaft is "
-            f"{columns['input_W'][k] - shaft[k]:.4g} W, the losses are {heat[k]:.4g} W", where,
+            f"{columns['input_W'][k] - shaft[k]:.4g} W, the losses are {heat[k]:.4g} W",
+            where,
             f"within {100 * BALANCED:g} % of the power: is a loss missing, or a unit wrong?",
-        )  # fmt: skip
+        )
 
 
 def with_losses(network: Network, grid: LossGrid, where: str) -> Network:

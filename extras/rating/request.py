@@ -87,14 +87,15 @@ def begun(model: Model, op: Operation, limits: Mapping[str, float], start: float
     warm = start / abs(op.inputs[op.main])
     for (place, most), T in zip(limits.items(), model.rest(op, warm, None), strict=True):
         if most <= T:
-            raise InputError(f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is "
-                             f"{most:g} degC", "--start", "a lower load, or cold")  # fmt: skip
+            raise InputError(
+                f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is {most:g} degC",
+                "--start",
+                "a lower load, or cold",
+            )
     return replace(op, warm=warm)
 
 
-def places(
-    limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[str, Identity]
-) -> dict[str, float]:  # fmt: skip
+def places(limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[str, Identity]) -> dict[str, float]:
     """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
 
     what : name -> its role. "winding" limits the ends of a winding beside the place of that name: they may be hotter.

@@ -32,9 +32,7 @@ def load_of(old: Rated, form: str, speed: float | None) -> float:
     return rated(old.model, old.op, old.limits, form, speed).load
 
 
-def point(
-    folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None
-) -> dict[str, Any]:  # fmt: skip
+def point(folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None) -> dict[str, Any]:
     """A point of the envelope as a rating has it."""
     rated_row = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
     return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in rated_row.items() if k != "form"}}
@@ -44,20 +42,29 @@ def derated(
     folder: Folder, it: Rated, old: Rated | None, load: float, of: ParameterPosterior | None
 ) -> list[dict[str, Any]]:
     """Shares of the continuous rating `load` in other surroundings; before: of the same, by the earlier model."""
-    earlier = {} if old is None else {
-        (d.where.of, d.where.value): d.load * old.op.inputs[old.op.main]
-        for d in deratings(old.model, old.op, old.limits)
-    }  # fmt: skip
+    earlier = (
+        {}
+        if old is None
+        else {
+            (d.where.of, d.where.value): d.load * old.op.inputs[old.op.main]
+            for d in deratings(old.model, old.op, old.limits)
+        }
+    )
     whole, out = load * it.op.inputs[it.op.main], []
     for d in deratings(it.model, it.op, it.limits):
         there = None if of is None else replace(of, network=d.where.network(of.network))
         half = None if d.rating is None else _half_band(folder, d.where.op, d.rating, there)
         before = earlier.get((d.where.of, d.where.value))
-        out.append({
-            "of": d.where.of, "value": d.where.value, "unit": d.where.unit, "share": d.load / load,
-            "share_ci95": None if half is None else [max(d.load - half, 0.0) / load, (d.load + half) / load],
-            "share_before": None if before is None else before / whole,
-        })  # fmt: skip
+        out.append(
+            {
+                "of": d.where.of,
+                "value": d.where.value,
+                "unit": d.where.unit,
+                "share": d.load / load,
+                "share_ci95": None if half is None else [max(d.load - half, 0.0) / load, (d.load + half) / load],
+                "share_before": None if before is None else before / whole,
+            }
+        )
     return out
 
 
@@ -70,9 +77,13 @@ def row(
     ci95 = None if half is None else [(r.load - half) * main, (r.load + half) * main]
     change = None if not before or not np.isfinite(before) else 100.0 * (r.load / before - 1.0)
     return {
-        "form": r.form, "value": r.load * main, "ci95": ci95, "at": r.at,
-        "before": None if before is None else before * main, "change_percent": change,
-    }  # fmt: skip
+        "form": r.form,
+        "value": r.load * main,
+        "ci95": ci95,
+        "at": r.at,
+        "before": None if before is None else before * main,
+        "change_percent": change,
+    }
 
 
 def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior | None) -> float | None:

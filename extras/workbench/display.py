@@ -14,13 +14,39 @@ from thermoscope.plugin import sensor as sensor_figure
 CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {
-    "busy": False, "comparing": False, "job": {"title": "", "message": "", "percent": None},
-    "error": "", "outcome": None, "report": "", "viewer": "", "viewer_rest": "", "preparing": "", "limits": {},
-    "tests": [], "test": "", "test_names": [], "sensors": [], "sensor": "", "curve": NOTHING, "dark": False,
-    "plotly": "", "plots": 0, "effects": [], "revision": 0, "steps": [], "can_undo": False,
-    "verdict": None, "candidates": [], "confusion": NOTHING, "has_confusion": False, "rms": "", "floor": "",
-    "drop": None, "dragged": "", "made": "",
-}  # fmt: skip
+    "busy": False,
+    "comparing": False,
+    "job": {"title": "", "message": "", "percent": None},
+    "error": "",
+    "outcome": None,
+    "report": "",
+    "viewer": "",
+    "viewer_rest": "",
+    "preparing": "",
+    "limits": {},
+    "tests": [],
+    "test": "",
+    "test_names": [],
+    "sensors": [],
+    "sensor": "",
+    "curve": NOTHING,
+    "dark": False,
+    "plotly": "",
+    "plots": 0,
+    "effects": [],
+    "revision": 0,
+    "steps": [],
+    "can_undo": False,
+    "verdict": None,
+    "candidates": [],
+    "confusion": NOTHING,
+    "has_confusion": False,
+    "rms": "",
+    "floor": "",
+    "drop": None,
+    "dragged": "",
+    "made": "",
+}
 
 
 class Display:

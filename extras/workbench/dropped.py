@@ -80,10 +80,18 @@ class Dropped:
     def rows(self) -> list[dict[str, str]]:
         """Every column as the page lists it."""
         return [
-            {"key": f"{i}:{g.column}", "name": g.column, "file": r.name, "goes": g.place or g.feeds, "unit": g.unit,
-             "quantity": g.quantity.replace("_", " "), "doubt": g.doubt}
-            for i, r in enumerate(self.records) for g in r.guesses
-        ]  # fmt: skip
+            {
+                "key": f"{i}:{g.column}",
+                "name": g.column,
+                "file": r.name,
+                "goes": g.place or g.feeds,
+                "unit": g.unit,
+                "quantity": g.quantity.replace("_", " "),
+                "doubt": g.doubt,
+            }
+            for i, r in enumerate(self.records)
+            for g in r.guesses
+        ]
 
     @property
     def document(self) -> dict[str, Any]:
@@ -95,8 +103,13 @@ class Dropped:
         parts = [{"name": n, "kind": kind, "columns": goes.get(n, [])} for kind, names in kinds for n in names]
         part_names = [p["name"] for p in parts]
         others = [{"name": n, "kind": "input", "columns": c} for n, c in goes.items() if n and n not in part_names]
-        return {"files": ", ".join(r.name for r in self.records), "columns": self.rows, "parts": [*parts, *others],
-                "missing": self.missing, "constants": {n: f"{v:g}" for n, v in self.constants.items()}}  # fmt: skip
+        return {
+            "files": ", ".join(r.name for r in self.records),
+            "columns": self.rows,
+            "parts": [*parts, *others],
+            "missing": self.missing,
+            "constants": {n: f"{v:g}" for n, v in self.constants.items()},
+        }
 
     @property
     def missing(self) -> list[str]:

@@ -14,10 +14,18 @@ from thermoscope import ThermoscopeError
 
 Tell = Callable[[str], None]
 PRELOAD = [
-    "extras.workbench.steps", "lumped.build.pipeline", "thermoscope.commands.model.revise",
-    "validation.diagnosis.diagnose", "validation.revision.revise", "thermoscope.case_folder.error_field",
-    "thermoscope.case_folder.network_run", "viz.viewer.page", "thermoscope.kernels", "pyvista", "matplotlib",
-]  # fmt: skip
+    "extras.workbench.steps",
+    "lumped.build.pipeline",
+    "thermoscope.commands.model.revise",
+    "validation.diagnosis.diagnose",
+    "validation.revision.revise",
+    "thermoscope.case_folder.error_field",
+    "thermoscope.case_folder.network_run",
+    "viz.viewer.page",
+    "thermoscope.kernels",
+    "pyvista",
+    "matplotlib",
+]
 
 
 class StoppedError(Exception):

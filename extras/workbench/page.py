@@ -15,9 +15,7 @@ from trame_plotly import module as plotly
 from extras.workbench.session import Session, started
 from thermoscope.plugin import RULE
 
-KEYS = (
-    ("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"),
-)  # fmt: skip
+KEYS = (("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"))
 BROWSER = ("drop", "machine", "plots")  # scripts of the page
 PLOTLY = {"displayModeBar": "false", "displaylogo": "false", "responsive": "true"}
 HINT = (
@@ -52,10 +50,7 @@ def _browser_code(session: Session) -> None:
     """What the page runs besides its templates, from this package and nowhere else."""
     code = str(files("extras.workbench").joinpath("browser"))
     session.shown.server.enable_module(
-        {
-            "serve": {"__thermoscope": code, **plotly.serve},
-            "scripts": [f"__thermoscope/{name}.js" for name in BROWSER],
-        }
+        {"serve": {"__thermoscope": code, **plotly.serve}, "scripts": [f"__thermoscope/{name}.js" for name in BROWSER]}
     )
     session.state.plotly = plotly.scripts[0]  # plots.js loads it
 
@@ -63,10 +58,18 @@ def _browser_code(session: Session) -> None:
 def _figure(name: str) -> None:
     """A figure of the page's state, once there is what draws it: looked up by name then, not with the page."""
     options = [f':{key}="{value}"' for key, value in PLOTLY.items()]
-    AbstractElement("component", raw_attrs=[
-        'v-if="plots"', ":is=\"'trame-plotly'\"", ':key="plots"', f':data="{name}.data"', f':layout="{name}.layout"',
-        *options, 'style="width: 100%; height: 100%"',
-    ])  # fmt: skip
+    AbstractElement(
+        "component",
+        raw_attrs=[
+            'v-if="plots"',
+            ":is=\"'trame-plotly'\"",
+            ':key="plots"',
+            f':data="{name}.data"',
+            f':layout="{name}.layout"',
+            *options,
+            'style="width: 100%; height: 100%"',
+        ],
+    )
 
 
 def aria(attribute: str, value: str) -> dict[str, list[str]]:
@@ -82,10 +85,12 @@ def pictured(words: str) -> dict[str, list[str]]:
 def _keys(session: Session) -> None:
     """Shortcuts; plain Tab and Enter work without them."""
     acts: dict[str, Any] = {
-        "next": lambda: session.shown.next_sensor(1), "previous": lambda: session.shown.next_sensor(-1),
-        "diagnose": lambda: started(session.diagnose()), "undo": lambda: started(session.undo()),
+        "next": lambda: session.shown.next_sensor(1),
+        "previous": lambda: session.shown.next_sensor(-1),
+        "diagnose": lambda: started(session.diagnose()),
+        "undo": lambda: started(session.undo()),
         "report": lambda: started(session.report()),
-    }  # fmt: skip
+    }
     trap = extra.MouseTrap(**acts)
     for key, name in KEYS:
         trap.bind(key, name)
@@ -98,19 +103,23 @@ def _bar(session: Session) -> None:
         with html.Span(v_for="e in effects", key="e", classes="chip strong"):
             html.Span("+ {{ e }}")
             v3.VBtn(
-                icon="mdi-close", size="x-small", variant="text", disabled=("busy",), click=(
-                    lambda effect: started(session.step("remove", str(effect))), "[e]"),
+                icon="mdi-close",
+                size="x-small",
+                variant="text",
+                disabled=("busy",),
+                click=(lambda effect: started(session.step("remove", str(effect))), "[e]"),
                 **aria(":aria-label", "'take out ' + e"),
-            )  # fmt: skip
+            )
         v3.VSpacer()
         _button("Undo", "undo", "mdi-undo", lambda: started(session.undo()), "busy || !can_undo")
         _button("Calibrate", "calibrate", "mdi-tune", lambda: started(session.step("calibrate")), "busy")
         _button("Report", "report", "mdi-file-document-outline", lambda: started(session.report()), "busy")
         html.A("open report", v_if=("report",), href=("report",), target="_blank", id="report-link", rel="noopener")
         v3.VBtn(
-            icon=("dark ? 'mdi-weather-sunny' : 'mdi-weather-night'",), click=session.paper,
+            icon=("dark ? 'mdi-weather-sunny' : 'mdi-weather-night'",),
+            click=session.paper,
             **aria(":aria-label", "dark ? 'light page' : 'dark page'"),
-        )  # fmt: skip
+        )
 
 
 def _button(text: str, name: str, icon: str, act: Any, disabled: str) -> None:
@@ -124,11 +133,22 @@ def _machine(session: Session) -> None:
     with html.Div(classes="card machine"):
         with html.Div(classes="row"):
             v3.VSelect(
-                v_model=("test",), items=("test_names",), label="test", density="compact", hide_details=True,
-                variant="outlined", style="max-width: 14rem", id="test",
-            )  # fmt: skip
-            html.Span("the machine of revision {{ revision }} is being prepared: {{ preparing }}", v_if=("preparing",),
-                      classes="faint", id="preparing", **aria("role", "status"))  # fmt: skip
+                v_model=("test",),
+                items=("test_names",),
+                label="test",
+                density="compact",
+                hide_details=True,
+                variant="outlined",
+                style="max-width: 14rem",
+                id="test",
+            )
+            html.Span(
+                "the machine of revision {{ revision }} is being prepared: {{ preparing }}",
+                v_if=("preparing",),
+                classes="faint",
+                id="preparing",
+                **aria("role", "status"),
+            )
         if session.bench.why_flat:
             html.P("{{ why_flat }}", classes="flat")
             return
@@ -140,8 +160,13 @@ def _machine(session: Session) -> None:
             ':data-limits="JSON.stringify(limits)"',
             ":title=\"'the machine: ' + test\"",
         ]
-        html.Iframe(v_if=("viewer",), src=("viewer",), classes="view", id="viewer",
-                    raw_attrs=[*attributes, "@pick=\"trigger('pick', [$event.detail])\""])  # fmt: skip
+        html.Iframe(
+            v_if=("viewer",),
+            src=("viewer",),
+            classes="view",
+            id="viewer",
+            raw_attrs=[*attributes, "@pick=\"trigger('pick', [$event.detail])\""],
+        )
         html.Div(v_if=("!viewer",), classes="view waiting", **aria("aria-hidden", "true"))
 
 
@@ -160,18 +185,34 @@ def _messages(session: Session) -> None:
             html.B("{{ job.title }}")
             html.Span("{{ job.message }}", classes="faint", id="job-message")
             v3.VProgressLinear(
-                model_value=("job.percent || 0",), indeterminate=("job.percent === null",), color="primary", height=8,
-                id="progress", **aria("aria-label", "progress"),
-            )  # fmt: skip
+                model_value=("job.percent || 0",),
+                indeterminate=("job.percent === null",),
+                color="primary",
+                height=8,
+                id="progress",
+                **aria("aria-label", "progress"),
+            )
             v3.VBtn("Stop", click=session.stop, size="small", variant="outlined", id="stop")
         with html.Div(v_if=("error",), classes="card bad", id="error", **aria("role", "alert")):
             html.Span("{{ error }}")
-            v3.VBtn("Take over", click=lambda: started(session.take_over()), size="small", variant="outlined",
-                    v_if=("error.includes('take over')",), id="take-over")  # fmt: skip
+            v3.VBtn(
+                "Take over",
+                click=lambda: started(session.take_over()),
+                size="small",
+                variant="outlined",
+                v_if=("error.includes('take over')",),
+                id="take-over",
+            )
         with html.Div(v_if=("outcome",), classes=("'card ' + (outcome.good ? 'good' : 'warn')",), id="outcome"):
             html.Span("{{ outcome.text }}")
-            v3.VBtn("Keep it anyway", click=lambda: started(session.keep_anyway()), size="small", variant="outlined",
-                    v_if=("!outcome.good",), id="anyway")  # fmt: skip
+            v3.VBtn(
+                "Keep it anyway",
+                click=lambda: started(session.keep_anyway()),
+                size="small",
+                variant="outlined",
+                v_if=("!outcome.good",),
+                id="anyway",
+            )
 
 
 def _errors() -> None:
@@ -181,8 +222,11 @@ def _errors() -> None:
         html.P("all: {{ rms }} K; the sensors' own uncertainty explains {{ floor }} K", v_if=("rms",), classes="faint")
         _skeleton("test_names.length")
         with html.Div(
-            v_for="t in tests", key="t.name", classes=("'bar' + (t.role === 'hold-out' ? ' held' : '')",),
-            id=("'error-' + t.name",),         ):  # fmt: skip
+            v_for="t in tests",
+            key="t.name",
+            classes=("'bar' + (t.role === 'hold-out' ? ' held' : '')",),
+            id=("'error-' + t.name",),
+        ):
             html.Span("{{ t.name }} ({{ t.role }})", classes="name")
             with html.Span(classes="track"):
                 html.Span(classes="was", style=("{ width: t.was + '%' }",))
@@ -201,11 +245,14 @@ def _sensors(session: Session) -> None:
         html.P(RULE, classes="faint")
         _skeleton("8")
         with html.Button(
-            v_for="s in sensors", key="s.name", type="button",
-            classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",), id=("'sensor-' + s.name",),
+            v_for="s in sensors",
+            key="s.name",
+            type="button",
+            classes=("'bar sensor ' + s.tone + (s.name === sensor ? ' chosen' : '')",),
+            id=("'sensor-' + s.name",),
             click=(lambda name: session.shown.select(str(name)), "[s.name]"),
             **aria(":aria-pressed", "s.name === sensor"),
-        ):  # fmt: skip
+        ):
             html.Span("{{ s.label }}", classes="name", title=("s.place",))
             with html.Span(classes="track"):
                 html.Span(classes="now", style=("{ width: s.width + '%' }",))
@@ -216,8 +263,15 @@ def _missing(session: Session) -> None:
     with html.Div(classes="card", id="missing"):
         html.H2("What is missing?")
         with html.Div(classes="row"):
-            v3.VBtn("Diagnose", id="diagnose", color="primary", variant="flat", prepend_icon="mdi-magnify",
-                    click=lambda: started(session.diagnose()), disabled=("busy",))  # fmt: skip
+            v3.VBtn(
+                "Diagnose",
+                id="diagnose",
+                color="primary",
+                variant="flat",
+                prepend_icon="mdi-magnify",
+                click=lambda: started(session.diagnose()),
+                disabled=("busy",),
+            )
         with html.Div(v_if=("verdict",)):
             html.P("{{ verdict.sentence }}", classes=("'verdict ' + verdict.tone",), id="verdict")
             html.P("{{ verdict.words }}", classes="faint")
@@ -251,8 +305,7 @@ def _recordings(session: Session) -> None:
                         "@change=\"trigger('edit_dropped', ['constant', n, $event.target.value])\"",
                     ]
                 )
-            _button("Make a case of them", "make-case", "mdi-folder-plus",
-                    lambda: started(session.make_case()), "busy")  # fmt: skip
+            _button("Make a case of them", "make-case", "mdi-folder-plus", lambda: started(session.make_case()), "busy")
             _button("Not these", "not-these", "mdi-close", lambda: session.show_dropped(None), "busy")
 
 
@@ -261,9 +314,15 @@ def _channels() -> None:
     on_change = "@change=\"trigger('edit_dropped', ['move', c.key, $event.target.value])\""
     with html.Div(classes="scroll"), html.Table(), html.Tbody(), html.Tr(v_for="c in drop.columns", key="c.key"):
         with html.Td():
-            html.Span("{{ c.name }}", classes="chip", id=("'column-' + c.name",), raw_attrs=[
-                'draggable="true"', "@dragstart=\"dragged = c.key; $event.dataTransfer.setData('text/plain', c.key)\""
-            ])  # fmt: skip
+            html.Span(
+                "{{ c.name }}",
+                classes="chip",
+                id=("'column-' + c.name",),
+                raw_attrs=[
+                    'draggable="true"',
+                    "@dragstart=\"dragged = c.key; $event.dataTransfer.setData('text/plain', c.key)\"",
+                ],
+            )
         with (
             html.Td(),
             html.Select(raw_attrs=[':value="c.goes"', ":aria-label=\"'where ' + c.name + ' is'\"", on_change]),
@@ -277,10 +336,16 @@ def _channels() -> None:
 def _targets() -> None:
     """Parts, surroundings and inputs of the model, to drop channels on."""
     drop = "@drop.prevent.stop=\"trigger('edit_dropped', ['move', dragged, p.name])\""
-    with html.Div(classes="targets"), html.Div(
-        v_for="p in drop.parts", key="p.name", classes=("'target ' + p.kind",), id=("'part-' + p.name",),
-        raw_attrs=['@dragover.prevent=""', drop],
-    ):  # fmt: skip
+    with (
+        html.Div(classes="targets"),
+        html.Div(
+            v_for="p in drop.parts",
+            key="p.name",
+            classes=("'target ' + p.kind",),
+            id=("'part-' + p.name",),
+            raw_attrs=['@dragover.prevent=""', drop],
+        ),
+    ):
         html.B("{{ p.name }}")
         html.Span("{{ p.columns.join(', ') }}")
 
@@ -297,11 +362,15 @@ def _candidates(session: Session) -> None:
                 html.Div("looks like {{ c.alike }}", v_if=("c.alike",), classes="faint")
             with html.Td():
                 v3.VBtn(
-                    "Add", size="small", variant=("c.decision === 'no' ? 'text' : 'flat'",),
-                    color=("c.decision === 'no' ? '' : 'primary'",), disabled=("busy || c.inside",),
+                    "Add",
+                    size="small",
+                    variant=("c.decision === 'no' ? 'text' : 'flat'",),
+                    color=("c.decision === 'no' ? '' : 'primary'",),
+                    disabled=("busy || c.inside",),
                     click=(lambda effect: started(session.step("add", str(effect))), "[c.effect]"),
-                    id=("'add-' + c.effect",), **aria(":aria-label", "'add ' + c.effect"),
-                )  # fmt: skip
+                    id=("'add-' + c.effect",),
+                    **aria(":aria-label", "'add ' + c.effect"),
+                )
             with html.Td(), html.Span(classes="evidence", title=("'probability ' + c.score",)):
                 html.Span(classes="now", style=("{ width: c.width + '%' }",))
             with html.Td():

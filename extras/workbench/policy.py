@@ -27,10 +27,18 @@ def report_policy() -> str:
     """Of the report: no script but the viewer's, which runs in a frame of its own."""
     from thermoscope.plugin import script
 
-    return "; ".join([
-        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'",
-        "img-src 'self' data:", "font-src data:", "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'",
-    ])  # fmt: skip
+    return "; ".join(
+        [
+            "default-src 'none'",
+            f"script-src {_named(script().encode())}",
+            "style-src 'unsafe-inline'",
+            "img-src 'self' data:",
+            "font-src data:",
+            "base-uri 'none'",
+            "form-action 'none'",
+            "frame-ancestors 'none'",
+        ]
+    )
 
 
 @cache
@@ -38,17 +46,34 @@ def viewer_policy() -> str:
     """Of the viewer: its one script, inside a page of ours."""
     from thermoscope.plugin import script
 
-    return "; ".join([
-        "default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'", "base-uri 'none'",
-        "form-action 'none'", "frame-ancestors 'self'",
-    ])  # fmt: skip
+    return "; ".join(
+        [
+            "default-src 'none'",
+            f"script-src {_named(script().encode())}",
+            "style-src 'unsafe-inline'",
+            "base-uri 'none'",
+            "form-action 'none'",
+            "frame-ancestors 'self'",
+        ]
+    )
 
 
 def policy(page: Path, host: str) -> str:
     """Of a page of trame: its own scripts and socket. 'unsafe-eval': Vue compiles its templates in the browser."""
-    return "; ".join([
-        "default-src 'none'", f"script-src 'self' 'unsafe-eval' {hashes(page)}", "style-src 'self' 'unsafe-inline'",
-        "img-src 'self' data: blob:", "font-src 'self' data:", f"connect-src 'self' blob: ws://{host} wss://{host}",
-        "worker-src 'self' blob:", "manifest-src 'self'", "base-uri 'self'", "form-action 'none'", "object-src 'none'",
-        "frame-src 'self'", "frame-ancestors 'none'",
-    ])  # fmt: skip
+    return "; ".join(
+        [
+            "default-src 'none'",
+            f"script-src 'self' 'unsafe-eval' {hashes(page)}",
+            "style-src 'self' 'unsafe-inline'",
+            "img-src 'self' data: blob:",
+            "font-src 'self' data:",
+            f"connect-src 'self' blob: ws://{host} wss://{host}",
+            "worker-src 'self' blob:",
+            "manifest-src 'self'",
+            "base-uri 'self'",
+            "form-action 'none'",
+            "object-src 'none'",
+            "frame-src 'self'",
+            "frame-ancestors 'none'",
+        ]
+    )

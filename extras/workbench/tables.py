@@ -17,12 +17,15 @@ def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[R
     """A bar per test: error (K), its length as a share of `scale`, and the error before the last step."""
     return [
         {
-            "name": t["name"], "role": t["role"], "rmse": f"{t['rmse_K']:.2f}",
-            "width": percent(t["rmse_K"], scale), "was": percent(before.get(t["name"], t["rmse_K"]), scale),
+            "name": t["name"],
+            "role": t["role"],
+            "rmse": f"{t['rmse_K']:.2f}",
+            "width": percent(t["rmse_K"], scale),
+            "was": percent(before.get(t["name"], t["rmse_K"]), scale),
             "before": f"{before[t['name']]:.2f}" if t["name"] in before else "",
         }
         for t in look.errors["tests"]
-    ]  # fmt: skip
+    ]
 
 
 def channels(look: Appearance, test: str, scale: float) -> list[Row]:
@@ -30,20 +33,26 @@ def channels(look: Appearance, test: str, scale: float) -> list[Row]:
     tone = {s.name: s.verdict for s in sensors(look.curves[test], dict.fromkeys(_names(look, test), (0.0, 0.0, 0.0)))}
     return [
         {
-            "name": c["channel"], "label": short(c["channel"]), "place": c["place"], "rmse": f"{c['rmse_K']:.2f}",
-            "width": percent(c["rmse_K"], scale), "sigma": f"{c['sigma_K']:.2g}", "verdict": c["verdict"],
+            "name": c["channel"],
+            "label": short(c["channel"]),
+            "place": c["place"],
+            "rmse": f"{c['rmse_K']:.2f}",
+            "width": percent(c["rmse_K"], scale),
+            "sigma": f"{c['sigma_K']:.2g}",
+            "verdict": c["verdict"],
             "tone": "within" if c["verdict"] == "within" else tone.get(c["channel"], "unknown"),
         }
         for c in look.test(test)["channels"]
-    ]  # fmt: skip
+    ]
 
 
 def worst(look: Appearance) -> tuple[str, str]:
     """(test, channel) with the largest error against its limit, never-used tests first."""
     errors = [
         (t["role"] == "hold-out", c["rmse_K"] / c["limit_K"], t["name"], c["channel"])
-        for t in look.errors["tests"] for c in t["channels"]
-    ]  # fmt: skip
+        for t in look.errors["tests"]
+        for c in t["channels"]
+    ]
     return max(errors)[2:]
 
 
@@ -66,14 +75,20 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
     """The table of a diagnosis, best first."""
     return [
         {
-            "effect": c["effect"], "title": c.get("title", ""), "score": f"{100 * c['probability']:.0f} %",
+            "effect": c["effect"],
+            "title": c.get("title", ""),
+            "score": f"{100 * c['probability']:.0f} %",
             "width": percent(c["probability"], 1.0),
-            "amplitude": amplitude(c), "error": arrow(c["rmse_K"]), "held": arrow(c["holdout_rmse_K"]),
-            "alike": ", ".join(c["confused_with"][:3]), "decision": c["decision"],
-            "test": c.get("isolating_test", ""), "inside": c["effect"] in effects,
+            "amplitude": amplitude(c),
+            "error": arrow(c["rmse_K"]),
+            "held": arrow(c["holdout_rmse_K"]),
+            "alike": ", ".join(c["confused_with"][:3]),
+            "decision": c["decision"],
+            "test": c.get("isolating_test", ""),
+            "inside": c["effect"] in effects,
         }
         for c in diagnosis["candidates"][:MOST_ROWS]
-    ]  # fmt: skip
+    ]
 
 
 def conclusion(diagnosis: Mapping[str, Any]) -> Row:

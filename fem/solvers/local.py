@@ -38,10 +38,7 @@ def local_solutions(
             A = sp.csr_array(rows[:, block.dofs])
             order[part] = order.get(part) or analyse(A, block.xyz)
             inverse = factorise(A, order[part])
-            solutions[part] += [
-                inverse(A @ state[block.dofs] - rows @ state),
-                of_unit_energy(inverse(units[part]), A),
-            ]
+            solutions[part] += [inverse(A @ state[block.dofs] - rows @ state), of_unit_energy(inverse(units[part]), A)]
     return {part: np.hstack(fields) for part, fields in solutions.items()}
 
 

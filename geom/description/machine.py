@@ -12,9 +12,19 @@ from geom.description.part import Part, Port
 from geom.errors import InputError
 
 SECTIONS = (
-    "machine", "ratings", "geometry", "materials", "contacts", "films", "losses", "fans", "cooling", "sensors",
-    "calibration", "bases",
-)  # fmt: skip
+    "machine",
+    "ratings",
+    "geometry",
+    "materials",
+    "contacts",
+    "films",
+    "losses",
+    "fans",
+    "cooling",
+    "sensors",
+    "calibration",
+    "bases",
+)
 
 
 @dataclass(frozen=True)

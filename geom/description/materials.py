@@ -119,9 +119,13 @@ def winding_conductivity(fill: float, k_conductor: float, k_resin: float) -> tup
 
 
 def _mixed(
-    fill: float, k_resin: float, along: float = 1.0, k_conductor: float = 385.0, impregnation: float = 1.0,
+    fill: float,
+    k_resin: float,
+    along: float = 1.0,
+    k_conductor: float = 385.0,
+    impregnation: float = 1.0,
     shape: str = "round",
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Copper wires in resin, with air where the resin is missing."""
     k_between = k_resin if impregnation >= 1.0 else _with_air(k_resin, impregnation)
     across, lengthwise = winding_conductivity(fill, k_conductor, k_between)

@@ -20,8 +20,13 @@ Length = tuple[str, float, float]  # what, from, to (m)
 def diameters(machine: Machine) -> list[Diameter]:
     """Round things, smallest first."""
     parts = {part.name: part for part in machine.parts}
-    word_of = {"shaft": "shaft", "bearing.left": "bearing", "rotor.core": "rotor", "yoke": "yoke",
-             "stator.core": "laminations"}  # fmt: skip
+    word_of = {
+        "shaft": "shaft",
+        "bearing.left": "bearing",
+        "rotor.core": "rotor",
+        "yoke": "yoke",
+        "stator.core": "laminations",
+    }
     by_word = {word: 2 * _radius(parts[name]) for name, word in word_of.items() if name in parts}
     if "rotor" in by_word and (stator := getattr(machine.geometry, "stator", None)):
         by_word["bore"] = by_word["rotor"] + 2 * stator.air_gap

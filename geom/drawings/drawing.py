@@ -61,24 +61,29 @@ def drawing_of(machine: Machine, at_z: float | None = None) -> str:
     shift = views.width / 2 + gap - z0
     body = [
         *views.across(),
-        f'<g transform="translate({shift:.1f} 0)">', *views.along(), *_along(machine, views, pen), "</g>",
+        f'<g transform="translate({shift:.1f} 0)">',
+        *views.along(),
+        *_along(machine, views, pen),
+        "</g>",
         pen.level(-views.width / 2, views.width / 2, 2.2 * unit - low, -low, f"{views.width:.0f}"),
         pen.upright(-high, -low, views.width / 2 + 2 * unit, views.width / 2, f"{high - low:.0f}"),
-    ]  # fmt: skip
+    ]
     left, top, bottom = -views.width / 2 - 2 * unit, -high - 2 * unit, -low + (2.2 * len(lengths(machine)) + 2) * unit
     legend = list(_legend(machine, views, pen, left + 2 * unit, bottom))
     width, height = views.width + gap + z1 - z0 + 5 * unit, bottom + 1.6 * unit * len(legend) - top
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}" '
-        f'font-family="sans-serif" font-size="{unit:.1f}">',
-        f"<title>{escape(machine.name)}: section at z = {views.z * mm:.0f} mm, and along the axis; mm</title>",
-        '<marker id="tip" viewBox="-10 -3 10 6" markerWidth="9" markerHeight="5" orient="auto-start-reverse">'
-        '<path d="M-10 -2.5L0 0L-10 2.5Z"/></marker>',
-        f'<rect x="{left:.1f}" y="{top:.1f}" width="100%" height="100%" fill="white"/>',
-        *body,
-        *legend,
-        "</svg>\n",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}" '
+            f'font-family="sans-serif" font-size="{unit:.1f}">',
+            f"<title>{escape(machine.name)}: section at z = {views.z * mm:.0f} mm, and along the axis; mm</title>",
+            '<marker id="tip" viewBox="-10 -3 10 6" markerWidth="9" markerHeight="5" orient="auto-start-reverse">'
+            '<path d="M-10 -2.5L0 0L-10 2.5Z"/></marker>',
+            f'<rect x="{left:.1f}" y="{top:.1f}" width="100%" height="100%" fill="white"/>',
+            *body,
+            *legend,
+            "</svg>\n",
+        ]
+    )
 
 
 def _middle(machine: Machine) -> float:
@@ -123,14 +128,16 @@ def thumbnail_of(machine: Machine) -> str:
     margin = 0.04 * framed.width
     low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
     wide = framed.width + 2 * margin
-    text = "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
-        'width="320" height="160">',
-        f"<title>{escape(machine.name)}</title>",
-        *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
-        *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
-        "</svg>\n",
-    ])  # fmt: skip
+    text = "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
+            'width="320" height="160">',
+            f"<title>{escape(machine.name)}</title>",
+            *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
+            *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
+            "</svg>\n",
+        ]
+    )
     return re.sub(r"(\.\d)\d+", r"\1", text)
 
 

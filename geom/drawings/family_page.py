@@ -35,26 +35,28 @@ def family_page(family: Family, picture: str) -> str:
     """Markdown; `picture` is the path of the drawing as seen from the page."""
     shipped = [name for name in library() if load_machine(name).family == family.name]
     free, measured = (_rows(family, scaled) for scaled in (False, True))
-    return "\n".join([
-        f"# Family `{family.name}`",
-        "",
-        f"{family.doc}. Machines in the library: {', '.join(f'`{name}`' for name in shipped)}.",
-        "",
-        f"![Sections across and along the axis of the default machine, mm]({picture})",
-        "",
-        *(_JACKETS if any(p.name == "port_mm" for p in family.parameters) else ()),
-        "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a share or a word.",
-        "",
-        "| parameter | default | allowed | meaning |",
-        "|---|---|---|---|",
-        *free,
-        "",
-        *_MEASURED,
-        "| ratio | default | allowed | or | default | allowed | meaning |",
-        "|---|---|---|---|---|---|---|",
-        *measured,
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"# Family `{family.name}`",
+            "",
+            f"{family.doc}. Machines in the library: {', '.join(f'`{name}`' for name in shipped)}.",
+            "",
+            f"![Sections across and along the axis of the default machine, mm]({picture})",
+            "",
+            *(_JACKETS if any(p.name == "port_mm" for p in family.parameters) else ()),
+            "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a share or a word.",
+            "",
+            "| parameter | default | allowed | meaning |",
+            "|---|---|---|---|",
+            *free,
+            "",
+            *_MEASURED,
+            "| ratio | default | allowed | or | default | allowed | meaning |",
+            "|---|---|---|---|---|---|---|",
+            *measured,
+            "",
+        ]
+    )
 
 
 def _rows(family: Family, measured: bool) -> list[str]:
@@ -68,8 +70,10 @@ def _rows(family: Family, measured: bool) -> list[str]:
 def _measured(p: Parameter, usual: Geometry) -> str:
     assert p.of is not None
     ratio = (p.usual - p.of.start(usual)) / p.of.span(usual) if p.default else 0.0
-    return (f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "
-            f"| {p.doc} |")  # fmt: skip
+    return (
+        f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "
+        f"| {p.doc} |"
+    )
 
 
 def write_pages(folder: Path | str) -> list[Path]:

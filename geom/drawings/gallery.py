@@ -33,9 +33,16 @@ def catalogue() -> list[Entry]:
 def entry_of(machine: Machine) -> Entry:
     mass = sum(part.volume * machine.material_of(part.name).rho for part in machine.parts)
     return Entry(
-        machine.name, machine.family, machine.description, len(machine.parts), mass, machine.extent,
-        cooling_of(machine), machine.source, machine.assumed,
-    )  # fmt: skip
+        machine.name,
+        machine.family,
+        machine.description,
+        len(machine.parts),
+        mass,
+        machine.extent,
+        cooling_of(machine),
+        machine.source,
+        machine.assumed,
+    )
 
 
 def cooling_of(machine: Machine) -> str:

@@ -62,8 +62,9 @@ class Views:
 
     def across(self) -> list[str]:
         """The section normal to the axis."""
-        far = [_shape(part, " ".join(path(loop) for p, *_ in part.prisms for loop in p.loops), True)
-               for part in self.uncut]  # fmt: skip
+        far = [
+            _shape(part, " ".join(path(loop) for p, *_ in part.prisms for loop in p.loops), True) for part in self.uncut
+        ]
         near = [_shape(part, " ".join(path(loop) for loop in p.loops)) for part in self.parts for p in self._here(part)]
         return far + [_air(path(p.outer)) for part in self.air for p in self._here(part)] + near
 
@@ -81,11 +82,7 @@ class Views:
 
     def _rectangles(self, part: Part) -> list[tuple[float, float, float, float]]:
         """z0, y0, z1, y1 (mm) of each piece that the plane along the axis cuts out of the part."""
-        return [
-            (z0 * mm, a * mm, z1 * mm, b * mm)
-            for profile, z0, z1 in part.prisms
-            for a, b in self._cuts[profile]
-        ]  # fmt: skip
+        return [(z0 * mm, a * mm, z1 * mm, b * mm) for profile, z0, z1 in part.prisms for a, b in self._cuts[profile]]
 
     def _shadows(self, part: Part) -> list[Any]:
         import shapely

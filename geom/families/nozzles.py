@@ -60,15 +60,22 @@ class Nozzle:
     @property
     def drill(self) -> Rod:
         """The round bore, through wall and tube."""
-        return Rod(self.angle, self.z, (self.channel + self.wall) / 2 - 0.6 * (self.wall - self.channel),
-                   self.tip + 0.001, self.bore)  # fmt: skip
+        return Rod(
+            self.angle,
+            self.z,
+            (self.channel + self.wall) / 2 - 0.6 * (self.wall - self.channel),
+            self.tip + 0.001,
+            self.bore,
+        )
 
     def part(self, material: str = "aluminium-cast") -> Part:
         half, out = self.side / 2, TUBE * self.side / 2
         low, high = self.span
         whole = Profile(shapes.strip_loop(self.wall, self.tip, -out, out)).rotated(self.angle)
-        sides = [Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
-                 for y in ((-out, -half), (half, out))]  # fmt: skip
+        sides = [
+            Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
+            for y in ((-out, -half), (half, out))
+        ]
         prisms = ((whole, self.z - out, low), *((side, low, high) for side in sides), (whole, high, self.z + out))
         return Part(f"{self.name}.tube", material, prisms, cad_shape=self._tube(), role=Role.HOUSING)
 
@@ -87,14 +94,21 @@ def bored_ring(inner: float, outer: float, bored: Sequence[Nozzle]) -> list[Prof
 
 def _between(inner: float, outer: float, here: Nozzle, following: Nozzle) -> Profile:
     """The ring from one gap, anticlockwise, to the next; each arc in two, as it may be longer than half a turn."""
-    (a, b), (p, q) = ([n.angle + s * math.asin(n.side / 2 / r) for n, s in ((here, 1), (following, -1))]
-                      for r in (outer, inner))  # fmt: skip
+    (a, b), (p, q) = (
+        [n.angle + s * math.asin(n.side / 2 / r) for n, s in ((here, 1), (following, -1))] for r in (outer, inner)
+    )
     out, back = ((end - start) % (2 * math.pi) / 2 for start, end in ((a, b), (p, q)))
     far, near = shapes.bulge_of(out), shapes.bulge_of(-back)
-    return Profile((
-        shapes.polar(outer, a, far), shapes.polar(outer, a + out, far), shapes.polar(outer, b),
-        shapes.polar(inner, q, near), shapes.polar(inner, q - back, near), shapes.polar(inner, p),
-    ))  # fmt: skip
+    return Profile(
+        (
+            shapes.polar(outer, a, far),
+            shapes.polar(outer, a + out, far),
+            shapes.polar(outer, b),
+            shapes.polar(inner, q, near),
+            shapes.polar(inner, q - back, near),
+            shapes.polar(inner, p),
+        )
+    )
 
 
 def bored_circle(
@@ -108,8 +122,11 @@ def bored_circle(
     for i, loop in enumerate(loops):
         here, following = ends[2 * i + 1], ends[(2 * i + 2) % len(ends)]
         sweep = (following - here) % (2 * math.pi)
-        out += [*loop, shapes.polar(outer, here, shapes.bulge_of(sweep / 2)),
-                shapes.polar(outer, here + sweep / 2, shapes.bulge_of(sweep / 2))]  # fmt: skip
+        out += [
+            *loop,
+            shapes.polar(outer, here, shapes.bulge_of(sweep / 2)),
+            shapes.polar(outer, here + sweep / 2, shapes.bulge_of(sweep / 2)),
+        ]
     return tuple(out)
 
 
@@ -140,6 +157,4 @@ def slices(z0: float, z1: float, nozzles: Sequence[Nozzle]) -> list[tuple[float,
 def too_near(nozzles: Sequence[Nozzle]) -> bool:
     """Whether tubes of two ports meet."""
     points = [n.port.position for n in nozzles]
-    return any(
-        math.dist(a, b) < 1.1 * TUBE * nozzles[0].bore for i, a in enumerate(points) for b in points[:i]
-    )  # fmt: skip
+    return any(math.dist(a, b) < 1.1 * TUBE * nozzles[0].bore for i, a in enumerate(points) for b in points[:i])

@@ -28,8 +28,11 @@ def remedy(family: Family, table: Table, refusal: InputError) -> str:
     trials = list(_trials(family, table))
     trials.sort(key=lambda trial: f"[geometry.{trial[0].group}] {trial[0].name}" != refusal.where)
     answers = [(p, key, value, _refusal(family, _changed(table, p, key, value))) for p, key, value in trials]
-    for word, holds in (("fits", lambda e: e is None), ("is a beginning", lambda e: e.where != refusal.where),
-                        ("is a beginning", lambda e: True)):  # fmt: skip
+    for word, holds in (
+        ("fits", lambda e: e is None),
+        ("is a beginning", lambda e: e.where != refusal.where),
+        ("is a beginning", lambda e: True),
+    ):
         for p, key, value, answer in answers:
             if holds(answer):
                 return f"[geometry.{p.group}] {key} = {value} {word}"

@@ -20,22 +20,33 @@ mm = 1e3
 
 
 def fan_parameters(
-    plate: str, of: Mapping[str, Callable[[float, float], Scale]], diameter: float, cowl: float, hub: float,
+    plate: str,
+    of: Mapping[str, Callable[[float, float], Scale]],
+    diameter: float,
+    cowl: float,
+    hub: float,
     within: float,
-) -> tuple[Parameter, ...]:  # fmt: skip
+) -> tuple[Parameter, ...]:
     """[geometry.fan] of a family whose fan stands before the left `plate`.
 
     diameter, cowl, hub : their usual lengths (mm);  within : largest share of what the family measures the cowl in
     of : what depth, wall, cowl and hub are measured in
     """
     return (
-        P("fan.depth_mm", 0.0, 0.0, 500.0, f"cowl with a fan on the shaft, in front of the left {plate}; 0 is none",
-          off=True, of=of["depth"](0.1, 0.5)),
+        P(
+            "fan.depth_mm",
+            0.0,
+            0.0,
+            500.0,
+            f"cowl with a fan on the shaft, in front of the left {plate}; 0 is none",
+            off=True,
+            of=of["depth"](0.1, 0.5),
+        ),
         P("fan.cowl_mm", cowl, 0.5, 20.0, "wall of the cowl", of=of["wall"](0.003, 0.02)),
         P("fan.diameter_mm", diameter, 20.0, 2500.0, "inside of the cowl", of=of["cowl"](0.3, within)),
         P("fan.hub_diameter_mm", hub, 6.0, 800.0, "hub of the fan on the shaft", of=of["hub"](0.05, 0.6)),
         P("fan.blades", 7, 2, 24, "blades of the fan"),
-    )  # fmt: skip
+    )
 
 
 def shaft_fan(fan: Group, shaft: float, z0: float, z1: float) -> tuple[Part, ...]:
@@ -62,11 +73,22 @@ def fan_rules(fan: Group, shaft: float, seat: float, shield: float) -> tuple[Rul
     if not fan.depth:
         return ()
     return (
-        (fan.diameter > 1.02 * seat, "fan.diameter_mm", fan.diameter * mm,
-         f"more than {1.02 * seat * mm:.4g} mm, to stand on the flange"),
-        (fan.diameter + 2 * fan.cowl < shield, "fan.diameter_mm", fan.diameter * mm,
-         f"less than {(shield - 2 * fan.cowl) * mm:.4g} mm, the flange"),
-        (1.05 * shaft < fan.hub_diameter < 0.9 * fan.diameter, "fan.hub_diameter_mm",
-         fan.hub_diameter * mm,
-         f"from {1.05 * shaft * mm:.4g} to {0.9 * fan.diameter * mm:.4g} mm"),
-    )  # fmt: skip
+        (
+            fan.diameter > 1.02 * seat,
+            "fan.diameter_mm",
+            fan.diameter * mm,
+            f"more than {1.02 * seat * mm:.4g} mm, to stand on the flange",
+        ),
+        (
+            fan.diameter + 2 * fan.cowl < shield,
+            "fan.diameter_mm",
+            fan.diameter * mm,
+            f"less than {(shield - 2 * fan.cowl) * mm:.4g} mm, the flange",
+        ),
+        (
+            1.05 * shaft < fan.hub_diameter < 0.9 * fan.diameter,
+            "fan.hub_diameter_mm",
+            fan.hub_diameter * mm,
+            f"from {1.05 * shaft * mm:.4g} to {0.9 * fan.diameter * mm:.4g} mm",
+        ),
+    )

@@ -45,8 +45,15 @@ def _angles(helix: Helix) -> list[float]:
     """Where it is cut, from its start (rad): where an edge meets an end plane, and between."""
     end, slant = 2 * math.pi * helix.turns, 2 * math.pi * (helix.width - helix.blunt) / helix.pitch
     bends = sorted({0.0, slant, end - slant, end})
-    return [0.0, *(a + (b - a) * i / n for a, b in pairwise(bends) for n in [math.ceil((b - a) / _SPAN)]
-                   for i in range(1, n + 1))]  # fmt: skip
+    return [
+        0.0,
+        *(
+            a + (b - a) * i / n
+            for a, b in pairwise(bends)
+            for n in [math.ceil((b - a) / _SPAN)]
+            for i in range(1, n + 1)
+        ),
+    ]
 
 
 class _Cut:

@@ -78,8 +78,9 @@ def accurate_network(
     mesh = chosen_mesh(on_all(machine), accuracy, first, progress)
     say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}")
     how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
-    size = smallest_network(machine, left, how.size_m, how.segments, progress=progress, across=how.across,
-                             axial_m=how.axial_m)  # fmt: skip
+    size = smallest_network(
+        machine, left, how.size_m, how.segments, progress=progress, across=how.across, axial_m=how.axial_m
+    )
     return replace(size, mesh=mesh)
 
 
@@ -90,10 +91,18 @@ def needs(unknowns: int) -> str:
 
 
 def smallest_network(
-    machine: Machine, accuracy: float, size_m: float = 0.06, segments: int = 48, recipe: Recipe = FINE,
-    progress: Progress = silent, rounds: int = ROUNDS, across: float = ACROSS, axial_m: float | None = None,
-    points_each: int = POINTS_EACH, contact_factors: Sequence[float] = CONTACT_FACTORS,
-) -> NetworkSize:  # fmt: skip
+    machine: Machine,
+    accuracy: float,
+    size_m: float = 0.06,
+    segments: int = 48,
+    recipe: Recipe = FINE,
+    progress: Progress = silent,
+    rounds: int = ROUNDS,
+    across: float = ACROSS,
+    axial_m: float | None = None,
+    points_each: int = POINTS_EACH,
+    contact_factors: Sequence[float] = CONTACT_FACTORS,
+) -> NetworkSize:
     """Build at several sizes and keep the smallest that is accurate enough; if none is, learn from where it fails.
 
     points_each : random points, and extreme ones, at which every size is checked;  contact_factors : times all contacts

@@ -108,9 +108,13 @@ class Prepared:
 
 
 def prepared(
-    machine: Machine, size_m: float, segments: int, progress: Progress = silent, axial_m: float | None = None,
+    machine: Machine,
+    size_m: float,
+    segments: int,
+    progress: Progress = silent,
+    axial_m: float | None = None,
     across: float = ACROSS,
-) -> Prepared:  # fmt: skip
+) -> Prepared:
     """Mesh and conduction; axial_m : thickest layer along the axis (m), None for 0.75 size_m; all as for build_mesh."""
     axial = AXIAL * size_m if axial_m is None else axial_m
     return meshed(machine, Meshing(size_m, segments, across, axial), progress)
@@ -152,9 +156,13 @@ def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = 
 
 
 def build(
-    machine: Machine, size_m: float = 0.06, segments: int = 48, recipe: Recipe = CASE, progress: Progress = silent,
+    machine: Machine,
+    size_m: float = 0.06,
+    segments: int = 48,
+    recipe: Recipe = CASE,
+    progress: Progress = silent,
     axial_m: float | None = None,
-) -> Built:  # fmt: skip
+) -> Built:
     """Everything from the machine file to the network, at one mesh size; once for each machine in a process."""
     key = hashlib.sha256(pickle.dumps((machine, size_m, segments, recipe, axial_m))).digest()
     if key not in _built:
@@ -183,7 +191,7 @@ _built: dict[bytes, Built] = {}  # by content: nothing that is asked for has cha
 
 def _anew(
     machine: Machine, size_m: float, segments: int, recipe: Recipe, progress: Progress, axial_m: float | None
-) -> Built:  # fmt: skip
+) -> Built:
     ready = prepared(machine, size_m, segments, progress, axial_m)
     progress("network from the field")
     reduction = reduced(ready, recipe)

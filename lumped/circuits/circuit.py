@@ -125,8 +125,10 @@ class Circuit:
         """Node -> heat capacity (J/K)."""
         out = {
             self.cell(branch, p * self.cells + c): self.heat * passes[p].duct.volume / self.cells
-            for branch, passes in self.branches.items() for p in range(len(passes)) for c in range(self.cells)
-        }  # fmt: skip
+            for branch, passes in self.branches.items()
+            for p in range(len(passes))
+            for c in range(self.cells)
+        }
         out[self.outlet] = self.heat * TANK_M3
         if self.cooler is not None:
             out[f"{self.name}.cooled"] = self.heat * TANK_M3

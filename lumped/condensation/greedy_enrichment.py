@@ -73,15 +73,24 @@ class Size:
 
     def document(self) -> dict[str, Any]:
         return {
-            "asked": self.requested, "states": len(self.network.states), "met": self.met,
-            "nominal": self.nominal.document(), "random": self.random.document(),
-        }  # fmt: skip
+            "asked": self.requested,
+            "states": len(self.network.states),
+            "met": self.met,
+            "nominal": self.nominal.document(),
+            "random": self.random.document(),
+        }
 
 
 def enrich(
-    reduction: Reduction, cases: LoadCases, accuracy: Accuracy, rounds: int = 3, points: Sequence[FullPoint] = (),
-    guides: Sequence[FullPoint] = (), fresh: int = 3, tell: Tell = lambda message: None,
-) -> Enrichment:  # fmt: skip
+    reduction: Reduction,
+    cases: LoadCases,
+    accuracy: Accuracy,
+    rounds: int = 3,
+    points: Sequence[FullPoint] = (),
+    guides: Sequence[FullPoint] = (),
+    fresh: int = 3,
+    tell: Tell = lambda message: None,
+) -> Enrichment:
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
     reduction : of reduction.py;  points : already solved, to be learned;  guides : random ones, solved too

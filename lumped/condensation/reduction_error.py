@@ -54,9 +54,13 @@ class Errors:
     def document(self) -> dict[str, Any]:
         """The three numbers and where they arise."""
         return {
-            "mean": self.mean, "hot": self.hot, "point": self.point,
-            "mean_part": self.mean_part, "hot_part": self.hot_part, "point_part": self.point_part,
-        }  # fmt: skip
+            "mean": self.mean,
+            "hot": self.hot,
+            "point": self.point,
+            "mean_part": self.mean_part,
+            "hot_part": self.hot_part,
+            "point_part": self.point_part,
+        }
 
     def __str__(self) -> str:
         return f"{self.mean:.2f}/{self.hot:.2f}/{self.point:.2f} % ({self.mean_part}, {self.hot_part})"
@@ -71,8 +75,12 @@ def worst(parts: Mapping[str, PartError]) -> Errors:
 
 def merged(errors: Sequence[Errors]) -> Errors:
     """Part by part the worst of several comparisons."""
-    return worst({part: PartError(*(max(getattr(e.parts[part], k) for e in errors) for k in ("mean", "hot", "point")))
-                  for part in errors[0].parts})  # fmt: skip
+    return worst(
+        {
+            part: PartError(*(max(getattr(e.parts[part], k) for e in errors) for k in ("mean", "hot", "point")))
+            for part in errors[0].parts
+        }
+    )
 
 
 def errors(network: Network, full: Array, x: Array, largest: float | None = None, floor: float = FLOOR) -> Errors:
@@ -149,8 +157,9 @@ def network_states(
     return out
 
 
-def point_errors(network: Network, films: Mapping[str, float], contacts: Mapping[str, float], X: Array,
-                 cases: LoadCases) -> Errors:  # fmt: skip
+def point_errors(
+    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], X: Array, cases: LoadCases
+) -> Errors:
     """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
     x, full = network_states(network, films, contacts, cases), cases.of_field(X)
     return merged([errors(network, T, states) for T, states in zip(full.T, x.T, strict=True)])

@@ -92,9 +92,14 @@ def straight_decay(share_at_end: float, x: float) -> float:
 
 
 def heiles_decaying(
-    speed: float, diameter: float, length: float, decay: Callable[[float], float], turbulence: float = 1.7,
-    fluid: Fluid | None = None, pieces: int = 20,
-) -> tuple[float, Info]:  # fmt: skip
+    speed: float,
+    diameter: float,
+    length: float,
+    decay: Callable[[float], float],
+    turbulence: float = 1.7,
+    fluid: Fluid | None = None,
+    pieces: int = 20,
+) -> tuple[float, Info]:
     """Blown fin channel whose air leaks out along its way, mean h over the fin (W/m2/K).
 
     Heiles' film of the whole channel at the speed of each of `pieces` equal lengths, averaged; decay: share of the

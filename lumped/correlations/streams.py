@@ -25,9 +25,15 @@ FINEST = 2e-3  # of a logarithm: no cell is cut further, at a jump
 
 
 def streamed(
-    of: str | None, usual: float, film: Moving, fluid: Callable[[float], Fluid], degC: float, liquid: bool,
-    value: float = 1.0, stretch: float = 0.0,
-) -> Streamed:  # fmt: skip
+    of: str | None,
+    usual: float,
+    film: Moving,
+    fluid: Callable[[float], Fluid],
+    degC: float,
+    liquid: bool,
+    value: float = 1.0,
+    stretch: float = 0.0,
+) -> Streamed:
     """value times a film over |input|, which warns beyond the range of its correlation.
 
     film : of |input| and fluid;  usual : of |input|, above 0;  degC : usual temperature, at which the range is checked

@@ -22,8 +22,9 @@ def film_tabulated(
     with within_silence():
         h = (
             float(correlation(FIRST_C + k * STEP_K + 0.5 * d, FIRST_C + k * STEP_K - 0.5 * d)[0])
-            for k in range(FILMS) for d in grid
-        )  # fmt: skip
+            for k in range(FILMS)
+            for d in grid
+        )
         return FilmTable(grid, tuple(h))
 
 

@@ -33,11 +33,20 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
     if not passes:
         raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
     out = Circuit(
-        name, read_coolant(table), table.number("at_degC", 40.0), flow, passes, inlet, of, unit,
-        int(table.number("cells", 8)), cooler, table.number("pump_efficiency", 0.5),
+        name,
+        read_coolant(table),
+        table.number("at_degC", 40.0),
+        flow,
+        passes,
+        inlet,
+        of,
+        unit,
+        int(table.number("cells", 8)),
+        cooler,
+        table.number("pump_efficiency", 0.5),
         table.word("films", "follow", ("follow", "fixed")) == "follow",
         "" if closed or "backwards_from" not in table else table.word("backwards_from", None, boundaries),
-    )  # fmt: skip
+    )
     for key in ("prior_sd", "film_prior_sd"):
         table.raw(key)
     table.close()
@@ -61,10 +70,13 @@ def _pass(table: Table, nodes: list[str]) -> Pass:
     if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
         raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
     duct = Duct(
-        1e-3 * table.number("width_mm"), 1e-3 * table.number("height_mm"),
-        table.number("length_m"), int(table.number("bends", 0)),
-        1e-3 * table.number("coil_diameter_mm", 0.0), int(table.number("parallel", 1)),
-    )  # fmt: skip
+        1e-3 * table.number("width_mm"),
+        1e-3 * table.number("height_mm"),
+        table.number("length_m"),
+        int(table.number("bends", 0)),
+        1e-3 * table.number("coil_diameter_mm", 0.0),
+        int(table.number("parallel", 1)),
+    )
     return Pass(duct, walls)
 
 
@@ -73,9 +85,11 @@ def _cooler(table: Table, boundaries: list[str]) -> Cooler:
     flow, of, unit = _flow(inner, "air_flow")
     carries = air(AIR_AT_C).rho * air(AIR_AT_C).cp
     out = Cooler(
-        1e-3 * inner.number("volume_l"), inner.number("UA_W_K"), inner.word("air", None, boundaries),
+        1e-3 * inner.number("volume_l"),
+        inner.number("UA_W_K"),
+        inner.word("air", None, boundaries),
         Flow(carries * (PER_M3S[unit] if of else flow), of),
         ARRANGEMENTS[inner.word("arrangement", "crossflow", ARRANGEMENTS)],
-    )  # fmt: skip
+    )
     inner.close()
     return out

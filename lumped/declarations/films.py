@@ -89,10 +89,15 @@ def _plates(table: Table, of: Of) -> Still:
 
 
 NATURAL: dict[str, Callable[[Table, Of], Still]] = {
-    "horizontal cylinder": _cylinder, "vertical plate": _plate, "plate facing up": partial(_level, True),
-    "plate facing down": partial(_level, False), "vertical cylinder": _upright, "vertical fins": _vertical_fins,
-    "horizontal fins": _horizontal_fins, "parallel plates": _plates,
-}  # fmt: skip
+    "horizontal cylinder": _cylinder,
+    "vertical plate": _plate,
+    "plate facing up": partial(_level, True),
+    "plate facing down": partial(_level, False),
+    "vertical cylinder": _upright,
+    "vertical fins": _vertical_fins,
+    "horizontal fins": _horizontal_fins,
+    "parallel plates": _plates,
+}
 
 
 def _duct(table: Table, fluid: Fluid) -> Film:
@@ -106,9 +111,13 @@ def _fin_channel(table: Table, fluid: Fluid) -> Film:
 
     decay, turbulence = partial(straight_decay, table.number("speed_at_end", 1.0)), table.number("turbulence", 1.7)
     return partial(
-        heiles_decaying, diameter=millimetres(table, "diameter_mm"), length=_size(table), decay=decay,
-        turbulence=turbulence, fluid=fluid,
-    )  # fmt: skip
+        heiles_decaying,
+        diameter=millimetres(table, "diameter_mm"),
+        length=_size(table),
+        decay=decay,
+        turbulence=turbulence,
+        fluid=fluid,
+    )
 
 
 def _flat(table: Table, fluid: Fluid) -> Film:
@@ -137,9 +146,13 @@ def _helix(table: Table, fluid: Fluid) -> Film:
 
 
 FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
-    "plate": _flat, "cylinder": _across, "fin channel": _fin_channel, "duct": _duct, "helical pipe": _helix,
+    "plate": _flat,
+    "cylinder": _across,
+    "fin channel": _fin_channel,
+    "duct": _duct,
+    "helical pipe": _helix,
     "end space": _end_space,
-}  # fmt: skip
+}
 
 
 def over(table: Table) -> list[Law]:
@@ -152,8 +165,9 @@ def over(table: Table) -> list[Law]:
     return film_laws(table, of, lambda x: partial(_scaled, film(table, x), scale), fluid, usual, top, liquid)
 
 
-def film_laws(table: Table, of: str, film: Callable[[Fluid], Film], fluid: Of, usual_degC: float, top: float,
-              liquid: bool = False) -> list[Law]:  # fmt: skip
+def film_laws(
+    table: Table, of: str, film: Callable[[Fluid], Film], fluid: Of, usual_degC: float, top: float, liquid: bool = False
+) -> list[Law]:
     """A film over |input|: its properties hold at `fluid_degC` where the table says so, else they follow."""
     if "fluid_degC" in table:
         return [FilmOver(of, film(fluid(table.number("fluid_degC"))), top)]

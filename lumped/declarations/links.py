@@ -111,9 +111,17 @@ def _mixed(table: Table, has_area: bool) -> Read:
 
 
 MECHANISMS: dict[str, Callable[[Table, bool], Read]] = {
-    "natural": _natural, "radiation": _radiation, "forced": _forced, "gap": _gap, "rotating": _rotating,
-    "contact": _contact, "fan": _fan, "power": _power, "table": _tabled, "mixed": _mixed,
-}  # fmt: skip
+    "natural": _natural,
+    "radiation": _radiation,
+    "forced": _forced,
+    "gap": _gap,
+    "rotating": _rotating,
+    "contact": _contact,
+    "fan": _fan,
+    "power": _power,
+    "table": _tabled,
+    "mixed": _mixed,
+}
 
 
 def mechanisms(table: Table, has_area: bool) -> list[Mechanism]:

@@ -39,9 +39,12 @@ def _copper(table: Table) -> Law:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
     reference = 20.0 if keys[0] == "R20_ohm" else table.number("reference_degC")
     return CopperLoss(
-        table.number(keys[0]), table.members("currents"), table.number("factor", 1.0),
-        _coefficient(table, reference, ALPHA_CU), reference,
-    )  # fmt: skip
+        table.number(keys[0]),
+        table.members("currents"),
+        table.number("factor", 1.0),
+        _coefficient(table, reference, ALPHA_CU),
+        reference,
+    )
 
 
 def _eddy(table: Table, copper: CopperLoss) -> EddyLoss:
@@ -60,11 +63,17 @@ def _temperature(table: Table) -> TemperatureLaw:
 def _iron(table: Table) -> Law:
     excitation = table.word("excitation", "") or None
     return IronLoss(
-        table.number("hysteresis_W", 0.0), table.number("eddy_W", 0.0), table.word("speed", "speed_rpm"),
-        table.number("speed_at"), excitation, table.number("excitation_at", 1.0),
-        table.number("flux_exponent", 2.0), _temperature(table), table.number("excess_W", 0.0),
+        table.number("hysteresis_W", 0.0),
+        table.number("eddy_W", 0.0),
+        table.word("speed", "speed_rpm"),
+        table.number("speed_at"),
+        excitation,
+        table.number("excitation_at", 1.0),
+        table.number("flux_exponent", 2.0),
+        _temperature(table),
+        table.number("excess_W", 0.0),
         table.number("frequency_exponent", 1.0),
-    )  # fmt: skip
+    )
 
 
 def _terms(table: Table) -> Law:
@@ -102,25 +111,41 @@ def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
 
 def _ripple(table: Table) -> Law:
     return RippleLoss(
-        table.number("supply_V"), table.word("voltage", "voltage_V"), table.number("L_H"),
-        table.number("switching_Hz"), table.number("R20_ohm"), table.number("factor", 1.0),
+        table.number("supply_V"),
+        table.word("voltage", "voltage_V"),
+        table.number("L_H"),
+        table.number("switching_Hz"),
+        table.number("R20_ohm"),
+        table.number("factor", 1.0),
         _coefficient(table, 20.0, ALPHA_CU),
-    )  # fmt: skip
+    )
 
 
 def _inverter(table: Table) -> Law:
     return InverterLoss(
-        table.members("currents"), table.number("factor", 1.5), table.number("threshold_V"), table.number("R_on_ohm"),
-        table.number("switching_Hz"), table.number("switching_J"), table.number("reference_A"),
-        table.number("reference_V"), table.number("supply_V"), table.number("standby_W", 0.0), _temperature(table),
-    )  # fmt: skip
+        table.members("currents"),
+        table.number("factor", 1.5),
+        table.number("threshold_V"),
+        table.number("R_on_ohm"),
+        table.number("switching_Hz"),
+        table.number("switching_J"),
+        table.number("reference_A"),
+        table.number("reference_V"),
+        table.number("supply_V"),
+        table.number("standby_W", 0.0),
+        _temperature(table),
+    )
 
 
 def _pulses(table: Table) -> Law:
     return PulseLoss(
-        table.word("voltage", "voltage_V"), table.number("supply_V"), table.number("L_H"),
-        table.number("switching_Hz"), table.number("R_pulse_ohm"), _temperature(table),
-    )  # fmt: skip
+        table.word("voltage", "voltage_V"),
+        table.number("supply_V"),
+        table.number("L_H"),
+        table.number("switching_Hz"),
+        table.number("R_pulse_ohm"),
+        _temperature(table),
+    )
 
 
 def _map(table: Table) -> Law:
@@ -131,8 +156,9 @@ def _map(table: Table) -> Law:
         raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
     if len(watts) != len(speed):
         raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
-    return MapLoss(speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"),
-                   _temperature(table))  # fmt: skip
+    return MapLoss(
+        speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"), _temperature(table)
+    )
 
 
 Products = tuple[tuple[float, tuple[str, ...]], ...]
@@ -162,9 +188,14 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
 
 
 LOSSES = {
-    "copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter, "pwm": _pulses,
+    "copper": _copper,
+    "iron": _iron,
+    "brush": _brush,
+    "ripple": _ripple,
+    "inverter": _inverter,
+    "pwm": _pulses,
     "map": _map,
-}  # fmt: skip
+}
 MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
 

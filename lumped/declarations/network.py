@@ -72,8 +72,13 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
     identities = read_identities(top, nodes, boundaries, cells)
-    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles, declared=identities,
-                      quantities=read_quantities(top))  # fmt: skip
+    network = replace(
+        network,
+        places=_places(network, top, nodes, cells),
+        settles_s=settles,
+        declared=identities,
+        quantities=read_quantities(top),
+    )
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -193,9 +198,12 @@ def _sources(network: Network, top: Table) -> list[Source]:
     out = {name: _source(network, name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()}
     differences = [
         _difference(out[name], out[part])
-        for name, kind in kinds.items() if kind == "measured" for other in deducted(tables[name], kinds)
-        for part in (other, f"{other}{EDDY}") if part in out
-    ]  # fmt: skip
+        for name, kind in kinds.items()
+        if kind == "measured"
+        for other in deducted(tables[name], kinds)
+        for part in (other, f"{other}{EDDY}")
+        if part in out
+    ]
     for table in tables.values():
         table.raw("prior_sd")
         table.close()

@@ -23,8 +23,10 @@ def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) ->
     parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
     names = [p.name for p in parameters]
     for name in (n for n in names if names.count(n) > 1):
-        raise top.error(f"two parameters are called '{name}': prior_sd in a table makes one of that name",
-                        "prior_sd there, or [parameters.NAME] of another name")  # fmt: skip
+        raise top.error(
+            f"two parameters are called '{name}': prior_sd in a table makes one of that name",
+            "prior_sd there, or [parameters.NAME] of another name",
+        )
     return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in parameters)
 
 
@@ -66,9 +68,8 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
         streams = tuple((x.name, 1.0) for x in network.links if x.name == single or x.name.startswith(parts))
         acts = {"prior_sd": (f"circuit.{name}", streams), "film_prior_sd": (f"film.{name}", films)}
         out += [
-            Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd")
-            for key in acts if key in table
-        ]  # fmt: skip
+            Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd") for key in acts if key in table
+        ]
     return out
 
 
@@ -95,11 +96,19 @@ def _parameter(name: str, table: Table) -> Parameter:
     if not targets:
         raise table.error("acts_on = {} names nothing", 'acts_on = ["link:NAME", ...]')
     parameter = Parameter(
-        name, tuple(targets.items()), table.number("value", neutral), table.word("unit", "1"),
-        table.number("low", low), table.number("high", high), table.number("prior_sd", 0.3, of="parameters.prior_sd"),
-        mapping, neutral, int(table.number("sign", 0)), table.word("source", ""),  # type: ignore[arg-type]
+        name,
+        tuple(targets.items()),
+        table.number("value", neutral),
+        table.word("unit", "1"),
+        table.number("low", low),
+        table.number("high", high),
+        table.number("prior_sd", 0.3, of="parameters.prior_sd"),
+        mapping,  # type: ignore[arg-type]
+        neutral,
+        int(table.number("sign", 0)),
+        table.word("source", ""),
         table.flag("flow", False),
-    )  # fmt: skip
+    )
     table.close()
     return _checked(parameter, table)
 

@@ -87,8 +87,14 @@ def over_grid(film: Film, at: Sequence[float] | Array) -> Array:
         return np.array([film(float(v))[0] for v in at])
 
 
-def following(of: str, film: Callable[[Fluid], Film], fluid: Callable[[float], Fluid], usual_degC: float,
-              top: float, liquid: bool = False) -> list[Law]:  # fmt: skip
+def following(
+    of: str,
+    film: Callable[[Fluid], Film],
+    fluid: Callable[[float], Fluid],
+    usual_degC: float,
+    top: float,
+    liquid: bool = False,
+) -> list[Law]:
     """A film over |input| with the fluid's properties at the film temperature: laws that act in parallel.
 
     Of a liquid they are those at its own temperature, as the correlations of channels ask for.

@@ -71,9 +71,15 @@ def _without(run: Run, first: int) -> Run:
 
 
 def series_drive(
-    machine: SeriesMachine, vehicle: Vehicle, controller: Controller, time: Array, target_mps: Array, slope: Array,
-    reference_degC: float = 20.0, alpha: float = ALPHA_CU,
-) -> Drive:  # fmt: skip
+    machine: SeriesMachine,
+    vehicle: Vehicle,
+    controller: Controller,
+    time: Array,
+    target_mps: Array,
+    slope: Array,
+    reference_degC: float = 20.0,
+    alpha: float = ALPHA_CU,
+) -> Drive:
     """The vehicle's series machine; R = R(reference) (1 + alpha (T - reference)) with T["winding"]."""
 
     def drive(T: Mapping[str, Array]) -> Mapping[str, Array]:
@@ -94,11 +100,15 @@ def pm_drive(machine: PMMachine, torque: Array, speed_rpm: Array, rms: bool = Fa
         i_d, i_q = machine.currents(torque, speed_rpm, T["winding"], T["magnet"])
         at = i_d, i_q, speed_rpm, T["winding"], T["magnet"]
         return {
-            "id_A": i_d, "iq_A": i_q, "current_A": np.hypot(i_d, i_q) / (np.sqrt(2.0) if rms else 1.0),
-            "torque_Nm": machine.torque(i_d, i_q, T["magnet"]), "voltage_V": machine.voltage(*at),
-            "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
+            "id_A": i_d,
+            "iq_A": i_q,
+            "current_A": np.hypot(i_d, i_q) / (np.sqrt(2.0) if rms else 1.0),
+            "torque_Nm": machine.torque(i_d, i_q, T["magnet"]),
+            "voltage_V": machine.voltage(*at),
+            "speed_rpm": np.asarray(speed_rpm, float),
+            "torque_wanted_Nm": np.asarray(torque, float),
             "electrical_W": machine.power(*at),
-        }  # fmt: skip
+        }
 
     return drive
 
@@ -110,10 +120,15 @@ def induction_drive(machine: InductionMachine, torque: Array, speed_rpm: Array) 
         currents = machine.currents(torque, speed_rpm, T["winding"], T["cage"])
         at = machine.operation(*currents, speed_rpm, T["winding"], T["cage"])
         return {
-            "current_A": np.hypot(at.i_d, at.i_q) / np.sqrt(2.0), "cage_current_A": at.cage / np.sqrt(2.0),
-            "slip": np.nan_to_num(at.slip), "stator_Hz": at.frequency, "torque_Nm": at.torque, "voltage_V": at.voltage,
-            "speed_rpm": np.asarray(speed_rpm, float), "torque_wanted_Nm": np.asarray(torque, float),
+            "current_A": np.hypot(at.i_d, at.i_q) / np.sqrt(2.0),
+            "cage_current_A": at.cage / np.sqrt(2.0),
+            "slip": np.nan_to_num(at.slip),
+            "stator_Hz": at.frequency,
+            "torque_Nm": at.torque,
+            "voltage_V": at.voltage,
+            "speed_rpm": np.asarray(speed_rpm, float),
+            "torque_wanted_Nm": np.asarray(torque, float),
             "electrical_W": at.power,
-        }  # fmt: skip
+        }
 
     return drive

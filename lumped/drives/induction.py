@@ -61,9 +61,13 @@ class InductionMachine:
         return self.cage_resistance(cage_degC) * i_q / ((self.Lm + self.Lr_leak) * i_d)
 
     def operation(
-        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        i_d: Array,
+        i_q: Array,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         cage_degC: Array | float = 20.0,
-    ) -> Operation:  # fmt: skip
+    ) -> Operation:
         """What the machine does at two currents and a speed."""
         turning, slip = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.slip_speed(i_d, i_q, cage_degC)
         w, Rs, Ls = turning + slip, self.stator_resistance(winding_degC), self.Lm + self.Ls_leak
@@ -72,16 +76,25 @@ class InductionMachine:
         cage = self.coupling * np.abs(i_q)
         share = np.divide(slip, w, out=np.full(np.shape(w), np.nan), where=w != 0.0)
         return Operation(
-            np.asarray(i_d), np.asarray(i_q), self.torque(i_d, i_q), np.hypot(v_d, v_q), w / (2.0 * np.pi),
-            share, cage,
-            1.5 * (v_d * i_d + v_q * i_q), 1.5 * Rs * (i_d**2 + i_q**2),
+            np.asarray(i_d),
+            np.asarray(i_q),
+            self.torque(i_d, i_q),
+            np.hypot(v_d, v_q),
+            w / (2.0 * np.pi),
+            share,
+            cage,
+            1.5 * (v_d * i_d + v_q * i_q),
+            1.5 * Rs * (i_d**2 + i_q**2),
             1.5 * self.cage_resistance(cage_degC) * cage**2,
-        )  # fmt: skip
+        )
 
     def currents(
-        self, torque: Array | float, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        torque: Array | float,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         cage_degC: Array | float = 20.0,
-    ) -> tuple[Array, Array]:  # fmt: skip
+    ) -> tuple[Array, Array]:
         """(i_d, i_q) (A) for the torque (N m) at the rated flux; at as much of it as current and voltage allow beyond.
 
         A torque beyond the limits is cut to the most that they allow, the pull-out torque where the voltage binds:

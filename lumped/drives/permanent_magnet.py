@@ -47,32 +47,47 @@ class PMMachine:
         return 1.5 * self.pole_pairs * (self.flux(magnet_degC) + (self.Ld - self.Lq) * i_d) * np.asarray(i_q, float)
 
     def voltages(
-        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        i_d: Array,
+        i_q: Array,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
-    ) -> tuple[Array, Array]:  # fmt: skip
+    ) -> tuple[Array, Array]:
         """(v_d, v_q) peak phase voltage (V); a speed has its sign."""
         w, R = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.resistance(winding_degC)
         return R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC))
 
     def voltage(
-        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        i_d: Array,
+        i_q: Array,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
-    ) -> Array:  # fmt: skip
+    ) -> Array:
         """Peak phase voltage (V)."""
         return np.hypot(*self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC))
 
     def power(
-        self, i_d: Array, i_q: Array, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        i_d: Array,
+        i_q: Array,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
-    ) -> Array:  # fmt: skip
+    ) -> Array:
         """Electrical power taken (W); negative where the machine generates."""
         v_d, v_q = self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC)
         return 1.5 * (v_d * i_d + v_q * i_q)
 
     def currents(
-        self, torque: Array | float, speed_rpm: Array | float, winding_degC: Array | float = 20.0,
+        self,
+        torque: Array | float,
+        speed_rpm: Array | float,
+        winding_degC: Array | float = 20.0,
         magnet_degC: Array | float = 20.0,
-    ) -> tuple[Array, Array]:  # fmt: skip
+    ) -> tuple[Array, Array]:
         """(i_d, i_q) (A) of the least current that gives the torque (N m) within current and voltage limit.
 
         Most torque per ampere, then a weakened field; a torque beyond the limits is cut to the most that they allow,
@@ -80,10 +95,11 @@ class PMMachine:
         it is the current of least voltage. Compare `torque` of the answer with what was asked.
         """
         demand, n, Tw, Tm = (
-            np.atleast_1d(x) for x in np.broadcast_arrays(
+            np.atleast_1d(x)
+            for x in np.broadcast_arrays(
                 *(np.asarray(x, float) for x in (torque, speed_rpm, winding_degC, magnet_degC))
             )
-        )  # fmt: skip
+        )
         # A machine that brakes is one that drives with its resistance negative: i_q and v_d change sign together.
         brakes = demand * n < 0.0
         w, R = self.pole_pairs * np.abs(n) * RPM, np.where(brakes, -1.0, 1.0) * self.resistance(Tw)
@@ -177,8 +193,9 @@ def _limited(region: _Region, target: Array) -> tuple[Array, Array]:
     low, high = other.span()
     if np.any(low <= high):
         far_d, far_q = _on_side(other, target)
-        torque, far = (np.nan_to_num(r.gain(d) * q, nan=-np.inf) for r, d, q in
-                       ((region, i_d, i_q), (other, far_d, far_q)))  # fmt: skip
+        torque, far = (
+            np.nan_to_num(r.gain(d) * q, nan=-np.inf) for r, d, q in ((region, i_d, i_q), (other, far_d, far_q))
+        )
         nearly = 1.0 - EDGE
         more = (far > torque) & (torque < target * nearly)
         less = (far >= target * nearly) & (torque >= target * nearly) & (np.hypot(far_d, far_q) < np.hypot(i_d, i_q))
@@ -223,6 +240,5 @@ def _on_side(region: _Region, target: Array) -> tuple[Array, Array]:
     # Beyond the most torque: that. Below the least, which a machine that brakes at high speed has: the least.
     over = ~within & (region.gain(best) * most < target)
     i_d = np.where(within, i_d, np.where(over, best, easiest))
-    i_q = np.where(within, target / np.maximum(region.gain(i_d), TINY),
-                   np.where(over, most, region.bounds(i_d)[0]))  # fmt: skip
+    i_q = np.where(within, target / np.maximum(region.gain(i_d), TINY), np.where(over, most, region.bounds(i_d)[0]))
     return np.where(empty, np.nan, i_d), np.where(empty, np.nan, i_q)

@@ -80,12 +80,14 @@ def reordered(core: Compiled) -> Compiled:
     place = np.argsort(columns)
     T, S, L = core.terms, core.tangents, core.control
     return replace(
-        core, C=core.C[order], K0=np.ascontiguousarray(core.K0[np.ix_(order, columns)]),
+        core,
+        C=core.C[order],
+        K0=np.ascontiguousarray(core.K0[np.ix_(order, columns)]),
         terms=T._replace(row=place[T.row], at=place[T.at]),
         rows=core.rows._replace(at=place[core.rows.at], state=columns[:-1]),
         tangents=S._replace(state=place[S.state], first=S.first[columns[:-1]]),
         control=L._replace(unit=L.unit[order], node=L.node[order]),
-    )  # fmt: skip
+    )
 
 
 def more_exact(core: Compiled, factor: float) -> Compiled:
@@ -119,9 +121,14 @@ def _pack_tangents(
     for j, name in enumerate(shifts, len(slope)):
         first[hidden.size + network.boundaries.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
     return Tangents(
-        np.array([x[0] for x in triplets], np.int64), np.array([x[1] for x in triplets], np.int64),
-        np.array([x[2] for x in triplets], float), state, column, dC[column, state], first,
-    )  # fmt: skip
+        np.array([x[0] for x in triplets], np.int64),
+        np.array([x[1] for x in triplets], np.int64),
+        np.array([x[2] for x in triplets], float),
+        state,
+        column,
+        dC[column, state],
+        first,
+    )
 
 
 @once
@@ -192,15 +199,19 @@ def compiled(
 
 def control(
     network: Network, every: Assembly, m: Array, factors: Sequence[Array], precision: Precision = RUN
-) -> Control:  # fmt: skip
+) -> Control:
     """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
     hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     return Control(
-        state_units(network), (~hidden).astype(np.int64), np.array([precision.error_K, precision.error_share]),
-        np.array([holds], np.int64), np.array([HOTTEST]), np.zeros(1, np.int64),
-    )  # fmt: skip
+        state_units(network),
+        (~hidden).astype(np.int64),
+        np.array([precision.error_K, precision.error_share]),
+        np.array([holds], np.int64),
+        np.array([HOTTEST]),
+        np.zeros(1, np.int64),
+    )
 
 
 def _extreme(f: Array, least: bool) -> float:

@@ -103,9 +103,12 @@ def straight(value: Array) -> Curve:
 
 
 def curve(
-    every: Array, factor: Callable[[Array], Array], moves: Moves, turns: Array = NONE,
+    every: Array,
+    factor: Callable[[Array], Array],
+    moves: Moves,
+    turns: Array = NONE,
     skip: NDArray[np.bool_] | None = None,
-) -> Curve:  # fmt: skip
+) -> Curve:
     """From a factor, () where it never changes.  every : the factor at moves.positions;  factor : at any positions
 
     moves : where its inputs move between samples;  turns : positions at which it may have a corner

@@ -25,9 +25,13 @@ CHUNKS = 8  # per worker: small enough that none waits long for the last
 
 
 def ensemble(
-    network: Network, record: Record, members: Members, rows: Sequence[Row], executor: Executor | None = None,
+    network: Network,
+    record: Record,
+    members: Members,
+    rows: Sequence[Row],
+    executor: Executor | None = None,
     chunk: int = 0,
-) -> Array:  # fmt: skip
+) -> Array:
     """(n_members, nt, n_rows) degC: one run per set of parameter values.
 
     executor : any concurrent.futures.Executor; by default a thread per core.  chunk : members per task, 0 for a guess

@@ -47,9 +47,16 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
 
 
 def forcing(
-    time: Array, u: Array, signals: Signals, patterns: Sequence[Pattern | InputSize], curves: Sequence[Curve],
-    acting: Mask, stiff: Mask, bends: bool, every_sample: bool = False,
-) -> Forcing:  # fmt: skip
+    time: Array,
+    u: Array,
+    signals: Signals,
+    patterns: Sequence[Pattern | InputSize],
+    curves: Sequence[Curve],
+    acting: Mask,
+    stiff: Mask,
+    bends: bool,
+    every_sample: bool = False,
+) -> Forcing:
     """u (nt, nb) boundaries;  patterns, curves : the live terms and what they see; those `acting` set the knots
 
     stiff : which acting terms touch the matrix;  bends : whether one of these follows temperature
@@ -82,8 +89,11 @@ def _needed(
     heats : of all terms, those that do not act among them: a tangent by a film that opens for a while turns where it
     opens, whatever its size
     """
-    curves = [*((c, PARABOLA, 0.0) for c in heats), *((c, 0.0, PARABOLA_K) for c in ends),
-              *((straight(x), PARABOLA, 0.0) for x in inputs)]  # fmt: skip
+    curves = [
+        *((c, PARABOLA, 0.0) for c in heats),
+        *((c, 0.0, PARABOLA_K) for c in ends),
+        *((straight(x), PARABOLA, 0.0) for x in inputs),
+    ]
     varying = {i: k for k, i in enumerate(i for i, x in enumerate(curves) if _varies(x[0]))}
     value, bulge, whole = np.empty((3, len(varying), time.size))
     tolerance = np.empty((len(varying), 2))

@@ -145,9 +145,15 @@ def simulate(
 
 
 def march(
-    network: Network, record: Record, core: Compiled, keep_states: bool = False, begin: Stand | None = None,
-    steps: Steps | None = None, keep_path: bool = False, portion: int = PORTION,
-) -> Run:  # fmt: skip
+    network: Network,
+    record: Record,
+    core: Compiled,
+    keep_states: bool = False,
+    begin: Stand | None = None,
+    steps: Steps | None = None,
+    keep_path: bool = False,
+    portion: int = PORTION,
+) -> Run:
     """Run the kernel, from rest of the states without capacity: at the start and wherever a time is given twice.
 
     portion : steps whose states are in memory at once for their tangents
@@ -167,9 +173,15 @@ class _Course:
     """
 
     def __init__(
-        self, network: Network, record: Record, core: Compiled, keep_states: bool, begin: Stand | None,
-        steps: Steps | None, portion: int,
-    ) -> None:  # fmt: skip
+        self,
+        network: Network,
+        record: Record,
+        core: Compiled,
+        keep_states: bool,
+        begin: Stand | None,
+        steps: Steps | None,
+        portion: int,
+    ) -> None:
         self.network, self.named, self.given, self.steps_done = network, core, steps, 0
         self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
@@ -285,9 +297,17 @@ def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:
         return np.zeros(ns, np.int64)
 
     return Trace(
-        whole(), np.zeros(ns), np.zeros(ns), whole(), np.zeros((ns, n + nb)), np.zeros((ns, 3, n)), np.zeros(ns),
-        whole(), factored(slots, core.structure), np.zeros((slots, n, nb)),
-    )  # fmt: skip
+        whole(),
+        np.zeros(ns),
+        np.zeros(ns),
+        whole(),
+        np.zeros((ns, n + nb)),
+        np.zeros((ns, 3, n)),
+        np.zeros(ns),
+        whole(),
+        factored(slots, core.structure),
+        np.zeros((slots, n, nb)),
+    )
 
 
 def _parts(time: Array, C: Array) -> list[slice]:

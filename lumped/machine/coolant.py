@@ -83,10 +83,11 @@ def cooling_of(machine: Machine) -> Cooling | None:
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
     inlet = t.number("inlet_C", 20.0)
     cooling = Cooling(
-        t.word("coolant", "glycol-50", LIQUIDS), t.number("flow_L_per_min"),
+        t.word("coolant", "glycol-50", LIQUIDS),
+        t.number("flow_L_per_min"),
         t.number("property_C", inlet + 20.0),
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
-    )  # fmt: skip
+    )
     t.number("pressure_bar", 1.0)
     for jacket in jackets:
         if INLET not in cooling.before(jacket):
@@ -149,9 +150,14 @@ def outlet_film(machine: Machine, network: Network, place: str, cooling: Cooling
 def _film(channel: Channel, cooling: Cooling, share: float, stretch: float) -> Streamed:
     """stretch : of StreamTable"""
     return streamed(
-        FLOW, cooling.flow_l_min, lambda q, fluid: channel.film(share * q, fluid), partial(liquid, cooling.coolant),
-        cooling.property_C, liquid=True, stretch=stretch,
-    )  # fmt: skip
+        FLOW,
+        cooling.flow_l_min,
+        lambda q, fluid: channel.film(share * q, fluid),
+        partial(liquid, cooling.coolant),
+        cooling.property_C,
+        liquid=True,
+        stretch=stretch,
+    )
 
 
 def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
@@ -178,9 +184,16 @@ def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
 def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
     i, before, one = network.column(cell), network.column(feed), np.array([1.0])
     return Link(
-        f"stream:{cell}", "stream", (feed, cell), np.array([i, i]), np.array([i, before]), np.array([1.0, -1.0]),
-        law, Row(np.array([i]), one), Row(np.array([before]), one),
-    )  # fmt: skip
+        f"stream:{cell}",
+        "stream",
+        (feed, cell),
+        np.array([i, i]),
+        np.array([i, before]),
+        np.array([1.0, -1.0]),
+        law,
+        Row(np.array([i]), one),
+        Row(np.array([before]), one),
+    )
 
 
 def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, Place]:

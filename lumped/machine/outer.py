@@ -77,10 +77,14 @@ def cowl_of(machine: Machine) -> Cowl | None:
         return None
     t = Table(data, f"{machine.name} [fans.cowl]")
     cowl = Cowl(
-        t.number("air_speed_m_s"), t.number("at_rpm"), t.number("end_share", 0.2),
-        t.number("rear_share", 0.774), t.number("front_share", 0.205),
-        t.number("turbulence", 1.7), t.word("rear", "left", ("left", "right")),
-    )  # fmt: skip
+        t.number("air_speed_m_s"),
+        t.number("at_rpm"),
+        t.number("end_share", 0.2),
+        t.number("rear_share", 0.774),
+        t.number("front_share", 0.205),
+        t.number("turbulence", 1.7),
+        t.word("rear", "left", ("left", "right")),
+    )
     t.close()
     return cowl
 
@@ -109,9 +113,14 @@ def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     outer = Outer(
-        surface, size, t.number("emissivity", usual.emissivity), t.number("view", usual.view),
-        t.number("factor", usual.factor), usual.spacing, _fan_law(t),
-    )  # fmt: skip
+        surface,
+        size,
+        t.number("emissivity", usual.emissivity),
+        t.number("view", usual.view),
+        t.number("factor", usual.factor),
+        usual.spacing,
+        _fan_law(t),
+    )
     t.close()
     return outer
 

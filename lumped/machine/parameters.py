@@ -12,17 +12,33 @@ from lumped.schemas.reader import suggestion
 from lumped.sources.losses import EDDY
 
 LOSS_SPREAD = {
-    "copper": 0.05, "iron": 0.25, "friction": 0.25, "bearing": 0.25, "brush": 0.15, "windage": 0.3, "magnet": 0.5,
-    "stray": 0.5, "switching": 0.3, "constant": 0.3, "measured": 0.1,
-    "ripple": 0.3, "map": 0.1, "inverter": 0.15, "pwm": 0.5,
-}  # fmt: skip
+    "copper": 0.05,
+    "iron": 0.25,
+    "friction": 0.25,
+    "bearing": 0.25,
+    "brush": 0.15,
+    "windage": 0.3,
+    "magnet": 0.5,
+    "stray": 0.5,
+    "switching": 0.3,
+    "constant": 0.3,
+    "measured": 0.1,
+    "ripple": 0.3,
+    "map": 0.1,
+    "inverter": 0.15,
+    "pwm": 0.5,
+}
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
 
 def parameters(
-    machine: Machine, network: Network, faces: Sequence[Place], films: Sequence[Link], streams: Sequence[Link],
+    machine: Machine,
+    network: Network,
+    faces: Sequence[Place],
+    films: Sequence[Link],
+    streams: Sequence[Link],
     losses: Sequence[Source],
-) -> list[Parameter]:  # fmt: skip
+) -> list[Parameter]:
     """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
     return [
         *_films(faces, films),
@@ -49,19 +65,32 @@ def _films(faces: Sequence[Place], films: Sequence[Link]) -> list[Parameter]:
 
 def _contacts(network: Network) -> list[Parameter]:
     return [
-        Parameter(link.name.replace(":", ".", 1), ((link.name, 1.0),), prior_sd=0.3, low=0.02, high=50.0,
-                  source="spread of published contact gaps")
-        for link in network.links if link.kind == "contact"
-    ]  # fmt: skip
+        Parameter(
+            link.name.replace(":", ".", 1),
+            ((link.name, 1.0),),
+            prior_sd=0.3,
+            low=0.02,
+            high=50.0,
+            source="spread of published contact gaps",
+        )
+        for link in network.links
+        if link.kind == "contact"
+    ]
 
 
 def _losses(losses: Sequence[Source]) -> list[Parameter]:
     return [
-        Parameter(source.name.replace(":", ".", 1),
-                  tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name),
-                  prior_sd=LOSS_SPREAD[source.kind], low=0.1, high=10.0, source="spread of published loss formulas")
-        for source in losses if not source.name.endswith(EDDY)
-    ]  # fmt: skip
+        Parameter(
+            source.name.replace(":", ".", 1),
+            tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name),
+            prior_sd=LOSS_SPREAD[source.kind],
+            low=0.1,
+            high=10.0,
+            source="spread of published loss formulas",
+        )
+        for source in losses
+        if not source.name.endswith(EDDY)
+    ]
 
 
 def _capacity(network: Network) -> Parameter:

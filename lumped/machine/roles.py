@@ -16,9 +16,14 @@ from lumped.model.network import Network
 
 BOUNDARIES = {"ambient": Role.AMBIENT, "coolant": Role.COOLANT}  # the names that lumped.machine.motor gives them
 OF_MATERIAL = {
-    "bearing": Role.BEARING, "commutator": Role.COMMUTATOR, "electrical-steel": Role.IRON, "magnet-ndfeb": Role.MAGNET,
-    "mica": Role.INSULATION, "insulation": Role.INSULATION, "slot-liner": Role.INSULATION,
-}  # fmt: skip
+    "bearing": Role.BEARING,
+    "commutator": Role.COMMUTATOR,
+    "electrical-steel": Role.IRON,
+    "magnet-ndfeb": Role.MAGNET,
+    "mica": Role.INSULATION,
+    "insulation": Role.INSULATION,
+    "slot-liner": Role.INSULATION,
+}
 
 
 def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dict[str, Identity]:

@@ -89,10 +89,12 @@ def _ambient(top: Topology, free: list[str]) -> tuple[str, str] | None:
         return (free[0], "the only boundary") if len(top.network.boundaries) == 1 else None
     best = max(score, key=lambda b: score[b])
     why = (
-        f"{natural[best]} films of still air lead there" if natural[best]
-        else f"{max(faces[best], bodies[best])} bodies meet it" if max(faces[best], bodies[best]) > 1 or len(score) == 1
+        f"{natural[best]} films of still air lead there"
+        if natural[best]
+        else f"{max(faces[best], bodies[best])} bodies meet it"
+        if max(faces[best], bodies[best]) > 1 or len(score) == 1
         else "the weaker sink"
-    )  # fmt: skip
+    )
     return best, why
 
 
@@ -126,15 +128,24 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     if "magnet" in kinds:
         return Role.MAGNET, "carries a loss of magnets"
     if kinds & {"copper", "ripple"}:
-        return (Role.CAGE, "copper loss of its own current, and turns") if turning_ and _has_separate_current(
-            top, body, turns) else (Role.WINDING, "carries a copper loss")  # fmt: skip
+        return (
+            (Role.CAGE, "copper loss of its own current, and turns")
+            if turning_ and _has_separate_current(top, body, turns)
+            else (Role.WINDING, "carries a copper loss")
+        )
     if body in top.bearings:
         outside = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
-        return (Role.END_SHIELD, "carries friction and meets the outside") if outside else (
-            Role.BEARING, "carries friction")  # fmt: skip
+        return (
+            (Role.END_SHIELD, "carries friction and meets the outside")
+            if outside
+            else (Role.BEARING, "carries friction")
+        )
     if kinds & {"iron", "map", "stray", "measured"}:
-        return (Role.ROTOR, "carries a loss of the field and turns") if turning_ else (
-            Role.IRON, "carries a loss of the field")  # fmt: skip
+        return (
+            (Role.ROTOR, "carries a loss of the field and turns")
+            if turning_
+            else (Role.IRON, "carries a loss of the field")
+        )
     return None
 
 

@@ -5,9 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 INPUTS: Mapping[str, str] = {
-    "current": "current_A", "speed": "speed_rpm", "vehicle_speed": "vehicle_speed_mps", "air_flow": "fan_flow_m3h",
-    "water_flow": "flow_l_min", "torque": "torque_Nm", "power": "power_W", "voltage": "voltage_V",
-    "frequency": "switching_Hz", "share": "share_percent",
-}  # fmt: skip
+    "current": "current_A",
+    "speed": "speed_rpm",
+    "vehicle_speed": "vehicle_speed_mps",
+    "air_flow": "fan_flow_m3h",
+    "water_flow": "flow_l_min",
+    "torque": "torque_Nm",
+    "power": "power_W",
+    "voltage": "voltage_V",
+    "frequency": "switching_Hz",
+    "share": "share_percent",
+}
 AIR, LIQUID = "air_flow", "water_flow"
 USUAL: Mapping[str, str] = {name: quantity for quantity, name in INPUTS.items()}

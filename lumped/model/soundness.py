@@ -18,9 +18,12 @@ def checked_network(network: Network, where: str) -> Network:
     """The network; InputError names the nodes that no heat can leave, and a network that stores none."""
     for island in islands(network):
         nodes = ", ".join(f"'{name}'" for name in island)
-        raise InputError(f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
-                         f"{' or '.join(network.boundaries) or 'a boundary'}", where,
-                         "a link, stream or surface to a boundary")  # fmt: skip
+        raise InputError(
+            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
+            f"{' or '.join(network.boundaries) or 'a boundary'}",
+            where,
+            "a link, stream or surface to a boundary",
+        )
     if not np.any(network.C > 0.0):
         raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
     return network
@@ -30,8 +33,11 @@ def checked_names(names: Iterable[str], where: str) -> None:
     """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
     for name in names:
         if not name.strip() or plain_name(name, where).strip() != name or set(name) & RESERVED:
-            raise InputError(f"{excerpt(name)} cannot be a name", where, "letters that can be printed, none of "
-                             f"{' '.join(sorted(RESERVED))}, no space at either end")  # fmt: skip
+            raise InputError(
+                f"{excerpt(name)} cannot be a name",
+                where,
+                f"letters that can be printed, none of {' '.join(sorted(RESERVED))}, no space at either end",
+            )
 
 
 def islands(network: Network) -> Iterator[list[str]]:
@@ -66,6 +72,9 @@ def checked_path(path: Sequence[str], where: str) -> Sequence[str]:
         raise InputError(f"path = {list(path)} leads nowhere", where, "two or more nodes, the inlet first")
     for name in path:
         if list(path).count(name) > 1:
-            raise InputError(f"path passes '{name}' {list(path).count(name)} times", where, "each node once; a loop "
-                             "that returns is [circuits.NAME] with a reservoir")  # fmt: skip
+            raise InputError(
+                f"path passes '{name}' {list(path).count(name)} times",
+                where,
+                "each node once; a loop that returns is [circuits.NAME] with a reservoir",
+            )
     return path

@@ -14,8 +14,12 @@ from typing import Any
 from numba import njit
 
 _OPTIONS: dict[str, Any] = {
-    "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False,
-}  # fmt: skip
+    "nogil": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,
+    "no_rewrites": True,
+    "_nrt": False,
+}
 
 _NEWEST = max(path.stat().st_mtime_ns for path in Path(__file__).parent.glob("*.py"))
 

@@ -32,7 +32,7 @@ from lumped.numerics.stages import (
     finite,
     forced,
     inside,
-)  # fmt: skip
+)
 from lumped.numerics.terms import (
     DYNAMIC,
     END,

@@ -101,9 +101,20 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     nf = max(T.m.size, int(T.part[:, PLACE].max(initial=0)) + 1)
     G, H = np.zeros((2, n, n + nb))
-    return Work(np.zeros((2, nf)), np.zeros(nf), np.zeros(nb), np.zeros((3, n)), G, H, factored(1, dense(n)),
-                np.zeros(n), np.zeros((2, n)), np.zeros((n + nb, p)), np.zeros((4, n, p)),
-                np.zeros((T.begin.size - 1, p)))  # fmt: skip
+    return Work(
+        np.zeros((2, nf)),
+        np.zeros(nf),
+        np.zeros(nb),
+        np.zeros((3, n)),
+        G,
+        H,
+        factored(1, dense(n)),
+        np.zeros(n),
+        np.zeros((2, n)),
+        np.zeros((n + nb, p)),
+        np.zeros((4, n, p)),
+        np.zeros((T.begin.size - 1, p)),
+    )
 
 
 @pasted

@@ -28,7 +28,7 @@ from lumped.numerics.terms import (
     pattern_products,
     patterns,
     spread,
-)  # fmt: skip
+)
 
 
 class Tangents(NamedTuple):

@@ -74,12 +74,13 @@ class Table:
         value = self._needed(key, default, "a number")
         return default if value is default and default is not None else self._bounded(key, value, of, low, high)
 
-    def _bounded(
-        self, key: str, value: Any, of: str, low: float | None = None, high: float | None = None
-    ) -> float:  # fmt: skip
+    def _bounded(self, key: str, value: Any, of: str, low: float | None = None, high: float | None = None) -> float:
         table = bounds(of or key)
-        range_ = Bounds(table.low if low is None else max(low, table.low),
-                         table.high if high is None else min(high, table.high), table.whole)  # fmt: skip
+        range_ = Bounds(
+            table.low if low is None else max(low, table.low),
+            table.high if high is None else min(high, table.high),
+            table.whole,
+        )
         if not range_.hold(value):
             raise self.error(f"{key} = {excerpt(value)} is not possible", f"{range_.words}{meaning(key)}")
         return float(value)

@@ -74,9 +74,12 @@ def machine_schema() -> Schema:
     tables["geometry"] = {"type": "object", "properties": geometry, "additionalProperties": False}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "machine.toml: a machine by its dimensions", "type": "object", "properties": tables,
-        "required": ["machine"], "additionalProperties": False,
-    }  # fmt: skip
+        "title": "machine.toml: a machine by its dimensions",
+        "type": "object",
+        "properties": tables,
+        "required": ["machine"],
+        "additionalProperties": False,
+    }
 
 
 def _parameter(p: Parameter) -> Schema:

@@ -32,8 +32,10 @@ def crossflow(N: Array, ratio: Array) -> Array:
 
 
 ARRANGEMENTS: dict[str, Effectiveness] = {
-    "crossflow": crossflow, "counterflow": counterflow, "parallel flow": parallel_flow,
-}  # fmt: skip
+    "crossflow": crossflow,
+    "counterflow": counterflow,
+    "parallel flow": parallel_flow,
+}
 BACKWARDS: dict[Effectiveness, Effectiveness] = {counterflow: parallel_flow, parallel_flow: counterflow}
 
 

@@ -73,9 +73,14 @@ class PropagatedUncertainty:
 
     def document(self) -> dict[str, Any]:
         return {
-            "value": self.value, "sd": self.sd, "worst": list(self.worst), "gum95": list(self.first_order),
-            "monte_carlo_sd": self.monte_carlo_sd, "monte_carlo95": list(self.interval), "budget": dict(self.budget),
-        }  # fmt: skip
+            "value": self.value,
+            "sd": self.sd,
+            "worst": list(self.worst),
+            "gum95": list(self.first_order),
+            "monte_carlo_sd": self.monte_carlo_sd,
+            "monte_carlo95": list(self.interval),
+            "budget": dict(self.budget),
+        }
 
 
 def propagate(

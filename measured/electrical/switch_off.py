@@ -89,12 +89,16 @@ def semilog(cooling: Cooling, rated_kW: float, within_s: float = 300.0) -> Extra
         words = f"first reading {first:g} s after switching off, within the {limit:g} s that count as none"
         return Extrapolated("IEC 60034-1", first, float(cooling.T[0]), cooling.reading_sd, words)
     if first > 2.0 * limit:
-        raise InputError(f"first reading {first:g} s after switching off", "IEC 60034-1",
-                         f"not later than {2 * limit:g} s for {rated_kW:g} kW; or the test again")  # fmt: skip
+        raise InputError(
+            f"first reading {first:g} s after switching off",
+            "IEC 60034-1",
+            f"not later than {2 * limit:g} s for {rated_kW:g} kW; or the test again",
+        )
     if not cooling.falls:
         words = "readings rise after switching off: the highest counts"
-        return Extrapolated("IEC 60034-1", float(cooling.time[np.argmax(cooling.T)]), float(cooling.T.max()),
-                            cooling.reading_sd, words)  # fmt: skip
+        return Extrapolated(
+            "IEC 60034-1", float(cooling.time[np.argmax(cooling.T)]), float(cooling.T.max()), cooling.reading_sd, words
+        )
     return semilog_at(cooling, limit, within_s)
 
 
@@ -178,9 +182,11 @@ def _fit(cooling: Cooling, terms: int) -> _Fitted | None:
 def all_ways(cooling: Cooling, rated_kW: float) -> list[Extrapolated]:
     """The way IEC 60034-1 prescribes first, then every other way that these readings allow."""
     ways: list[Callable[[], Extrapolated]] = [
-        lambda: semilog(cooling, rated_kW), lambda: semilog_at(cooling), lambda: rule_150(cooling),
+        lambda: semilog(cooling, rated_kW),
+        lambda: semilog_at(cooling),
+        lambda: rule_150(cooling),
         lambda: exponentials(cooling),
-    ]  # fmt: skip
+    ]
     out = []
     for i, way in enumerate(ways):
         try:

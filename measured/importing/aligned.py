@@ -64,8 +64,11 @@ def common(
     begins = max([start, *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
     stops = min([last if end is None else min(end, last), *ends])
     if begins >= stops:
-        raise InputError("the recorders never all run in the part asked for", ", ".join(r.name for r in records),
-                         "--from and --to within all of them")  # fmt: skip
+        raise InputError(
+            "the recorders never all run in the part asked for",
+            ", ".join(r.name for r in records),
+            "--from and --to within all of them",
+        )
     cut = begins > start or stops < (last if end is None else min(end, last))
     if not cut:
         return window_s, ()
@@ -78,20 +81,26 @@ def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:
     end, theirs = first.clock.end_s, other.clock.end_s
     if shift_s > end or shift_s + theirs < 0.0:
         late = "after the end" if shift_s > 0 else "before the start"
-        raise InputError(f"its clock never overlaps with that of {first.name}: it runs {abs(shift_s):.6g} s {late} "
-                         "of it", str(other.source.file),
-                         "two recordings of one test, or one command each")  # fmt: skip
+        raise InputError(
+            f"its clock never overlaps with that of {first.name}: it runs {abs(shift_s):.6g} s {late} of it",
+            str(other.source.file),
+            "two recordings of one test, or one command each",
+        )
 
 
 def onset(record: Recording) -> tuple[float, str]:
     """The instant (s) at which the first of its columns begins to change, and which."""
     onsets = {
-        g.column: at for g in record.guesses
+        g.column: at
+        for g in record.guesses
         if g.quantity and (at := column_onset(record.clock.seconds, record.source.numbers(g.column))) is not None
-    }  # fmt: skip
+    }
     if not onsets:
-        raise InputError("nothing in it begins to change, so it cannot be set beside the other recording",
-                         str(record.source.file), "a clock with dates in both, or a rise that both saw")  # fmt: skip
+        raise InputError(
+            "nothing in it begins to change, so it cannot be set beside the other recording",
+            str(record.source.file),
+            "a clock with dates in both, or a rise that both saw",
+        )
     column = min(onsets, key=lambda c: onsets[c])
     return onsets[column], column
 
@@ -137,8 +146,11 @@ def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> li
     counts = {len(g) for g in groups}
     if len(counts) != 1:
         words = "; ".join(", ".join(records[i].name for i in g) for g in groups)
-        raise InputError(f"files of {len(groups)} recorders, not the same number of each", words,
-                         "one file of each recorder for every test")  # fmt: skip
+        raise InputError(
+            f"files of {len(groups)} recorders, not the same number of each",
+            words,
+            "one file of each recorder for every test",
+        )
     return [[records[g[k]] for g in groups] for k in range(counts.pop())]
 
 

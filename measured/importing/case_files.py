@@ -82,8 +82,14 @@ def _unwound_by_termination() -> Iterator[None]:
 
 def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
     """model : puts the machine or network into the folder and returns its line of case.toml."""
-    lines = ["# Written by thermoscope test new. Every line may be changed.", "[case]", f"name = {toml_value(name)}",
-             model(folder), f"sample_s = {sample_of(drafts):g}", ""]  # fmt: skip
+    lines = [
+        "# Written by thermoscope test new. Every line may be changed.",
+        "[case]",
+        f"name = {toml_value(name)}",
+        model(folder),
+        f"sample_s = {sample_of(drafts):g}",
+        "",
+    ]
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         write_test(folder / "tests", draft)
@@ -123,8 +129,13 @@ def _sheet(draft: Draft) -> Iterator[str]:
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
     description = visible(f"{first.name}, {first.clock.words}")
-    yield from ("", "[test]", f'time = "{TIME}"', f"description = {toml_value(description)}",
-                'initial = "first-readings"')  # fmt: skip
+    yield from (
+        "",
+        "[test]",
+        f'time = "{TIME}"',
+        f"description = {toml_value(description)}",
+        'initial = "first-readings"',
+    )
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:
             yield f"{name} = {value:g}"
@@ -134,8 +145,13 @@ def _sheet(draft: Draft) -> Iterator[str]:
         yield from ("", "[root_sum_square]")
         yield from (f"{toml_key(n)} = {toml_value(list(of))}" for n, of in draft.squares.items())
     for i, record in enumerate(draft.records[1:], 1):
-        yield from ("", f"[recorders.recorder-{i + 1}]   # {record.name}", f"file = {toml_value(_file(draft, i))}",
-                    f'time = "{TIME}"', f"shift_s = {record.shift_s:.6g}   # {record.how}")  # fmt: skip
+        yield from (
+            "",
+            f"[recorders.recorder-{i + 1}]   # {record.name}",
+            f"file = {toml_value(_file(draft, i))}",
+            f'time = "{TIME}"',
+            f"shift_s = {record.shift_s:.6g}   # {record.how}",
+        )
     for guess in draft.guesses:
         yield from _column(guess)
 

@@ -77,8 +77,9 @@ def in_thousands(columns: Sequence[Sequence[object]]) -> dict[int, list[object]]
         return {}
     return {
         j: [c.replace(sign, "") if isinstance(c, str) else c for c in columns[j]]
-        for j, sign in groups.items() if sign not in decimals
-    }  # fmt: skip
+        for j, sign in groups.items()
+        if sign not in decimals
+    }
 
 
 def _grouping(cells: Sequence[str]) -> str:

@@ -36,8 +36,12 @@ DAY_NAMES = frozenset({"uhrzeit", "heure", "hora", "ora", "day"})  # of a clock 
 DAY_S, HOUR_S = 86400.0, 3600.0
 UNIX = {1e9: 1.0, 1e12: 1e-3, 1e15: 1e-6, 1e18: 1e-9}  # seconds since 1970 are 1e9 today; ms, us, ns
 # Times by their size: days of spreadsheets and of mathematics programs; ticks of 100 ns since 1601 and since year 1.
-COUNTS = (((3e4, 7e4), DAY_S, "days of a spreadsheet"), ((7e5, 7.7e5), DAY_S, "days since year 0"),
-          ((1.1e17, 1.5e17), 1e-7, "ticks of 100 ns"), ((5.5e17, 7e17), 1e-7, "ticks of 100 ns"))  # fmt: skip
+COUNTS = (
+    ((3e4, 7e4), DAY_S, "days of a spreadsheet"),
+    ((7e5, 7.7e5), DAY_S, "days since year 0"),
+    ((1.1e17, 1.5e17), 1e-7, "ticks of 100 ns"),
+    ((5.5e17, 7e17), 1e-7, "ticks of 100 ns"),
+)
 TIME_UNITS = {**{u: f for u, (f, _) in QUANTITIES["time"].units.items()}, "us": 1e-6, "ns": 1e-9, "day": DAY_S}
 SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
@@ -232,9 +236,16 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     short = [m for m in read if len(m["a"]) < 4]
     points = bool(short) and all(m["sign"] == "." for m in short)
     label_order = re.search(r"(?i)\bd{1,2}[-/. ]?m", label) or set(tokens(label)) & DAY_FIRST
-    day_first = points or bool(label_order) or any(int(m["a"]) > 12 for m in short) or (
-        not any(int(m["b"]) > 12 for m in short) and bool(short) and _fewer_leaps(short[:: len(short) // SAMPLE + 1])
-    )  # fmt: skip
+    day_first = (
+        points
+        or bool(label_order)
+        or any(int(m["a"]) > 12 for m in short)
+        or (
+            not any(int(m["b"]) > 12 for m in short)
+            and bool(short)
+            and _fewer_leaps(short[:: len(short) // SAMPLE + 1])
+        )
+    )
     zone = sum(m["zone"] is not None for m in read) > SHARE * len(read)
     seconds = np.array([np.nan if m is None else _unix(m, day_first) for m in parts])
     order = ("day before month, " if day_first else "month before day, ") if short else ""
@@ -249,8 +260,11 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
 
 def _fewer_leaps(short: Sequence[re.Match[str]]) -> bool:
     """Do the days follow each other more closely with the day before the month?"""
-    spans = [np.ptp(t[np.isfinite(t)]) if np.isfinite(t).all() else np.inf
-             for first in (True, False) for t in [np.array([_unix(m, first) for m in short])]]  # fmt: skip
+    spans = [
+        np.ptp(t[np.isfinite(t)]) if np.isfinite(t).all() else np.inf
+        for first in (True, False)
+        for t in [np.array([_unix(m, first) for m in short])]
+    ]
     return bool(spans[0] < spans[1])
 
 
@@ -280,8 +294,10 @@ def _month_in_digits(text: str) -> str:
 def _date_in_words(text: str) -> str:
     from dateutil.parser import ParserError, parse
 
-    words = [MONTHS.get(w.strip(".").lower()[:4], MONTHS.get(w.strip(".").lower()[:3], "")) if w[:1].isalpha() else w
-             for w in re.findall(r"[^\W\d_]+\.?|\d+", text)]  # fmt: skip
+    words = [
+        MONTHS.get(w.strip(".").lower()[:4], MONTHS.get(w.strip(".").lower()[:3], "")) if w[:1].isalpha() else w
+        for w in re.findall(r"[^\W\d_]+\.?|\d+", text)
+    ]
     if sum(w.isalpha() for w in words) != 1:
         return ""
     try:

@@ -42,8 +42,11 @@ class Dialogue:
         constants = self.constants
         out = [g.without("--set gives it") if (g.feeds or g.place) in constants else g for g in completed]
         if not any(g.place in self.target.places or g.feeds or g.place for g in out):
-            raise InputError("no column of it fits the model", str(source.file),
-                             f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}")  # fmt: skip
+            raise InputError(
+                "no column of it fits the model",
+                str(source.file),
+                f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}",
+            )
         return out
 
     def _completed(self, g: Guess, label: str) -> Guess:
@@ -74,8 +77,11 @@ class Dialogue:
         draft = replace(draft, constants=inputs, boundaries=edges)
         if not any(g.place in self.target.places for g in draft.guesses):
             files = ", ".join(r.name for r in draft.records)
-            raise InputError("no column is a temperature at a place of the model", files,
-                             f"one for {', '.join(list(self.target.places)[:8])}")  # fmt: skip
+            raise InputError(
+                "no column is a temperature at a place of the model",
+                files,
+                f"one for {', '.join(list(self.target.places)[:8])}",
+            )
         draft = replace(draft, squares=squares_of(draft.guesses, self.target))
         return self._with_inputs(self._with_boundaries(draft))
 
@@ -87,8 +93,10 @@ class Dialogue:
             text = self._number(f"{draft.name}: temperature of {name} (degC)?", f"{usual:g}")
             values[name] = usual if text is None else text
             if text is None:
-                notes.append(f"{name} was not recorded: {usual:g} degC is assumed, the coldest sensor at the start "
-                             f"(--set {name}=VALUE)")  # fmt: skip
+                notes.append(
+                    f"{name} was not recorded: {usual:g} degC is assumed, the coldest sensor at the start "
+                    f"(--set {name}=VALUE)"
+                )
         return replace(draft, boundaries=values, notes=tuple(notes))
 
     def _with_inputs(self, draft: Draft) -> Draft:
@@ -102,8 +110,9 @@ class Dialogue:
         if unknown:
             files = ", ".join(r.name for r in draft.records)
             right = " ".join(f"--set {n}=VALUE" for n in unknown)
-            raise InputError(f"no column gives {', '.join(unknown)}, which the model reads", files,
-                             f"{right} where it was constant")  # fmt: skip
+            raise InputError(
+                f"no column gives {', '.join(unknown)}, which the model reads", files, f"{right} where it was constant"
+            )
         return replace(draft, constants=values)
 
     def _number(self, question: str, default: str) -> float | None:

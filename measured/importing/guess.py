@@ -59,8 +59,19 @@ PINT_UNITS = {
 }  # units of loggers that no table of a sheet lists, for pint
 SUREST = "unit and name"  # by which a column was told: such a one goes before others
 WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
-FIRST = ("temperature", "current", "speed", "torque", "power", "vehicle_speed", "voltage", "share", "water_flow",
-         "air_flow", "frequency")  # fmt: skip
+FIRST = (
+    "temperature",
+    "current",
+    "speed",
+    "torque",
+    "power",
+    "vehicle_speed",
+    "voltage",
+    "share",
+    "water_flow",
+    "air_flow",
+    "frequency",
+)
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
@@ -161,8 +172,7 @@ def _component(g: Guess, axis: str, axes: set[str], target: Target) -> Guess:
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
     """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
-    hot = {g.column: g for g in every
-           if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}  # fmt: skip
+    hot = {g.column: g for g in every if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}
     starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
     alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F
@@ -293,19 +303,20 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
     return [out[g.column] for g in guesses]
 
 
-def assigned(
-    guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target
-) -> list[Guess]:  # fmt: skip
+def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:
     """With a column at another place or input, "" to leave it out; what gave a boundary or an input before gives way.
 
     Raises InputError where it cannot go there.
     """
     single = to in target.inputs or to in target.boundaries
     return [
-        _moved(g, source, to, target) if g.column == column
-        else g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g
+        _moved(g, source, to, target)
+        if g.column == column
+        else g.without(f"{column} gives {to}")
+        if single and to in (g.place, g.feeds)
+        else g
         for g in guesses
-    ]  # fmt: skip
+    ]
 
 
 def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:

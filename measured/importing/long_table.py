@@ -25,9 +25,10 @@ def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: 
         return {}
     values = [j for j, name in enumerate(names) if j != key and set(tokens(name)) & VALUES]
     times = [
-        j for j, name in enumerate(names)
+        j
+        for j, name in enumerate(names)
         if (is_time(name) or all(map(is_date, columns[j][:LEAST]))) and len(set(columns[j])) > 1
-    ]  # fmt: skip
+    ]
     rest = [j for j in range(len(names)) if j != key and j not in times]
     if not times or not (values or len(rest) == 1):
         return {}

@@ -39,13 +39,13 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     head = rows[:SAMPLE]
     widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
-        raise InputError("no rows of readings in it: it is no record", where,
-                         "columns of numbers, with a header or without")  # fmt: skip
+        raise InputError(
+            "no rows of readings in it: it is no record", where, "columns of numbers, with a header or without"
+        )
     most = widths[max(widths, key=lambda n: n * widths[n])]
     width = max(n for n, count in widths.items() if count >= 0.5 * most)
     if width < 2:
-        raise InputError("the file has one column only", where,
-                         "a time or an input, and at least one temperature")  # fmt: skip
+        raise InputError("the file has one column only", where, "a time or an input, and at least one temperature")
     first = _first(head, width, where)
     block = _block(rows, first, width)
     units = next((i for i in reversed(block) if _all_units(rows[i])), None)
@@ -70,8 +70,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
         names = [names[0], *(f"{name} {remark}".strip() for name, remark in zip(names[1:], remarks[1:], strict=True))]
-    return Layout(tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width,
-                  block[0])  # fmt: skip
+    return Layout(
+        tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width, block[0]
+    )
 
 
 def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:

@@ -152,7 +152,7 @@ def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
 
 def _of_table(
     file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
-) -> Source:  # fmt: skip
+) -> Source:
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once(_plain(plan.names))
@@ -178,9 +178,13 @@ def _plain(names: Sequence[str]) -> list[str]:
 
 
 def _source(
-    file: Path, names: Sequence[str], columns: Sequence[Any], units: Mapping[str, str], notes: Sequence[str],
+    file: Path,
+    names: Sequence[str],
+    columns: Sequence[Any],
+    units: Mapping[str, str],
+    notes: Sequence[str],
     start: float | None = None,
-) -> Source:  # fmt: skip
+) -> Source:
     pairs = list(zip(names, columns, strict=True))
     cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
     if sum(map(_any, cells.values())) < 2:

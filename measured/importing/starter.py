@@ -40,8 +40,9 @@ def starter(columns: Columns, name: str, span_s: float) -> str:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        raise InputError("no column is a temperature of a machine", files,
-                         "a column with degC or K, or a name such as T_winding")  # fmt: skip
+        raise InputError(
+            "no column is a temperature of a machine", files, "a column with degC or K, or a name such as T_winding"
+        )
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
@@ -60,8 +61,10 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         if wound and not any(
             Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place
         ):
-            out.setdefault("winding", f"the winding was not placed: '{wound[0]}' looks like winding; "
-                           f"--place {quote(f'{wound[0]}=PLACE')}")  # fmt: skip
+            out.setdefault(
+                "winding",
+                f"the winding was not placed: '{wound[0]}' looks like winding; --place {quote(f'{wound[0]}=PLACE')}",
+            )
         hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
         if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
             out.setdefault("bearing", "no winding is measured, a bearing alone")
@@ -154,15 +157,17 @@ def _loss(name: str, at: str, watts: float, of: str) -> str:
     return "\n".join([*(line for line in lines if line), f"prior_sd = {SPREAD}", ""])
 
 
-def _toml(
-    name: str, nodes: Sequence[str], boundaries: Sequence[str], C: float, G: float, heat: str
-) -> str:  # fmt: skip
+def _toml(name: str, nodes: Sequence[str], boundaries: Sequence[str], C: float, G: float, heat: str) -> str:
     """One link from node to node in a row, and one to each boundary."""
     lines = [
         "# A first network made from the columns alone: every number is an order of magnitude. Put in what you know:",
-        "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope model calibrate.", "",
-        "[network]", f"name = {toml_value(name)}", f"boundaries = {toml_value(list(boundaries))}", "",
-    ]  # fmt: skip
+        "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope model calibrate.",
+        "",
+        "[network]",
+        f"name = {toml_value(name)}",
+        f"boundaries = {toml_value(list(boundaries))}",
+        "",
+    ]
     for node in nodes:
         role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
         lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
@@ -170,6 +175,11 @@ def _toml(
     outside = [(n, b, G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
     for i, (a, b, size) in enumerate((*inside, *outside), 1):
         link = f"{a}-{b}" if is_plain(f"{a}-{b}") else f"link-{i}"
-        lines += [f"[links.{toml_key(link)}]", f"between = {toml_value([a, b])}", f"G_W_K = {size:.3g}",
-                  f"prior_sd = {SPREAD}", ""]  # fmt: skip
+        lines += [
+            f"[links.{toml_key(link)}]",
+            f"between = {toml_value([a, b])}",
+            f"G_W_K = {size:.3g}",
+            f"prior_sd = {SPREAD}",
+            "",
+        ]
     return "\n".join([*lines, heat])

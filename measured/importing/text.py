@@ -62,8 +62,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         columns = _raw([row for row in rows if any(row)], plan.width)
         whole = in_thousands(columns)
-        notes += [f"{file.name}: the sign in the numbers of '{plan.names[j] or f'column {j + 1}'}' stands between "
-                  "thousands" for j in whole]  # fmt: skip
+        notes += [
+            f"{file.name}: the sign in the numbers of '{plan.names[j] or f'column {j + 1}'}' stands between thousands"
+            for j in whole
+        ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     return plan, columns, notes, _interval("".join(lines[: plan.first]))
 
@@ -112,8 +114,11 @@ def decoded(raw: bytes, file: Path) -> str:
         if len(zeros) > 4 and zeros.count(0) > 0.9 * len(zeros):
             return raw.decode(encoding, errors="replace")
     if b"\0" in raw:
-        raise InputError("holds zero bytes, so it is no text: it is no record", str(file),
-                         "CSV or other text, .xlsx, .tdms, .mf4 or .parquet")  # fmt: skip
+        raise InputError(
+            "holds zero bytes, so it is no text: it is no record",
+            str(file),
+            "CSV or other text, .xlsx, .tdms, .mf4 or .parquet",
+        )
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError:

@@ -30,8 +30,11 @@ def clock_shift(time: Array, values: Array, other_time: Array, other: Array, lim
     score = np.array([_agreement(time, values, other_time + s, other) for s in shifts])
     best = int(np.argmax(score))
     if not score[best] > AGREE:
-        raise InputError(f"the records agree with a correlation of {score[best]:.2f} at best", where,
-                         "the same quantity in both, or shift_s = ...")  # fmt: skip
+        raise InputError(
+            f"the records agree with a correlation of {score[best]:.2f} at best",
+            where,
+            "the same quantity in both, or shift_s = ...",
+        )
     if best in (0, shifts.size - 1):
         raise InputError(f"the clocks differ by {limit_s:g} s or more", where, "limit_s = ... larger, or shift_s = ...")
     left, middle, right = score[best - 1 : best + 2]
@@ -59,8 +62,9 @@ def merged(table: DataTable, time: str, others: Mapping[str, tuple[DataTable, st
     for name, (other, clock, _) in others.items():
         for column in other.columns:
             if column in cells and column != clock:
-                raise InputError(f"column '{column}' is recorded twice", f"{where} [recorders.{name}]",
-                                 "columns of other names")  # fmt: skip
+                raise InputError(
+                    f"column '{column}' is recorded twice", f"{where} [recorders.{name}]", "columns of other names"
+                )
         cells |= {c: _at(instants, clocks[name], other[c]) for c in other.columns if c != clock}
     return DataTable(cells)
 

@@ -169,8 +169,11 @@ def _header(file: Path, content: bytes) -> tuple[list[str], int]:
             raise InputError(f"columns are separated by {name}", str(file), "commas between columns, points in numbers")
     COLUMNS.check(len(header), f"{file} line 1", "holds")
     if any(cell.strip() for cell in first[len(header) :]):
-        raise InputError(f"{len(first)} values under {len(header)} names", f"{file} line 2",
-                         "as many as names: decimal commas become points, the header is line 1")  # fmt: skip
+        raise InputError(
+            f"{len(first)} values under {len(header)} names",
+            f"{file} line 2",
+            "as many as names: decimal commas become points, the header is line 1",
+        )
     return header, start
 
 
@@ -183,11 +186,17 @@ def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
     for number, line in enumerate(io.BytesIO(block), first):
         columns = line.count(b",") + 1
         if columns < least and line.strip():
-            raise InputError(f"{columns} values under {least} names: the row was cut off", f"{file} line {number}",
-                             "a whole row (commas where nothing was read), or none: delete it")  # fmt: skip
+            raise InputError(
+                f"{columns} values under {least} names: the row was cut off",
+                f"{file} line {number}",
+                "a whole row (commas where nothing was read), or none: delete it",
+            )
         if columns > len(header) and any(cell.strip() for cell in line.split(b",")[len(header) :]):
-            raise InputError(f"{columns} values under {len(header)} names", f"{file} line {number}",
-                             "as many as names: decimal commas become points")  # fmt: skip
+            raise InputError(
+                f"{columns} values under {len(header)} names",
+                f"{file} line {number}",
+                "as many as names: decimal commas become points",
+            )
 
 
 def chunks(file: Path) -> Iterator[bytes]:
@@ -218,6 +227,7 @@ def _content(file: Path) -> bytes:
     try:
         content.decode("utf-8")
     except UnicodeDecodeError as fault:
-        raise InputError(f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file),
-                         "CSV saved as UTF-8") from None  # fmt: skip
+        raise InputError(
+            f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file), "CSV saved as UTF-8"
+        ) from None
     return content

@@ -24,8 +24,25 @@ Column = NDArray[Any]
 HEADER = 2  # line of the first row of numbers
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
 # As loggers, spreadsheets and statistics programs write that nothing was read.
-MISSING = frozenset({"", "#n/a", "#n/a n/a", "#na", "-1.#ind", "1.#ind", "-1.#qnan", "1.#qnan", "-nan", "nan", "<na>",
-                     "n/a", "na", "null", "none"})  # fmt: skip
+MISSING = frozenset(
+    {
+        "",
+        "#n/a",
+        "#n/a n/a",
+        "#na",
+        "-1.#ind",
+        "1.#ind",
+        "-1.#qnan",
+        "1.#qnan",
+        "-nan",
+        "nan",
+        "<na>",
+        "n/a",
+        "na",
+        "null",
+        "none",
+    }
+)
 SWITCH = {"true": True, "false": False}
 
 
@@ -134,8 +151,11 @@ def _numbers(column: Column, name: str, file: Path) -> Array:
     values = [as_number(word) for word in column]
     if None in values:
         row = values.index(None)
-        raise InputError(f"'{column[row]}' is no number", cell(file, name, row),
-                         "a number with a decimal point, or nothing where nothing was read")  # fmt: skip
+        raise InputError(
+            f"'{column[row]}' is no number",
+            cell(file, name, row),
+            "a number with a decimal point, or nothing where nothing was read",
+        )
     return np.array(values, float)
 
 

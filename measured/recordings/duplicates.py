@@ -24,8 +24,9 @@ def declared_once(sheet: Sheet) -> None:
     if CLOCK in (*inputs, *sheet.inputs, *sheet.squares, *sheet.events):
         raise InputError(f"input '{CLOCK}' is the clock of the test itself", sheet.where, "another name for it")
     for name in twice([*inputs, *sheet.inputs, *sheet.squares, *sheet.events]):
-        raise InputError(f"input '{name}' is fed twice", sheet.where, "one column or constant per input: "
-                         "use = false for the others")  # fmt: skip
+        raise InputError(
+            f"input '{name}' is fed twice", sheet.where, "one column or constant per input: use = false for the others"
+        )
     for header in twice(c.header for c in sheet.columns if c.is_temperature):
         tables = " and ".join(f"[columns.{c.name}]" for c in sheet.columns if c.header == header and c.is_temperature)
         raise InputError(f"{tables} are one column, '{header}'", sheet.where, "one table per sensor")

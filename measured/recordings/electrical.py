@@ -61,8 +61,9 @@ class After:
         table = read_recording(file, self.worksheet)
         for name in (self.time, self.column):
             if name not in table.columns:
-                raise InputError(f"column '{name}' is not in {self.file.name}", self.where,
-                                 f"known: {', '.join(table.columns)}")  # fmt: skip
+                raise InputError(
+                    f"column '{name}' is not in {self.file.name}", self.where, f"known: {', '.join(table.columns)}"
+                )
         read = pairs(table, self.time, self.column, file)
         sd = winding.reading_sd(float(np.median(read[:, 1])))
         cooling = Cooling(read[:, 0], winding.temperature(read[:, 1]), self.ambient, sd)
@@ -165,9 +166,14 @@ def _after(table: Table, name: str, folder: Path) -> After | None:
     if not data.data:
         return None
     after = After(
-        folder / data.word("file"), data.word("time", "time_s"), data.word("column", name), data.word("worksheet", ""),
-        data.word("method", "exponentials", METHODS), data.number("ambient_degC"),
-        data.number("rated_kW", 50.0), data.where,
-    )  # fmt: skip
+        folder / data.word("file"),
+        data.word("time", "time_s"),
+        data.word("column", name),
+        data.word("worksheet", ""),
+        data.word("method", "exponentials", METHODS),
+        data.number("ambient_degC"),
+        data.number("rated_kW", 50.0),
+        data.where,
+    )
     data.close()
     return after

@@ -49,8 +49,10 @@ def read_events(name: str, table: Table, folder: Path) -> Events:
     at, values = table.numbers("at_s"), table.raw("value")
     table.close()
     if not isinstance(values, list) or len(values) != len(at):
-        raise table.error(f"at_s has {len(at)} instants, value is {excerpt(values)}",
-                          'value = ["off", "on", ...] or numbers, one for each instant')  # fmt: skip
+        raise table.error(
+            f"at_s has {len(at)} instants, value is {excerpt(values)}",
+            'value = ["off", "on", ...] or numbers, one for each instant',
+        )
     return _checked(list(at), [_value(v, table.where) for v in values], table.where)
 
 
@@ -81,8 +83,11 @@ def _plain(cell: Any) -> Any:
 
 def _checked(at: list[float], values: list[float], where: str) -> Events:
     if not at or at[0] != 0.0:
-        raise InputError("the first event is not at the start, so what held before it is unknown", where,
-                         "at_s = [0, ...] with the state at the start")  # fmt: skip
+        raise InputError(
+            "the first event is not at the start, so what held before it is unknown",
+            where,
+            "at_s = [0, ...] with the state at the start",
+        )
     if not all(b > a for a, b in itertools.pairwise(at)):
         raise InputError("events do not follow each other in time", where, "at_s that rises, a time for each")
     return Events(np.array(at), np.array(values))

@@ -79,18 +79,22 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     """
     suffix = _suffix(file)
     readers: dict[str, Callable[[], DataTable]] = {
-        ".csv": lambda: read_csv(file), ".csv.gz": lambda: read_csv(file),
+        ".csv": lambda: read_csv(file),
+        ".csv.gz": lambda: read_csv(file),
         ".xlsx": lambda: _table(file, "an Excel workbook", "openpyxl", lambda: _xlsx(file, worksheet)),
         ".tdms": lambda: _table(file, "TDMS", "nptdms", lambda: _tdms(file, worksheet)),
         ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
         ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
         **{f".{name}": partial(_foreign, file, name, read) for name, read in READERS.items()},
-    }  # fmt: skip
+    }
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
     if worksheet and suffix not in SHEETS:
-        raise InputError(f"'{worksheet}' is asked for, and such a file has no worksheets", str(file),
-                         f"no worksheet, or a file ending in {' or '.join(SHEETS)}")  # fmt: skip
+        raise InputError(
+            f"'{worksheet}' is asked for, and such a file has no worksheets",
+            str(file),
+            f"no worksheet, or a file ending in {' or '.join(SHEETS)}",
+        )
     table = readers[suffix]()
     if table.rows < least:
         raise InputError(f"the file holds {table.rows} rows", str(file), f"at least {least} rows under the header")

@@ -25,9 +25,12 @@ def grid_of(samples: Samples, step: float, where: str) -> tuple[Array, list[str]
     interval = max(step, usual)
     count = span / interval + 1
     if not LEAST <= count <= INSTANTS.most or span > LONGEST_S:
-        raise InputError(f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of "
-                         f"{interval:.4g} s", where, f"{LEAST} to {INSTANTS.most:,} instants ({INSTANTS.variable}) and "
-                         "at most a year: is time_unit right, and sample_s of case.toml?")  # fmt: skip
+        raise InputError(
+            f"the test lasts {span:.4g} s with a row every {usual:.4g} s: {count:.3g} instants of {interval:.4g} s",
+            where,
+            f"{LEAST} to {INSTANTS.most:,} instants ({INSTANTS.variable}) and "
+            "at most a year: is time_unit right, and sample_s of case.toml?",
+        )
     coarse = usual > COARSE * step
     note = f"{samples.file.name}: rows are {usual:g} s apart, sample_s is {step:g} s; is time_unit in {where} right?"
     return np.arange(0.0, span + ROUNDING * interval, interval), [note] if coarse else []

@@ -96,9 +96,14 @@ def _recorded(sheet: Sheet, samples: Samples) -> dict[str, Array]:
 
 
 def _step(
-    network: Network, samples: Samples, fine: Mapping[str, Array], start: Mapping[str, float], air: Mapping[str, str],
-    sensors: Sequence[Sensor], wished: float | None,
-) -> SampleStep:  # fmt: skip
+    network: Network,
+    samples: Samples,
+    fine: Mapping[str, Array],
+    start: Mapping[str, float],
+    air: Mapping[str, str],
+    sensors: Sequence[Sensor],
+    wished: float | None,
+) -> SampleStep:
     """The step that the sensors do not feel."""
     around = {**start, **{place: float(np.nanmean(samples.values[column])) for place, column in air.items()}}
     level = max(float(np.nanmax(samples.values[c])) for s in sensors for c in s.columns)
@@ -120,8 +125,9 @@ def _on_grid(
         values = samples.values[column.name]
         if not column.is_temperature:
             values = np.where(np.isfinite(values), fine[column.feeds], np.nan)
-        whole, doubts = bridged(grid, mean(samples.time, values, grid), sheet.max_gap_s,
-                                f"{samples.file} column '{column.name}'")  # fmt: skip
+        whole, doubts = bridged(
+            grid, mean(samples.time, values, grid), sheet.max_gap_s, f"{samples.file} column '{column.name}'"
+        )
         notes += doubts
         (boundaries if column.is_temperature else inputs)[column.feeds or column.place] = whole
     inputs |= {name: _root_sum_square(name, of, sheet, inputs) for name, of in sheet.squares.items()}
@@ -191,12 +197,21 @@ def _sensors(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
 def _channels(sheet: Sheet, samples: Samples, network: Network) -> list[Sensor]:
     inside = {name for mean in sheet.means for name in mean.of}
     return [
-        Sensor(Channel(c.name, c.place, row_of(network, c.place, c.position_mm, c.where), NONE,
-                       samples.sigma_K.get(c.name, c.sigma_K), c.lag_s),
-               (c.name,), c.electrical is not None and c.electrical.after is not None)
+        Sensor(
+            Channel(
+                c.name,
+                c.place,
+                row_of(network, c.place, c.position_mm, c.where),
+                NONE,
+                samples.sigma_K.get(c.name, c.sigma_K),
+                c.lag_s,
+            ),
+            (c.name,),
+            c.electrical is not None and c.electrical.after is not None,
+        )
         for c in sheet.columns
         if c.is_temperature and c.place not in network.boundaries and c.name not in inside
-    ]  # fmt: skip
+    ]
 
 
 def _means(sheet: Sheet, network: Network) -> list[Sensor]:

@@ -155,14 +155,23 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path(), head:
     filtered = test.number("filter_s", 0.0)
     time_unit = checked_unit("time", test.raw("time_unit", "s"), test.where)
     sheet = Sheet(
-        where, "" if period else test.word("time"), time_unit, period,
-        test.word("description", ""), _initial(test), test.number("max_gap_s", MAX_GAP_S),
+        where,
+        "" if period else test.word("time"),
+        time_unit,
+        period,
+        test.word("description", ""),
+        _initial(test),
+        test.number("max_gap_s", MAX_GAP_S),
         tuple(c for name, table in columns.items() if (c := _column(name, table, filtered, folder)) is not None),
         tuple(_mean(name, table, filtered) for name, table in means.items()),
-        {name: squares.members(name) for name in squares.data}, inputs, boundaries, test.word("worksheet", ""),
+        {name: squares.members(name) for name in squares.data},
+        inputs,
+        boundaries,
+        test.word("worksheet", ""),
         {name: _recorder(table, folder) for name, table in recorders.items()},
-        {name: read_events(name, table, folder) for name, table in events.items()}, *_window(test),
-    )  # fmt: skip
+        {name: read_events(name, table, folder) for name, table in events.items()},
+        *_window(test),
+    )
     test.close()
     if not sheet.columns:
         raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
@@ -225,10 +234,15 @@ def _recorder(table: Table, folder: Path) -> Recorder:
             f"align = {list(align)}", "align = [a column of the test, one of this recorder that shows the same]"
         )
     recorder = Recorder(
-        folder / table.word("file"), table.word("time", "time_s"),
-        checked_unit("time", table.raw("time_unit", "s"), table.where), table.word("worksheet", ""),
-        table.number("shift_s", 0.0), align, table.number("limit_s", 120.0), table.where,
-    )  # fmt: skip
+        folder / table.word("file"),
+        table.word("time", "time_s"),
+        checked_unit("time", table.raw("time_unit", "s"), table.where),
+        table.word("worksheet", ""),
+        table.number("shift_s", 0.0),
+        align,
+        table.number("limit_s", 120.0),
+        table.where,
+    )
     table.close()
     return recorder
 

@@ -52,8 +52,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     table = _merged(file, sheet)
     for name in [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)]:
         if name not in table.columns:
-            raise InputError(f"column '{name}' is not in the file", f"{file} (asked for by {sheet.where})",
-                             suggestion(name, table.columns))  # fmt: skip
+            raise InputError(
+                f"column '{name}' is not in the file",
+                f"{file} (asked for by {sheet.where})",
+                suggestion(name, table.columns),
+            )
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
     time = time[rows]
@@ -70,8 +73,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
             notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
             raw = np.where(codes, np.nan, raw)
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:
-            raise InputError(f"holds true and false, no {column.quantity}", f"{file} column '{column.header}'",
-                             "numbers, or another column")  # fmt: skip
+            raise InputError(
+                f"holds true and false, no {column.quantity}",
+                f"{file} column '{column.header}'",
+                "numbers, or another column",
+            )
         values[column.name], sensor_sigma = _in_memory(column, raw, file)
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
@@ -110,8 +116,14 @@ def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, 
     _rising(seconds, table[recorder.time], recorder.time, file)
     if recorder.align:
         here, there = recorder.align
-        shift = clock_shift(main[time], numbers(main, here, file), seconds, numbers(table, there, file),
-                            recorder.limit_s, recorder.where)  # fmt: skip
+        shift = clock_shift(
+            main[time],
+            numbers(main, here, file),
+            seconds,
+            numbers(table, there, file),
+            recorder.limit_s,
+            recorder.where,
+        )
         if there == here:
             table = DataTable({name: column for name, column in table.cells.items() if name != there})
     return table.with_columns(**{recorder.time: seconds}), recorder.time, shift
@@ -141,8 +153,11 @@ def _rising(t: Array, column: NDArray[Any], name: str, file: Path) -> None:
         row = int(wrong[0]) + 1
         what = "is given twice" if t[row] == t[row - 1] else f"comes after {_text(column[row - 1])}"
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-        raise InputError(f"time {_text(column[row])} {what}{count}", cell(file, name, row),
-                         "times that rise from row to row: sort the file by time and delete repeated rows")  # fmt: skip
+        raise InputError(
+            f"time {_text(column[row])} {what}{count}",
+            cell(file, name, row),
+            "times that rise from row to row: sort the file by time and delete repeated rows",
+        )
 
 
 def _text(time: Any) -> str:
@@ -180,8 +195,11 @@ def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     """The rows from from_s to to_s."""
     inside = np.flatnonzero((time >= sheet.from_s) & (time <= sheet.to_s))
     if inside.size < LEAST:
-        raise InputError(f"{inside.size} rows lie from {sheet.from_s:g} to {sheet.to_s:g} s", f"{sheet.where} [test]",
-                         f"from_s and to_s within the recording, 0 to {time[-1]:g} s")  # fmt: skip
+        raise InputError(
+            f"{inside.size} rows lie from {sheet.from_s:g} to {sheet.to_s:g} s",
+            f"{sheet.where} [test]",
+            f"from_s and to_s within the recording, 0 to {time[-1]:g} s",
+        )
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
@@ -197,9 +215,11 @@ def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
     if out.size:
         what, row = "is below absolute zero" if values[out[0]] < -ZERO_C else "cannot be", int(out[0])
         unit = " degC" if column.is_temperature else ""
-        raise InputError(f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
-                         cell(file, column.name, row + first), f"{low:g} to {high:g}{unit}: check the unit in the "
-                         "sheet, or leave the cell empty where nothing was read")  # fmt: skip
+        raise InputError(
+            f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
+            cell(file, column.name, row + first),
+            f"{low:g} to {high:g}{unit}: check the unit in the sheet, or leave the cell empty where nothing was read",
+        )
     if missing.size and column.electrical is None:
         line = missing[0] + HEADER + first
         return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]

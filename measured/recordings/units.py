@@ -44,9 +44,7 @@ QUANTITIES: dict[str, Quantity] = {
 
 MEMORY_UNIT = {
     name: next((unit for unit, how in q.units.items() if how == (1, 0)), "") for name, q in QUANTITIES.items()
-} | {
-    "share": "% where the input's name ends in _percent, else 0 to 1",
-}  # what memory holds
+} | {"share": "% where the input's name ends in _percent, else 0 to 1"}  # what memory holds
 
 ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 LONGEST = 40  # characters
@@ -54,9 +52,12 @@ _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any
 
 PINT = {
-    "speed": "revolution / minute", "share": "percent", "fraction": "dimensionless", "water_flow": "liter / minute",
+    "speed": "revolution / minute",
+    "share": "percent",
+    "fraction": "dimensionless",
+    "water_flow": "liter / minute",
     "air_flow": "m**3 / hour",
-}  # fmt: skip
+}
 
 
 def checked_unit(of: str, unit: Any, where: str) -> str:

@@ -93,9 +93,10 @@ class Modes:
         shape, weight = lift @ V, np.linalg.solve(V, fall / C[warm, None]) / rate[:, None]
         at_once = np.eye(n)[:, bare]
         return cls(
-            np.append(rate, np.full(bare.size, np.inf)), np.hstack([shape, at_once]),
+            np.append(rate, np.full(bare.size, np.inf)),
+            np.hstack([shape, at_once]),
             np.vstack([weight, inverse @ np.eye(n)[bare]]),
-        )  # fmt: skip
+        )
 
 
 def interpolation_error(x: Array) -> Array:
@@ -105,9 +106,14 @@ def interpolation_error(x: Array) -> Array:
 
 
 def sample_step(
-    network: Network, time: Array, inputs: Mapping[str, Array], around: Mapping[str, float],
-    sensors: Sequence[Sensor], level: float, wished: float | None = None,
-) -> SampleStep:  # fmt: skip
+    network: Network,
+    time: Array,
+    inputs: Mapping[str, Array],
+    around: Mapping[str, float],
+    sensors: Sequence[Sensor],
+    level: float,
+    wished: float | None = None,
+) -> SampleStep:
     """The step for one record: no finer than its own, no coarser than `wished` (s) or the instants of a fit.
 
     time (n,) s, inputs (n,): as recorded;  around : boundary -> degC;  sensors : sensors

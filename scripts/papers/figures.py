@@ -15,10 +15,15 @@ from validation.parameters.unknowns import standing
 
 Array = NDArray[np.float64]
 NODES = {  # fig. 1, from the middle to the outside -> parts of the network
-    "shaft": ("shaft",), "rotor lamination": ("rotor.core",), "magnets": ("magnets",), "winding": ("winding",),
-    "end windings": ("winding.left", "winding.right"), "stator lamination": ("stator.core",),
-    "end-caps": ("endcap.left", "endcap.right"), "base": ("base", "base.plate"),
-}  # fmt: skip
+    "shaft": ("shaft",),
+    "rotor lamination": ("rotor.core",),
+    "magnets": ("magnets",),
+    "winding": ("winding",),
+    "end windings": ("winding.left", "winding.right"),
+    "stator lamination": ("stator.core",),
+    "end-caps": ("endcap.left", "endcap.right"),
+    "base": ("base", "base.plate"),
+}
 STAGES = (
     ("fig. 3, 1: thermal test", "`thermoscope bench protocol` lists and checks its steps"),
     (
@@ -72,10 +77,14 @@ def figure_2() -> Section:
     inside, between, along = slots()
     rows = (
         Row("within one slot", "10 K", f"{inside:.1f} K", "from liner to the bundle's middle and along the slot"),
-        Row("between slots", "8 K", f"{between:.1f} K",
-            "in the model only the base tells slots apart; the paper's differ by how they were made"),
+        Row(
+            "between slots",
+            "8 K",
+            f"{between:.1f} K",
+            "in the model only the base tells slots apart; the paper's differ by how they were made",
+        ),
         Row("end of the slot against its middle", "-", f"{along:+.1f} K"),
-    )  # fmt: skip
+    )
     words = (
         "Spread of the winding's temperature on the bench at the end of the test, from the network's own field. The "
         "paper's thermocouples have no published positions. Where a sensor sits is worth kelvins, which is why means "

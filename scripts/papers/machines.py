@@ -192,8 +192,10 @@ def table_two() -> Section:
     rows = [Row("gap of M1", "1.4 mm", gap, f"{true}; as drawn, over the multiplier of its conductivity")]
     for name, published in TRUE_BASES.items():
         heat, _ = carried_off(name)
-        ours = (f"{_with_interval(name, 'path_W_K')}: {heat.conduction:.0f} W through the foot, "
-                f"{heat.convection:.0f} W by convection, {heat.radiation:.0f} W by radiation")  # fmt: skip
+        ours = (
+            f"{_with_interval(name, 'path_W_K')}: {heat.conduction:.0f} W through the foot, "
+            f"{heat.convection:.0f} W by convection, {heat.radiation:.0f} W by radiation"
+        )
         rows.append(Row(f"base, {name}", published, ours, f"hidden {hidden()[name]['base_path_W_K']:.2f} W/K"))
     rows += [
         Row(f"body, {name}", "-", _with_interval(name, "body_W_K"), f"hidden {hidden()[name]['body_path_W_K']:.2f} W/K")
@@ -214,8 +216,16 @@ PUBLISHED_W = {"bench": ("pmsm-m1", 222, 0), "m2": ("pmsm-m2", 246, 77), "m3": (
 
 def constructive() -> Section:
     """The grey part of table II: the machines as their files have them, and the losses of their tests."""
-    head = ("machine", "slots / poles", "length (mm)", "conductors per slot", "copper loss, published (W)", "here (W)",
-            "magnetic loss, published (W)", "here (W)")  # fmt: skip
+    head = (
+        "machine",
+        "slots / poles",
+        "length (mm)",
+        "conductors per slot",
+        "copper loss, published (W)",
+        "here (W)",
+        "magnetic loss, published (W)",
+        "here (W)",
+    )
     table: list[tuple[Any, ...]] = [head]
     for test, (name, copper, magnetic) in PUBLISHED_W.items():
         machine, path = load_machine(name), paths()[test]
@@ -238,13 +248,30 @@ def _with_interval(test: str, way: str) -> str:
 
 def wrong_base() -> Section:
     """Every base held against every test."""
-    head = ("test", "base", "sheet", "deviance over the best", "", "through the foot (W)", "convection (W)",
-            "radiation (W)")  # fmt: skip
+    head = (
+        "test",
+        "base",
+        "sheet",
+        "deviance over the best",
+        "",
+        "through the foot (W)",
+        "convection (W)",
+        "radiation (W)",
+    )
     rows = [
-        (h.test, h.base, "yes" if h.declared else "", f"{h.deviance:.1f}", "excluded" if h.excluded else "possible",
-         f"{h.heat.conduction:.0f}", f"{h.heat.convection:.0f}", f"{h.heat.radiation:.0f}")
-        for h in tried() if h.test in BASE_TESTS
-    ]  # fmt: skip
+        (
+            h.test,
+            h.base,
+            "yes" if h.declared else "",
+            f"{h.deviance:.1f}",
+            "excluded" if h.excluded else "possible",
+            f"{h.heat.conduction:.0f}",
+            f"{h.heat.convection:.0f}",
+            f"{h.heat.radiation:.0f}",
+        )
+        for h in tried()
+        if h.test in BASE_TESTS
+    ]
     words = (
         "The paper calibrates each base by hand and cannot ask whether it was the right one. `thermoscope bench "
         "bases`, and `diagnose` before it names an effect, fit all tests together for every base a test may have "

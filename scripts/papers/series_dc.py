@@ -28,10 +28,14 @@ def ratings() -> Section:
         Row("L_af from T = L_af I^2", "-", f"{1e3 * m.L_af:.3f} mH"),
         Row("back-EMF at the rated point", "-", f"{omega * m.L_af * RATED['current']:.1f} V"),
         Row("R_a + R_f from eq. 1 in steady state", "-", f"{1e3 * m.R:.1f} mOhm"),
-        Row("loss at the rated point", "-", f"{loss / 1e3:.2f} kW",
-            "all of it counts as (R_a + R_f) I^2 (eq. 7); friction and iron loss are not published"),
+        Row(
+            "loss at the rated point",
+            "-",
+            f"{loss / 1e3:.2f} kW",
+            "all of it counts as (R_a + R_f) I^2 (eq. 7); friction and iron loss are not published",
+        ),
         Row("efficiency", "-", f"{RATED['power'] / (RATED['power'] + loss):.3f}"),
-    )  # fmt: skip
+    )
     return Section("Table 1 and eq. 1 to 7: ratings", "The ratings fix the series machine of eq. 1 to 6.", rows)
 
 
@@ -48,12 +52,18 @@ def warming() -> Section:
     fit = fit_eq8(MINUTES, curve, start_C=20.0)
     noisy = fit_eq8(MINUTES, curve + 0.5 * np.random.default_rng(1).standard_normal(MINUTES.size))
     rows = (
-        *(Row(name, f"{p:g}", f"{v:.4g}", f"with 0.5 K of scatter {_ci(noisy.ci95[name])}")
-          for name, p, v in zip("abc", PUBLISHED, (fit.a, fit.b, fit.c))),
+        *(
+            Row(name, f"{p:g}", f"{v:.4g}", f"with 0.5 K of scatter {_ci(noisy.ci95[name])}")
+            for name, p, v in zip("abc", PUBLISHED, (fit.a, fit.b, fit.c))
+        ),
         Row("T(0)", "ambient, 20 degC", f"{fit.start:.1f} degC", fit.warnings[0]),
-        Row("tau_95, time to 95 % of T_e", "-", f"{fit.time_to_share_min():.1f} min",
-            f"95 % of the rise {fit.rise_min():.1f} min"),
-    )  # fmt: skip
+        Row(
+            "tau_95, time to 95 % of T_e",
+            "-",
+            f"{fit.time_to_share_min():.1f} min",
+            f"95 % of the rise {fit.rise_min():.1f} min",
+        ),
+    )
     words = "T = a exp(b exp(c t)), t in minutes, fitted to the published curve every half minute."
     return Section("Figure 9 and eq. 8: the left flange in forced air", words, rows, picture="eq8.png")
 
@@ -101,12 +111,19 @@ def coolants() -> Section:
     loss = RATED["voltage"] * RATED["current"] - RATED["power"]
     rows = (
         Row("138 m3/h of air", "start value", f"{138 / 3600 * air:.0f} W/K in air of 1.2 kg/m3 and 20 degC"),
-        Row("240 m3/h of air", "after correction", f"{240 / 3600 * air:.0f} W/K",
-            "turning up the air flow hid convection on the right flange"),
-        Row("8 l/min of 50/50 glycol", "20 to 80 degC",
+        Row(
+            "240 m3/h of air",
+            "after correction",
+            f"{240 / 3600 * air:.0f} W/K",
+            "turning up the air flow hid convection on the right flange",
+        ),
+        Row(
+            "8 l/min of 50/50 glycol",
+            "20 to 80 degC",
             f"{rate:.0f} W/K: 12.4 kW heats it {loss / rate:.1f} K in one pass",
-            "20 to 80 degC is the loop warming up, not the rise through the jacket"),
-    )  # fmt: skip
+            "20 to 80 degC is the loop warming up, not the rise through the jacket",
+        ),
+    )
     return Section("Section 3: what the coolants can carry", "Heat capacity rates of the stated flows.", rows)
 
 

@@ -67,14 +67,22 @@ def figure_6() -> Section:
     meter, both = magnets(290.0, False), magnets(290.0, True)
     alpha = (magnet_rise(1 - 0.1e-2 * RISE, 1.0, -0.11e-2), magnet_rise(1 - 0.11e-2 * RISE, 1.0, -0.1e-2))
     rows = (
-        Row("meter, worst case", "about 8 K", f"{_pm(meter.worst)} K at 290 V",
-            "the voltage is not published; 290 V gives 8 K"),
+        Row(
+            "meter, worst case",
+            "about 8 K",
+            f"{_pm(meter.worst)} K at 290 V",
+            "the voltage is not published; 290 V gives 8 K",
+        ),
         Row("alpha -0.10 or -0.11 %/K", "another 7 K", f"{alpha[0] - RISE:+.1f} / {alpha[1] - RISE:+.1f} K"),
         Row("both, worst case", "-", f"{_pm(both.worst)} K"),
-        Row("both, GUM 95 %", "-", f"{_pm(both.first_order)} K",
-            "limits that act together are seldom all at their worst"),
+        Row(
+            "both, GUM 95 %",
+            "-",
+            f"{_pm(both.first_order)} K",
+            "limits that act together are seldom all at their worst",
+        ),
         Row("both, Monte Carlo 95 %", "-", f"{_pm(both.interval)} K"),
-    )  # fmt: skip
+    )
     table = [("cold back-EMF (V)", "meter, worst case (K)", "both, worst case (K)", "both, GUM 95 % (K)")]
     table += [
         (f"{E:g}", _pm(magnets(E, False).worst), _pm(magnets(E, True).worst), _pm(magnets(E, True).first_order))
@@ -113,17 +121,32 @@ def screening() -> Screening:
 def figure_11() -> Section:
     found = screening().effects["magnets"]
     step = screening().effects["winding minus magnets"]
-    names = {"convection": "leads", "emissivity": "leads", "base": "leads", "magnetic loss": "raises it",
-             "winding impregnation": "small", "end-winding impregnation": "small", "speed": "small"}  # fmt: skip
+    names = {
+        "convection": "leads",
+        "emissivity": "leads",
+        "base": "leads",
+        "magnetic loss": "raises it",
+        "winding impregnation": "small",
+        "end-winding impregnation": "small",
+        "speed": "small",
+    }
     rows = [
-        Row(f.name, names[f.name], f"{found.effects[f.letter]:+.1f} K",
-            "beyond chance" if f.letter in found.active else f"within Lenth's {found.simultaneous:.1f} K")
+        Row(
+            f.name,
+            names[f.name],
+            f"{found.effects[f.letter]:+.1f} K",
+            "beyond chance" if f.letter in found.active else f"within Lenth's {found.simultaneous:.1f} K",
+        )
         for f in sorted(TABLE_I, key=lambda f: -abs(found.effects[f.letter]))
-    ]  # fmt: skip
+    ]
     rows += [
-        Row("winding impregnation on the step winding to magnets", "sets it", f"{step.effects['D']:+.1f} K",
-            f"next: {step.words(step.ranked[1][0])} {step.ranked[1][1]:+.1f} K"),
-    ]  # fmt: skip
+        Row(
+            "winding impregnation on the step winding to magnets",
+            "sets it",
+            f"{step.effects['D']:+.1f} K",
+            f"next: {step.words(step.ranked[1][0])} {step.ranked[1][1]:+.1f} K",
+        )
+    ]
     largest = {name: e.ranked[0] for name, e in screening().effects.items()}
     table = [("response", "largest effect", "high - low (K)")]
     table += [(name, screening().effects[name].words(w), f"{v:+.1f}") for name, (w, v) in largest.items()]
@@ -163,10 +186,17 @@ def ranked() -> dict[str, tuple[Ranking, Ranking]]:
 def rankings() -> Section:
     head = ("response", "factor", "Morris mu*", "+- 95 %", "Sobol ST", "+- 95 %")
     table = [
-        (name, factor, f"{low.measure[factor]:.3g}", f"{low.conf[factor]:.2g}", f"{high.measure[factor]:.3f}",
-         f"{high.conf[factor]:.3f}")
-        for name, (low, high) in ranked().items() for factor in high.ranked
-    ]  # fmt: skip
+        (
+            name,
+            factor,
+            f"{low.measure[factor]:.3g}",
+            f"{low.conf[factor]:.2g}",
+            f"{high.measure[factor]:.3f}",
+            f"{high.conf[factor]:.3f}",
+        )
+        for name, (low, high) in ranked().items()
+        for factor in high.ranked
+    ]
     runs = next(iter(ranked().values()))
     words = (
         f"The factors of table I and the liner gap, varied evenly (Morris, {runs[0].runs} runs; Sobol, {runs[1].runs} "
@@ -185,10 +215,28 @@ def text() -> str:
         "dimensions beyond table II are assumed, and the measurements of M1, M2 and M3 are simulated "
         "([how](../data-pmsm.md)): they test the procedure, not the authors' machines."
     )
-    return page(TITLE, words, [
-        figure_1(), figure_2(), figures_3_and_9(), figure_4(), figure_5(), figure_6(), repeated(), figure_11(),
-        with_gap(), rankings(), circuits(), wrong_base(), bases(), machines(), constructive(), table_two(),
-    ])  # fmt: skip
+    return page(
+        TITLE,
+        words,
+        [
+            figure_1(),
+            figure_2(),
+            figures_3_and_9(),
+            figure_4(),
+            figure_5(),
+            figure_6(),
+            repeated(),
+            figure_11(),
+            with_gap(),
+            rankings(),
+            circuits(),
+            wrong_base(),
+            bases(),
+            machines(),
+            constructive(),
+            table_two(),
+        ],
+    )
 
 
 def pictures() -> dict[str, object]:

@@ -29,23 +29,38 @@ def sheet(name: str, base: str, current: float, cold: Mapping[str, float], ambie
 
 
 def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dict[str, Any]:
-    after = {"file": f"{name}-cooling.csv", "column": "R_winding_ohm", "method": "exponentials",
-             "ambient_degC": ambient_end, "rated_kW": 7}  # fmt: skip
+    after = {
+        "file": f"{name}-cooling.csv",
+        "column": "R_winding_ohm",
+        "method": "exponentials",
+        "ambient_degC": ambient_end,
+        "rated_kW": 7,
+    }
     return {
-        "column": "R_winding_ohm", "quantity": "resistance", "unit": "ohm", "place": "winding.copper",
-        "cold": _inline({"reading": round(cold["cold_ohm"], 4), "at_degC": cold["cold_degC"]}), "reference_degC": 20,
+        "column": "R_winding_ohm",
+        "quantity": "resistance",
+        "unit": "ohm",
+        "place": "winding.copper",
+        "cold": _inline({"reading": round(cold["cold_ohm"], 4), "at_degC": cold["cold_degC"]}),
+        "reference_degC": 20,
         "coefficient_percent_K": [0.392, 0.393],
         "meter": _inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
         "after": _inline(after),
-    }  # fmt: skip
+    }
 
 
 def _emf(cold: Mapping[str, float]) -> dict[str, Any]:
     reading = {"reading": round(cold["cold_V"], 1), "at_degC": cold["cold_degC"], "rpm": 383}
     return {
-        "column": "emf_V", "quantity": "back_emf", "unit": "V", "place": "magnets", "cold": _inline(reading),
-        "coefficient_percent_K": [-0.11, -0.10], "meter": _inline({"percent": 0.1, "offset": 1.0}), "speed_rpm": 383,
-    }  # fmt: skip
+        "column": "emf_V",
+        "quantity": "back_emf",
+        "unit": "V",
+        "place": "magnets",
+        "cold": _inline(reading),
+        "coefficient_percent_K": [-0.11, -0.10],
+        "meter": _inline({"percent": 0.1, "offset": 1.0}),
+        "speed_rpm": 383,
+    }
 
 
 def _inline(values: Mapping[str, Any]) -> Any:

@@ -81,6 +81,10 @@ def draw(draws: Draws, geometry: object, base: str) -> PmFilms:
     nominal = {"none": 0.1, "plate": 0.03, "bench": 0.10}[base]
     bare = draws.around(f"emissivity.base.{base}", nominal, 0.3) if base != "none" else nominal
     return PmFilms(
-        factors, min(draws.around("emissivity.body", 0.85, 0.06), 0.95), bare, g.stator.outer_diameter,  # type: ignore[attr-defined]
-        g.stator.bore_diameter / 2 - g.stator.air_gap, g.stator.air_gap,  # type: ignore[attr-defined]
-    )  # fmt: skip
+        factors,
+        min(draws.around("emissivity.body", 0.85, 0.06), 0.95),
+        bare,
+        g.stator.outer_diameter,  # type: ignore[attr-defined]
+        g.stator.bore_diameter / 2 - g.stator.air_gap,
+        g.stator.air_gap,  # type: ignore[attr-defined]
+    )

@@ -125,8 +125,11 @@ def solids(machine: Any, draws: Draws) -> dict[str, Solid]:
     for part in machine.parts:
         found, name = machine.material_of(part.name), _side(part.name)
         factor = draws.around(f"conductivity.{name}", 1.0, 0.20 if name == "slot.gap" else 0.08)
-        out[part.name] = Solid((factor * found.k_plane, factor * found.k_axial), common * found.rho * found.cp,
-                               SLOPES.get(found.name, RESIN))  # fmt: skip
+        out[part.name] = Solid(
+            (factor * found.k_plane, factor * found.k_axial),
+            common * found.rho * found.cp,
+            SLOPES.get(found.name, RESIN),
+        )
     return out
 
 

@@ -36,8 +36,18 @@ def said(verdict, *groups, **more):
 
 def label(group, *truth, **more):
     own = {"right": [[t] for t in truth], "twins": [[] for _ in truth]}
-    return {"machine": "tefc", "group": group, "truth": list(truth), "size": 0.0, "place": "", "amplitude": [],
-            "test": "", "span": [], **own, **more}  # fmt: skip
+    return {
+        "machine": "tefc",
+        "group": group,
+        "truth": list(truth),
+        "size": 0.0,
+        "place": "",
+        "amplitude": [],
+        "test": "",
+        "span": [],
+        **own,
+        **more,
+    }
 
 
 def test_wilson_interval_is_the_published_one():
@@ -50,17 +60,29 @@ def test_page_has_every_promise_and_every_method_once():
     quiet = {"case": "nothing missing", "measure": "false alarm", "ours": 0.0125, "n": 80, "ci95": [0.0, 0.067]}
     table = [{**quiet, "target": "<= 0.05"}, {**quiet, "peer": 0.5, "peer_name": "AIC refit"}]
     assert markdown(table).splitlines() == [
-        "| | of | came out | 95 % | wanted |", "|---|---|---|---|---|",
-        "| nothing missing: false alarm | 80 | 1 % | 0 to 7 % | <= 5 % |", "",
-        "| method | false alarm (80) |", "|---|---|", "| this diagnosis | 1 % |", "| AIC after refits | 50 % |",
-    ]  # fmt: skip
+        "| | of | came out | 95 % | wanted |",
+        "|---|---|---|---|---|",
+        "| nothing missing: false alarm | 80 | 1 % | 0 to 7 % | <= 5 % |",
+        "",
+        "| method | false alarm (80) |",
+        "|---|---|",
+        "| this diagnosis | 1 % |",
+        "| AIC after refits | 50 % |",
+    ]
 
 
 @pytest.mark.parametrize(
     ("target", "ours", "is_met"),
-    [("<= 0.05", 0.05, True), ("<= 0.05", 0.06, False), (">= 0.90", 0.9, True), (">= 0.90", 0.89, False),
-     ("0.85 to 0.95", 0.88, True), ("0.85 to 0.95", 0.96, False), ("", 0.5, None)],
-)  # fmt: skip
+    [
+        ("<= 0.05", 0.05, True),
+        ("<= 0.05", 0.06, False),
+        (">= 0.90", 0.9, True),
+        (">= 0.90", 0.89, False),
+        ("0.85 to 0.95", 0.88, True),
+        ("0.85 to 0.95", 0.96, False),
+        ("", 0.5, None),
+    ],
+)
 def test_a_promise_is_met_or_short_or_none_was_made(target, ours, is_met):
     assert met({"target": target, "ours": ours}) is is_met
 

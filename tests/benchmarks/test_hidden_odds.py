@@ -100,6 +100,8 @@ def test_reliability_of_a_perfect_and_of_a_boastful_answer():
 
 def test_the_places_of_an_exchange_have_no_order():
     said = {"odds": [{"hypothesis": "x@b|a in t", "effects": ["x@b|a in t"]}], "candidates": {"y@d|c": 1.0}}
-    assert odds.unordered(said) == {"odds": [{"hypothesis": "x@a|b in t", "effects": ["x@a|b in t"]}],
-                                    "candidates": {"y@c|d": 1.0}}  # fmt: skip
+    assert odds.unordered(said) == {
+        "odds": [{"hypothesis": "x@a|b in t", "effects": ["x@a|b in t"]}],
+        "candidates": {"y@c|d": 1.0},
+    }
     assert odds.unordered("x@b|a + z@c") == "x@a|b + z@c"

@@ -76,8 +76,10 @@ def published(table):
 
     They let what alternating current adds grow with temperature, as direct current's loss does; eddy currents fall.
     """
-    T = np.array([table[c].iloc[0].mean() for c in (["activewind_1", "activewind_2"], ["slotbottom", "outer_yoke"])]
-                 + [table["rotor"].iloc[0]])  # fmt: skip
+    T = np.array(
+        [table[c].iloc[0].mean() for c in (["activewind_1", "activewind_2"], ["slotbottom", "outer_yoke"])]
+        + [table["rotor"].iloc[0]]
+    )
     C, out = np.array([3716.15, 5616.32, 5329.69]), [T]
     i, f = np.hypot(table["IdFbk"], table["IqFbk"]).to_numpy() / 370.0, table["speed"].to_numpy() / 4000.0
     ambient, coolant = table["ambient"].to_numpy(), table["water_outlet"].to_numpy()
@@ -101,10 +103,13 @@ def test_the_start_is_the_published_model(root, start, profile):
     """The case's errors are those of the authors' equations, written down once more; the case averages over 20 s
     and has its inputs linear in between, where theirs are held."""
     table = pd.read_csv(root / "cases" / "hust-ipmsm" / "tests" / f"id_{profile}.csv.gz")
-    measured = np.column_stack([
-        table[["activewind_1", "activewind_2"]].mean(axis=1), table[["slotbottom", "outer_yoke"]].mean(axis=1),
-        table["rotor"],
-    ])  # fmt: skip
+    measured = np.column_stack(
+        [
+            table[["activewind_1", "activewind_2"]].mean(axis=1),
+            table[["slotbottom", "outer_yoke"]].mean(axis=1),
+            table["rotor"],
+        ]
+    )
     theirs = np.sqrt(np.mean((published(table) - measured) ** 2, axis=0))
     ours = next(t for t in start.tests if t.name == f"id_{profile}")
     by_name = {c.channel: c.rmse_K for c in ours.channels}

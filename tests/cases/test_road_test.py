@@ -20,8 +20,13 @@ from thermoscope.demo import demo
 
 pytestmark = pytest.mark.heavy
 SCREENFUL, WIDE = 80, 80  # lines of the whole story, and columns
-CHAPTERS = {"1-machine.png": "1", "2-misses.png": "3", "3-odds.png": "5", "error.png": "7",
-            "field-before-after.png": "7"}  # fmt: skip
+CHAPTERS = {
+    "1-machine.png": "1",
+    "2-misses.png": "3",
+    "3-odds.png": "5",
+    "error.png": "7",
+    "field-before-after.png": "7",
+}
 EFFECT = "convection@flange.right"
 
 

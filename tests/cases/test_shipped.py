@@ -112,8 +112,9 @@ def opened_once(load_case, home):
 
 LINES = [
     pytest.param(case, words, marks=[pytest.mark.heavy] if case != "tclab" or words in STEPS else [])
-    for case, all_ in TAKEN.items() for words in all_
-]  # fmt: skip
+    for case, all_ in TAKEN.items()
+    for words in all_
+]
 
 
 @pytest.mark.parametrize(("case", "words"), LINES)

@@ -8,7 +8,7 @@ from itertools import islice
 from spellchecker import SpellChecker
 
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")
-FILES_ONLY = ("export", "browser")  # sub-rooms whose text goes into programs, not to a reader
+FILES_ONLY = ("export", "browser", "observer_code.py")  # whose text goes into programs, not to a reader
 COMMON = 8000  # the most frequent words of English, about what an upper-intermediate learner reads
 # Everyday or computer words that are rarer in films' subtitles, which the list of words was counted in.
 PLAIN = """

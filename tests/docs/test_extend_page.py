@@ -119,8 +119,13 @@ def used(root, tmp_path_factory):
     def run(code, *arguments):
         path = os.pathsep.join([str(home), str(root)])
         environment = {**os.environ, "PYTHONPATH": path, "THERMOSCOPE_CACHE": str(home / "cache")}
-        done = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True,
-                              env=environment, timeout=500)  # fmt: skip
+        done = subprocess.run(
+            [sys.executable, "-c", code, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            env=environment,
+            timeout=500,
+        )
         assert done.returncode == 0, done.stderr
         return done.stdout
 

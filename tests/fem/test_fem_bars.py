@@ -18,9 +18,16 @@ def nafems_t3(n):
     films, ends = {"bar.left": GIVEN, "bar.right": GIVEN}, only_fixed(left=0.0, right=0.0)
     steps = 8 * n
     T = transient(
-        Solver(field), films, {}, np.zeros(field.n), ends, np.zeros(field.n), 32.0 / steps, steps,
+        Solver(field),
+        films,
+        {},
+        np.zeros(field.n),
+        ends,
+        np.zeros(field.n),
+        32.0 / steps,
+        steps,
         drive=lambda t: (1.0, {"left": 0.0, "right": 100 * np.sin(np.pi * t / 40)}),
-    )  # fmt: skip
+    )
     return float(T[-1][np.abs(field.xyz[:, 0] - 0.08) < 1e-9].mean())
 
 
@@ -51,9 +58,7 @@ def test_prescribed_flux():
     """100 W/m2 in at one end: a linear profile, in the P1 space."""
     field = assemble(bar(0.2, 7, 0.01), {"bar": isotropic(4.0)}, {"bar": 1.0})
     load = 100.0 * field.films["bar.left"].trace.area * field.flux("bar.left")
-    found = steady(
-        Solver(field), {"bar.left": 0.0, "bar.right": 50.0}, {}, load, only_fixed(left=0.0, right=10.0)
-    )  # fmt: skip
+    found = steady(Solver(field), {"bar.left": 0.0, "bar.right": 50.0}, {}, load, only_fixed(left=0.0, right=10.0))
     exact = 10 + 100 / 50 + 100 * (0.2 - field.xyz[:, 0]) / 4.0
     assert np.abs(found.T - exact).max() < 1e-9
 
@@ -63,9 +68,15 @@ def test_a_stream_warms_while_the_bar_does():
     field = assemble(bar(0.02, 4), {"bar": isotropic(50.0)}, {"bar": 3e6})
     fluids = Fluids(("right",), np.array([[2.0]]), np.array([2.0 * 15.0]), {"left": 0.0})
     T = transient(
-        Solver(field), {"bar.left": 0.0, "bar.right": 1e5}, {}, 30.0 * field.load("bar"), fluids,
-        np.full(field.n, 15.0), 50.0, 100,
-    )  # fmt: skip
+        Solver(field),
+        {"bar.left": 0.0, "bar.right": 1e5},
+        {},
+        30.0 * field.load("bar"),
+        fluids,
+        np.full(field.n, 15.0),
+        50.0,
+        100,
+    )
     last = steady(Solver(field), {"bar.left": 0.0, "bar.right": 1e5}, {}, 30.0 * field.load("bar"), fluids)
     assert last.u[0] == pytest.approx(30.0, abs=1e-9)
     assert T[-1] == pytest.approx(last.T, abs=1e-6)

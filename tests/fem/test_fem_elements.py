@@ -38,8 +38,10 @@ def test_two_quadratic_elements_give_the_mean_of_a_parabola():
 
 def test_both_kinds_converge_to_the_same_and_quadratic_ones_faster():
     exact = Q * 0.02**2 / (12 * K)
-    off = {kind: [abs(f.mean("slab") @ solved(f).T - HOT - exact) for f in (slab(4, kind), slab(8, kind))]
-           for kind in (True, False)}  # fmt: skip
+    off = {
+        kind: [abs(f.mean("slab") @ solved(f).T - HOT - exact) for f in (slab(4, kind), slab(8, kind))]
+        for kind in (True, False)
+    }
     assert off[False][1] == pytest.approx(off[False][0] / 4, rel=0.1)
     assert off[True][1] < 0.05 * off[False][1]
 
@@ -47,8 +49,13 @@ def test_both_kinds_converge_to_the_same_and_quadratic_ones_faster():
 @pytest.fixture(scope="module")
 def both():
     r = np.linspace(0.02, 0.05, 5)
-    mesh = ring(r, 16, np.linspace(0.0, 0.06, 5), lambda c: np.full(len(c), "core", object),
-                lambda c: np.full(len(c), "air", object))  # fmt: skip
+    mesh = ring(
+        r,
+        16,
+        np.linspace(0.0, 0.06, 5),
+        lambda c: np.full(len(c), "core", object),
+        lambda c: np.full(len(c), "air", object),
+    )
     made = [assemble(mesh, {"core": laminated(28.0, 3.0)}, {"core": 3e6}, kind) for kind in ([], ["core"])]
     return [field.block("core") for field in made]
 
@@ -91,8 +98,13 @@ def test_the_slope_of_a_varying_conductivity_is_its_finite_difference(both):
 def test_heat_through_a_contact_balances_whichever_side_is_quadratic():
     """Two heated rings, the outer one cooled: what leaves the inner one is its own loss."""
     r = np.linspace(0.02, 0.06, 5)
-    mesh = ring(r, 12, np.linspace(0.0, 0.05, 4), lambda c: np.where(c[:, 0] < 0.04, "coil", "yoke").astype(object),
-                lambda c: np.where(c[:, 0] > 0.05, "ambient", "air").astype(object))  # fmt: skip
+    mesh = ring(
+        r,
+        12,
+        np.linspace(0.0, 0.05, 4),
+        lambda c: np.where(c[:, 0] < 0.04, "coil", "yoke").astype(object),
+        lambda c: np.where(c[:, 0] > 0.05, "ambient", "air").astype(object),
+    )
     k, capacity = {"coil": isotropic(0.5), "yoke": isotropic(30.0)}, {"coil": 2e6, "yoke": 3e6}
     found = []
     for kind in (["coil"], ["yoke"], ["coil", "yoke"], []):

@@ -92,9 +92,13 @@ def copper_bar(q, n=32):
     L, k, alpha = 0.05, 0.6, 0.00393
     field = assemble(bar(L, n), {"bar": isotropic(k)}, {"bar": 1.0})
     found = solve_nonlinear(
-        Solver(field), {"bar.left": GIVEN, "bar.right": 0.0}, {}, np.zeros(field.n),
-        only_fixed(left=40.0, right=0.0), [CopperLoss("bar", q * field.blocks["bar"].volume, alpha)],
-    )  # fmt: skip
+        Solver(field),
+        {"bar.left": GIVEN, "bar.right": 0.0},
+        {},
+        np.zeros(field.n),
+        only_fixed(left=40.0, right=0.0),
+        [CopperLoss("bar", q * field.blocks["bar"].volume, alpha)],
+    )
     m = np.sqrt(q * alpha / k)
     theta = (20.0 + 1 / alpha) * np.cos(m * (L - field.xyz[:, 0])) / np.cos(m * L)
     return np.abs(found.T - (theta + 20.0 - 1 / alpha)).max(), found
@@ -118,8 +122,9 @@ def test_thermal_runaway_is_refused():
 def warm_cube():
     """A coil beside iron, with every kind of term: solver, films, contacts, load, fluids, terms."""
     x = np.linspace(0.0, 0.1, 5)
-    mesh = box(x, x, x, lambda c: named(c, (c[:, 0] < 0.05, "coil"), default="iron"),
-               lambda c: named(c, default="ambient"))  # fmt: skip
+    mesh = box(
+        x, x, x, lambda c: named(c, (c[:, 0] < 0.05, "coil"), default="iron"), lambda c: named(c, default="ambient")
+    )
     field = assemble(mesh, {"coil": isotropic(1.0), "iron": isotropic(30.0)}, {"coil": 3e6, "iron": 3.6e6})
     terms = [
         CopperLoss("coil", 40.0),
@@ -157,16 +162,21 @@ def test_unphysical_terms_are_refused():
 
 
 TERMS = [
-    Radiation("bar.left", 0.7, 30.0), CopperLoss("bar", 3.0),
+    Radiation("bar.left", 0.7, 30.0),
+    CopperLoss("bar", 3.0),
     VaryingConductivity("bar", lambda T: 1 + 1e-5 * T**2, lambda T: 2e-5 * T),
-]  # fmt: skip
+]
 
 
 def test_every_term_is_tried():
     """What takes heat out and has a slope, in any module of the room."""
     modules = [import_module(m.name) for m in walk_packages(fem.__path__, "fem.")]
-    found = {c for m in modules for _, c in getmembers(m, isclass) if c.__module__ == m.__name__
-             and c is not Term and hasattr(c, "heat") and hasattr(c, "slope")}  # fmt: skip
+    found = {
+        c
+        for m in modules
+        for _, c in getmembers(m, isclass)
+        if c.__module__ == m.__name__ and c is not Term and hasattr(c, "heat") and hasattr(c, "slope")
+    }
     assert found == {type(term) for term in TERMS}
 
 
@@ -202,9 +212,16 @@ def cooled_by_radiation(step, steps):
     area, C = 1e-4, field.blocks["bar"].capacity
     T0 = 800.0
     T = transient(
-        Solver(field), {"bar.left": 0.0, "bar.right": 0.0}, {}, np.zeros(field.n), only_fixed(left=0.0, right=0.0),
-        np.full(field.n, T0 - ZERO_C), step, steps, terms=[Radiation("bar.left", 0.8, -ZERO_C)],
-    )  # fmt: skip
+        Solver(field),
+        {"bar.left": 0.0, "bar.right": 0.0},
+        {},
+        np.zeros(field.n),
+        only_fixed(left=0.0, right=0.0),
+        np.full(field.n, T0 - ZERO_C),
+        step,
+        steps,
+        terms=[Radiation("bar.left", 0.8, -ZERO_C)],
+    )
     exact = T0 * (1 + 3 * 0.8 * SIGMA * area * T0**3 * step * np.arange(steps + 1) / C) ** (-1 / 3) - ZERO_C
     return np.abs(T.mean(1) - exact).max(), exact[0] - exact[-1]
 

@@ -50,8 +50,13 @@ def test_composite_wall_with_contact_is_exact():
     """Piecewise linear with a jump at the contact: in the P1 space, so right to rounding."""
     x = np.linspace(0.0, 0.1, 6)
     y = np.linspace(0.0, 0.02, 3)
-    mesh = box(x, y, y, lambda c: named(c, (c[:, 0] < 0.04, "a"), default="b"),
-               lambda c: named(c, (c[:, 0] < 1e-9, "hot"), (c[:, 0] > 0.1 - 1e-9, "cold")))  # fmt: skip
+    mesh = box(
+        x,
+        y,
+        y,
+        lambda c: named(c, (c[:, 0] < 0.04, "a"), default="b"),
+        lambda c: named(c, (c[:, 0] < 1e-9, "hot"), (c[:, 0] > 0.1 - 1e-9, "cold")),
+    )
     field = assemble(mesh, {"a": isotropic(2.0), "b": isotropic(0.5)}, {"a": 1e6, "b": 1e6})
     found = steady(
         Solver(field),
@@ -109,8 +114,13 @@ def test_orthotropic_annulus_converges_to_closed_form():
 def test_annular_sector_resistance():
     """Heat that runs around a sector: R = alpha / (k L ln(ro / ri))."""
     r, theta = np.geomspace(0.05, 0.1, 13), np.linspace(0.0, 1.0, 33)
-    mesh = sector(r, theta, np.array([0.0, 0.02]), lambda c: named(c, default="s"),
-                  lambda c: named(c, (c[:, 1] < 1e-6, "hot"), (c[:, 1] > 1 - 1e-6, "cold")))  # fmt: skip
+    mesh = sector(
+        r,
+        theta,
+        np.array([0.0, 0.02]),
+        lambda c: named(c, default="s"),
+        lambda c: named(c, (c[:, 1] < 1e-6, "hot"), (c[:, 1] > 1 - 1e-6, "cold")),
+    )
     field = assemble(mesh, {"s": isotropic(10.0)}, {"s": 1.0})
     h = 1e9  # stands for a given temperature
     found = steady(Solver(field), {"s.hot": h, "s.cold": h}, {}, np.zeros(field.n), only_fixed(hot=1.0, cold=0.0))
@@ -121,9 +131,13 @@ def test_annular_sector_resistance():
 
 def nafems_t4(n):
     x, y = np.linspace(0.0, 0.6, 3 * n + 1), np.linspace(0.0, 1.0, 5 * n + 1)
-    mesh = box(x, y, np.array([0.0, 0.02]), lambda c: named(c, default="plate"),
-               lambda c: named(c, (c[:, 1] < 1e-9, "base"), 
-                               (c[:, 0] > 0.6 - 1e-9, "air"), (c[:, 1] > 1 - 1e-9, "air")))  # fmt: skip
+    mesh = box(
+        x,
+        y,
+        np.array([0.0, 0.02]),
+        lambda c: named(c, default="plate"),
+        lambda c: named(c, (c[:, 1] < 1e-9, "base"), (c[:, 0] > 0.6 - 1e-9, "air"), (c[:, 1] > 1 - 1e-9, "air")),
+    )
     field = assemble(mesh, {"plate": isotropic(52.0)}, {"plate": 1.0})
     given = only_fixed(base=100.0, air=0.0)
     found = steady(Solver(field), {"plate.base": 1e9, "plate.air": 750.0}, {}, np.zeros(field.n), given)
@@ -159,9 +173,13 @@ def test_losses_inject_exactly_their_watts():
 
 def two_rings(contact_gap=0.03):
     r = np.concatenate([np.linspace(0.02, contact_gap, 3), np.linspace(contact_gap, 0.05, 4)[1:]])
-    return ring(r, 24, np.linspace(0, 0.1, 5), lambda c: named(c, (c[:, 0] < contact_gap, "core"), default="yoke"),
-                lambda c: named(c, (c[:, 0] > 0.049, "ambient"), (c[:, 0] < 0.0205, "bore"),
-                                default="air"))  # fmt: skip
+    return ring(
+        r,
+        24,
+        np.linspace(0, 0.1, 5),
+        lambda c: named(c, (c[:, 0] < contact_gap, "core"), default="yoke"),
+        lambda c: named(c, (c[:, 0] > 0.049, "ambient"), (c[:, 0] < 0.0205, "bore"), default="air"),
+    )
 
 
 def rings():

@@ -40,9 +40,11 @@ def test_uniform_heat_makes_a_straight_line():
     """Hardly any conduction along the wall: the coolant warms linearly, the wall stays q / h above it."""
     field, mcp, h = channel(12, 0.1, 48), 5.0, 400.0
     films, fluids = flowing(
-        field, {"bar.left": 0.0, "bar.right": 0.0, "bar.water": h}, [Stream("water", mcp, 20.0)],
+        field,
+        {"bar.left": 0.0, "bar.right": 0.0, "bar.water": h},
+        [Stream("water", mcp, 20.0)],
         {"left": 0.0, "right": 0.0},
-    )  # fmt: skip
+    )
     found = steady(Solver(field), films, {}, 60.0 * field.load("bar"), fluids)
     assert found.u == pytest.approx(20.0 + 60.0 / mcp * (1 + np.arange(12)) / 12, abs=0.05)
     trace = field.films["bar.water@6"].trace
@@ -57,9 +59,11 @@ def test_wall_that_conducts_converges_with_the_cells():
     for cells in (6, 12, 24):
         field = channel(cells, 15.0)
         films, fluids = flowing(
-            field, {"bar.left": 0.0, "bar.right": 0.0, "bar.water": 150.0}, [Stream("water", 2.0, 15.0)],
+            field,
+            {"bar.left": 0.0, "bar.right": 0.0, "bar.water": 150.0},
+            [Stream("water", 2.0, 15.0)],
             {"left": 0.0, "right": 0.0},
-        )  # fmt: skip
+        )
         peak.append(steady(Solver(field), films, {}, 40.0 * field.load("bar"), fluids).T.max())
     change = np.abs(np.diff(peak))
     assert change[0] > 3 * change[1]

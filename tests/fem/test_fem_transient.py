@@ -86,9 +86,15 @@ def off_the_ball(n):
     field = assemble(sphere(n), {"ball": isotropic(k)}, {"ball": rho_cp})
     step = 0.05 * L**2 * rho_cp / k
     T = transient(
-        Solver(field), {"ball.outer": h}, {}, np.zeros(field.n), only_fixed(ambient=0.0), np.full(field.n, 100.0),
-        step / 8, 96,
-    )  # fmt: skip
+        Solver(field),
+        {"ball.outer": h},
+        {},
+        np.zeros(field.n),
+        only_fixed(ambient=0.0),
+        np.full(field.n, 100.0),
+        step / 8,
+        96,
+    )
     r = np.linalg.norm(field.xyz, axis=1)
     w = field.mean("ball")
     return max(np.sqrt(w @ (T[m] - ball_series(r, m * step / 8)) ** 2) for m in range(16, 97, 16))

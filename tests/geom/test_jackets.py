@@ -161,8 +161,13 @@ def test_step_of_prisms_reads_back_where_the_made_one_is_refused(tmp_path):
         import_step(written["step"])
 
 
-@pytest.mark.parametrize(("jacket", "words"), [({"port_mm": 60.0}, "port_mm: 60 does not fit"),
-    ({"layout": "helical", "port_mm": 30.0}, "port_mm: 30 does not fit")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("jacket", "words"),
+    [
+        ({"port_mm": 60.0}, "port_mm: 60 does not fit"),
+        ({"layout": "helical", "port_mm": 30.0}, "port_mm: 30 does not fit"),
+    ],
+)
 def test_ports_wider_than_their_channel_are_refused(jacket, words):
     with pytest.raises(InputError, match=words):
         jacketed(**jacket)

@@ -8,17 +8,7 @@ import shapely
 from distinct_machines import DISTINCT
 from measures import area, facets_of_tets, keys, tet_volumes
 
-from geom import (
-    COARSE,
-    InputError,
-    build_mesh,
-    library,
-    load_machine,
-    mesh_quality,
-    part_table,
-    read_vtu,
-    write_vtu,
-)  # fmt: skip
+from geom import COARSE, InputError, build_mesh, library, load_machine, mesh_quality, part_table, read_vtu, write_vtu
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 
@@ -72,7 +62,10 @@ def test_vtu_keeps_names_and_volumes(meshed, tmp_path):
     write_vtu(mesh, tmp_path / "machine.vtu")
     back = read_vtu(tmp_path / "machine.vtu")
     assert (back.parts, back.patches.keys(), back.contacts.keys()) == (
-        mesh.parts, mesh.patches.keys(), mesh.contacts.keys())  # fmt: skip
+        mesh.parts,
+        mesh.patches.keys(),
+        mesh.contacts.keys(),
+    )
     assert np.array_equal(tet_volumes(back), tet_volumes(mesh))
 
 
@@ -192,7 +185,8 @@ def test_coils_on_single_teeth_end_in_one_arch_each():
 def test_wedges_fill_the_slot_openings():
     g = pmsm().geometry.stator
     assert pmsm(stator={"wedge_mm": 2.0}).part("slot.wedge").volume == pytest.approx(
-        18 * 0.002 * g.opening * g.stack_length, rel=0.01)  # fmt: skip
+        18 * 0.002 * g.opening * g.stack_length, rel=0.01
+    )
 
 
 def test_parallel_slots_have_the_width_they_are_given():
@@ -202,8 +196,9 @@ def test_parallel_slots_have_the_width_they_are_given():
 
 
 def test_fins_at_a_spacing_stand_around_the_top():
-    machine = machine_from({
-        "machine": {"family": "tefc"}, "geometry": {"housing": {"fins": 9, "fin_spacing_mm": 10.0}}})  # fmt: skip
+    machine = machine_from(
+        {"machine": {"family": "tefc"}, "geometry": {"housing": {"fins": 9, "fin_spacing_mm": 10.0}}}
+    )
     loop = machine.part("housing").prisms[0][0].outer
     tips = sorted({round(math.atan2(y, x), 6) for x, y, _ in loop if math.hypot(x, y) > 0.129})
     assert len(tips) == 18

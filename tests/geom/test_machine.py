@@ -30,17 +30,22 @@ WRONG = {
     "fins that overlap": (series(housing={"fins": 200, "fin_thickness_mm": 9.0}), ["fin_thickness_mm", "overlap"]),
     "slots wider than their pitch": (series(rotor={"slot_width_mm": 16.0}), ["slot_width_mm", "16", "pitch"]),
     "a liner thicker than the slot": (
-        series(rotor={"slot_width_mm": 4.0, "liner_mm": 2.5}), ["liner_mm", "2.5", "less than 1.6"]),
+        series(rotor={"slot_width_mm": 4.0, "liner_mm": 2.5}),
+        ["liner_mm", "2.5", "less than 1.6"],
+    ),
     "a slot that reaches the shaft": (series(rotor={"slot_depth_mm": 110.0}), ["slot_depth_mm", "110"]),
     "coils in the yoke": (
         series(field={"coil_height_mm": 40.0}, stator={"yoke_inner_diameter_mm": 408.0}),
-        ["yoke_inner_diameter_mm", "field coils"]),
+        ["yoke_inner_diameter_mm", "field coils"],
+    ),
     "coils that meet": (series(field={"coil_width_mm": 200.0}), ["coil_width_mm"]),
     "a machine too short": (series(shaft={"length_mm": 400.0}), ["length_mm", "400"]),
     "a base narrower than the feet": (series(base={"width_mm": 200.0}), ["base", "width_mm"]),
     "larger than its envelope": (
-        series() | {"ratings": {"envelope_mm": [440, 500, 1155]}}, ["envelope_mm", "width", "700"]),
-}  # fmt: skip
+        series() | {"ratings": {"envelope_mm": [440, 500, 1155]}},
+        ["envelope_mm", "width", "700"],
+    ),
+}
 
 
 @pytest.mark.parametrize("case", WRONG)

@@ -72,7 +72,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
     "extras/rating/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "extras/workbench/access_control.py": "hosts of requests",
-}  # fmt: skip
+}
 
 
 def guesses(tree):
@@ -94,8 +94,30 @@ def _literal(node):
     return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
-NAMES = {"name", "n", "place", "part", "fluid", "boundary", "key", "channel", "node", "link", "face", "word",
-         "target", "body", "state", "parameter", "sensor", "column", "which", "kind", "k", "p"}  # fmt: skip
+NAMES = {
+    "name",
+    "n",
+    "place",
+    "part",
+    "fluid",
+    "boundary",
+    "key",
+    "channel",
+    "node",
+    "link",
+    "face",
+    "word",
+    "target",
+    "body",
+    "state",
+    "parameter",
+    "sensor",
+    "column",
+    "which",
+    "kind",
+    "k",
+    "p",
+}
 
 
 def _named(node):
@@ -123,9 +145,26 @@ def test_every_exception_is_needed(lines):
     assert [f for f in ALLOWED if not lines[f]] == []
 
 
-FAMILY = {"series-dc", "pmsm", "tefc", "poles", "airgap", "yoke", "rotor.core", "rotor.cage", "stator.core",
-          "air.left", "air.right", "air.interpolar", "air.ducts", "air.fan", "winding.field", "winding.armature",
-          "slot.liner", "field.insulation"}  # fmt: skip
+FAMILY = {
+    "series-dc",
+    "pmsm",
+    "tefc",
+    "poles",
+    "airgap",
+    "yoke",
+    "rotor.core",
+    "rotor.cage",
+    "stator.core",
+    "air.left",
+    "air.right",
+    "air.interpolar",
+    "air.ducts",
+    "air.fan",
+    "winding.field",
+    "winding.armature",
+    "slot.liner",
+    "field.insulation",
+}
 PUBLISHED = {  # a thermal test of one kind of machine, by its parts' names
     "extras/bench/factors/screening.py",
     "extras/bench/reduction/pm_network.py",
@@ -147,8 +186,14 @@ def test_what_a_family_calls_its_parts_stays_in_its_room(root, trees):
 
 @pytest.mark.parametrize(
     "text",
-    ['"gap" in p.name', 'name.endswith("flow")', '"shaft" in n.lower()', 'link.places[0].split(".")[0] == "foot"',
-     '"oil" not in fluid', 'part.startswith("bearing")'],
-)  # fmt: skip
+    [
+        '"gap" in p.name',
+        'name.endswith("flow")',
+        '"shaft" in n.lower()',
+        'link.places[0].split(".")[0] == "foot"',
+        '"oil" not in fluid',
+        'part.startswith("bearing")',
+    ],
+)
 def test_the_check_sees_what_it_is_for(text):
     assert list(guesses(ast.parse(text)))

@@ -8,13 +8,7 @@ from graphlib import CycleError, TopologicalSorter
 import pytest
 
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")
-BESIDE = (
-    "simulated",
-    "benchmarks",
-    "scripts",
-    "docs",
-    "tests",
-)  # examples/ is a gallery, side by side
+BESIDE = ("simulated", "benchmarks", "scripts", "docs", "tests")  # examples/ is a gallery, side by side
 MOST = 15  # files of a folder beside its __init__: more do not fit on a screen
 # The longest chain of modules that import each other inside a room: what a reader passes from the top to the bottom.
 DEEPEST = {

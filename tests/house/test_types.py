@@ -4,10 +4,42 @@ import ast
 
 import pytest
 
-OURS = {"machine", "part", "prism", "geometry", "g", "mesh", "field", "block", "trace", "reduction", "network", "built",
-        "case", "test", "record", "folder", "evidence", "fit", "effect", "sensor", "channel", "surface",
-        "jacket", "prisms", "usual", "fluid", "link", "source", "place", "parameter", "profile", "tests", "run",
-        "diagnosis"}  # fmt: skip
+OURS = {
+    "machine",
+    "part",
+    "prism",
+    "geometry",
+    "g",
+    "mesh",
+    "field",
+    "block",
+    "trace",
+    "reduction",
+    "network",
+    "built",
+    "case",
+    "test",
+    "record",
+    "folder",
+    "evidence",
+    "fit",
+    "effect",
+    "sensor",
+    "channel",
+    "surface",
+    "jacket",
+    "prisms",
+    "usual",
+    "fluid",
+    "link",
+    "source",
+    "place",
+    "parameter",
+    "profile",
+    "tests",
+    "run",
+    "diagnosis",
+}
 
 
 def untyped(tree):

@@ -56,13 +56,16 @@ print("outside:", [name for name in sys.modules if name.partition(".")[0] in the
 """
 
 
-@pytest.mark.parametrize(("source", "inside"), [
-    ("from geom.errors import X", "from thermoscope.geom.errors import X"),
-    ("def f():\n    from viz import a  # é", "def f():\n    from thermoscope.viz import a  # é"),
-    ("import geom.lazy as lazy", "import thermoscope.geom.lazy as lazy"),
-    ("x = 'é', 'viz.pages', 'geom.'", "x = 'é', 'thermoscope.viz.pages', 'thermoscope.geom.'"),
-    ("import geometry\nfrom .geom import x\ny = 'geom', 'geom is', geom.x", None),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("source", "inside"),
+    [
+        ("from geom.errors import X", "from thermoscope.geom.errors import X"),
+        ("def f():\n    from viz import a  # é", "def f():\n    from thermoscope.viz import a  # é"),
+        ("import geom.lazy as lazy", "import thermoscope.geom.lazy as lazy"),
+        ("x = 'é', 'viz.pages', 'geom.'", "x = 'é', 'thermoscope.viz.pages', 'thermoscope.geom.'"),
+        ("import geometry\nfrom .geom import x\ny = 'geom', 'geom is', geom.x", None),
+    ],
+)
 def test_imports_and_names_of_modules_follow(root, source, inside):
     """No other text changes: a part may be called geom."""
     rewritten = runpy.run_path(str(root / "scripts" / "rooms_inside.py"))["inside"]

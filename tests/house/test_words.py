@@ -24,10 +24,34 @@ PARTICIPLES = {
 }
 # More of them, in parameters and variables: a function may be named like sorted(), after what it returns.
 LOCAL_PARTICIPLES = {
-    "allowed", "begun", "built", "chosen", "cored", "declared", "described", "done", "driven", "fed", "grown", "joined",
-    "looked", "moved", "named", "occupied", "ordered", "placed", "ranked", "reached", "shared", "timed", "turned",
-    "used", "wanted", "washed", "watched",
-}  # fmt: skip
+    "allowed",
+    "begun",
+    "built",
+    "chosen",
+    "cored",
+    "declared",
+    "described",
+    "done",
+    "driven",
+    "fed",
+    "grown",
+    "joined",
+    "looked",
+    "moved",
+    "named",
+    "occupied",
+    "ordered",
+    "placed",
+    "ranked",
+    "reached",
+    "shared",
+    "timed",
+    "turned",
+    "used",
+    "wanted",
+    "washed",
+    "watched",
+}
 # What is left: pipeline.Built, fields (some of a JSON document), and adjectives such as DRIVEN_MACHINE. A boolean, such
 # as `moved: bool`, is an adjective too and may be added, with its number here.
 REMAINING_PARTICIPLES = {"built": 22, "declared": 7, "driven": 3, "joined": 1, "named": 1, "reached": 1, "watched": 1}

@@ -59,21 +59,25 @@ def _with(column, row, value):
 
 
 SAME = {
-    "byte-order marks": (marked, ""), "packed": (packed, ""), "said which": (said_which, ""),
-    "commas at the ends": (ending_commas, ""), "line ends of Windows": (windows, ""),
+    "byte-order marks": (marked, ""),
+    "packed": (packed, ""),
+    "said which": (said_which, ""),
+    "commas at the ends": (ending_commas, ""),
+    "line ends of Windows": (windows, ""),
     "spaces in the header": (spaced_header, ""),
     "sensor in capitals": (lambda case: edited(case / STAND, "sigma_K = 0.4", 'sigma_K = 0.4\nsensor = "PT100"'), ""),
     "quantity in capitals": (lambda case: edited(case / STAND, '"vehicle_speed"', '"Vehicle_Speed"'), ""),
     "constant that no law reads": (
         lambda case: edited(case / STAND, "[columns.air]", "[inputs]\npressure_bar = 1.0\n[columns.air]"),
-        "no law of the model reads 'pressure_bar'"),
+        "no law of the model reads 'pressure_bar'",
+    ),
     "open thermocouple": (cell("T_winding", 30, 1370.0), "T_winding': 1 readings of 1370 are a logger's code"),
     "overrange": (cell("T_yoke", 30, 9999.0), "T_yoke': 1 readings of 9999"),
     "nines": (cell("T_flange", 30, -999.0), "1 readings of -999"),
     "no answer on the bus": (cell("T_flange", 30, -127.0), "1 readings of -127"),
     "overrange of a meter": (cell("T_flange", 30, 9.9e37), "1 readings of 9.9e+37"),
     "register": (cell("T_flange", 30, 6553.5), "1 readings of 6553.5"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("change", "note"), SAME.values(), ids=SAME)
@@ -115,8 +119,11 @@ def test_a_share_is_held_as_its_input_is_named(tmp_path, name, unit, held):
 
 def test_noise_of_a_power_meter_around_nothing(tmp_path):
     case = case_of(tmp_path)
-    edited(case / "network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
-           'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }')  # fmt: skip
+    edited(
+        case / "network.toml",
+        'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
+        'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }',
+    )
     for test in ("stand", "road", "town"):
         edited(case / f"tests/{test}.toml", 'quantity = "current"\nunit = "A"', 'quantity = "power"\nunit = "W"')
     changed(case, "stand", lambda table: table.__setitem__("current", table["current"].where(table.index > 9, -0.4)))

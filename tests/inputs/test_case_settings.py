@@ -66,8 +66,10 @@ CASES = {
     "a case without a name": (swap("case.toml", '"three"', '""'), ["case.toml", "one line"]),
     "frees nothing": (more("case.toml", "[calibration]\nfree = []\n"), ["case.toml", "free = [] names nothing"]),
     "frees the same twice": (more("case.toml", '[calibration]\nfree = ["link.*", "link.*"]\n'), ["'link.*' twice"]),
-    "a test frees what is not there": (swap("case.toml", "[tests.stand]", '[tests.stand]\nfrees = ["x.*"]'),
-                                       ["'x.*' frees nothing", "stand"]),
+    "a test frees what is not there": (
+        swap("case.toml", "[tests.stand]", '[tests.stand]\nfrees = ["x.*"]'),
+        ["'x.*' frees nothing", "stand"],
+    ),
     "a test frees nothing": (swap("case.toml", "[tests.stand]", "[tests.stand]\nfrees = []"), ["names nothing"]),
     "a catalogue of nothing": (more("case.toml", "[diagnosis]\ncatalogue = []\n"), ["catalogue = [] names nothing"]),
     "no such kind": (more("case.toml", '[diagnosis]\ncatalogue = ["zzz*"]\n'), ["case.toml", "'zzz*'"]),
@@ -75,11 +77,13 @@ CASES = {
     "a mesh of a network": (swap("case.toml", "sample_s = 20", "axial_mm = 40"), ["axial_mm", "network"]),
     "a test named as a device": (named("CON"), ["case.toml", "'CON'", "devices"]),
     "a test with a name of many bytes": (named("\u00e9" * 60), ["case.toml", "up to 100"]),
-    "a file name without end": (swap("case.toml", "[tests.stand]", f'[tests.stand]\nfile = "tests/{"x" * 5000}.csv"'),
-                                ["tests", "a shorter name"]),
+    "a file name without end": (
+        swap("case.toml", "[tests.stand]", f'[tests.stand]\nfile = "tests/{"x" * 5000}.csv"'),
+        ["tests", "a shorter name"],
+    ),
     "a sample longer than the test": (swap("case.toml", "sample_s = 20", "sample_s = 5000"), ["sample_s"]),
     "no table of tests": (swap("case.toml", "[tests.stand]", "[tests]\nx = 3\n[tests.stand]"), ["tests.x"]),
-}  # fmt: skip
+}
 SHEETS = {
     "a time that does not rise": (swap(STAND, TIME, 'time = "T_winding"'), ["T_winding", "line", "sort"]),
     "no clock": (swap(STAND, TIME, ""), [STAND, "'time' is missing"]),
@@ -106,28 +110,51 @@ SHEETS = {
     "a position in a plane": (sensor("position_mm = [1, 2]"), [STAND, "position_mm = [x, y, z]"]),
     "a unit of another country": (swap(STAND, 'unit = "degC"', 'unit = "Celsius"'), [STAND, "'Celsius'", "degC"]),
     "an empty unit": (swap(STAND, 'unit = "degC"', 'unit = ""'), [STAND, "unit is missing"]),
-    "kelvin for degrees": (swap(STAND, 'unit = "degC"\nplace = "ambient"', 'unit = "K"\nplace = "ambient"'),
-                           ["stand.csv", "line 2", "unit"]),
+    "kelvin for degrees": (
+        swap(STAND, 'unit = "degC"\nplace = "ambient"', 'unit = "K"\nplace = "ambient"'),
+        ["stand.csv", "line 2", "unit"],
+    ),
     "kiloamperes": (swap(STAND, 'unit = "A"', 'unit = "kA"'), ["network.toml", "runaway", "units of their inputs"]),
-    "no cold resistance": (swap(STAND, 'quantity = "temperature"\nunit = "degC"\nplace = "winding"',
-                                'quantity = "resistance"\nunit = "ohm"\nplace = "winding"'), [STAND, "cold"]),
-    "ohms beyond the meter": (swap(STAND, 'quantity = "temperature"\nunit = "degC"\nplace = "winding"',
-                                   'quantity = "resistance"\nunit = "ohm"\nplace = "winding"\n'
-                                   'cold = { reading = 20, at_degC = 20 }'), ["stand.csv", "T_winding", "ohm"]),
-    **{f"an event of {value}": (more(STAND, f"[events.fan_on]\nat_s = [0, 100]\nvalue = [0, {value}]\n"),
-                                [STAND, "events.fan_on", "no state"])
-       for value in ('"maybe"', "[1]", "{ x = 1 }", "nan", "inf", "1e308", "9" * 400, "2020-01-01", "true")},
+    "no cold resistance": (
+        swap(
+            STAND,
+            'quantity = "temperature"\nunit = "degC"\nplace = "winding"',
+            'quantity = "resistance"\nunit = "ohm"\nplace = "winding"',
+        ),
+        [STAND, "cold"],
+    ),
+    "ohms beyond the meter": (
+        swap(
+            STAND,
+            'quantity = "temperature"\nunit = "degC"\nplace = "winding"',
+            'quantity = "resistance"\nunit = "ohm"\nplace = "winding"\ncold = { reading = 20, at_degC = 20 }',
+        ),
+        ["stand.csv", "T_winding", "ohm"],
+    ),
+    **{
+        f"an event of {value}": (
+            more(STAND, f"[events.fan_on]\nat_s = [0, 100]\nvalue = [0, {value}]\n"),
+            [STAND, "events.fan_on", "no state"],
+        )
+        for value in ('"maybe"', "[1]", "{ x = 1 }", "nan", "inf", "1e308", "9" * 400, "2020-01-01", "true")
+    },
     "events that begin late": (more(STAND, '[events.x]\nat_s = [5]\nvalue = ["on"]\n'), [STAND, "at the start"]),
-    "events that go back": (more(STAND, '[events.x]\nat_s = [0, 9, 3]\nvalue = [0, 1, 0]\n'), [STAND, "rises"]),
-    **{f"an events file with {kind}": (events(rows), ["ev.csv", words]) for kind, rows, words in (
-        ("no column", "time_s,x\n0,off\n", "'fan_on' is not in the file"),
-        ("a slip", "time_s,fan_on\n0,offf\n", "'offf'"),
-        ("a word for a time", "time_s,fan_on\nnow,off\n", "line 2"), ("no end", "time_s,fan_on\n0,inf\n", "no state"),
-        ("a time left out", "time_s,fan_on\n0,off\n,on\n", "rises"), ("nothing", "", "is empty"),
-        ("a time before", "time_s,fan_on\n-5,off\n0,on\n", "at the start"))},
+    "events that go back": (more(STAND, "[events.x]\nat_s = [0, 9, 3]\nvalue = [0, 1, 0]\n"), [STAND, "rises"]),
+    **{
+        f"an events file with {kind}": (events(rows), ["ev.csv", words])
+        for kind, rows, words in (
+            ("no column", "time_s,x\n0,off\n", "'fan_on' is not in the file"),
+            ("a slip", "time_s,fan_on\n0,offf\n", "'offf'"),
+            ("a word for a time", "time_s,fan_on\nnow,off\n", "line 2"),
+            ("no end", "time_s,fan_on\n0,inf\n", "no state"),
+            ("a time left out", "time_s,fan_on\n0,off\n,on\n", "rises"),
+            ("nothing", "", "is empty"),
+            ("a time before", "time_s,fan_on\n-5,off\n0,on\n", "at the start"),
+        )
+    },
     "events of no file": (more(STAND, '[events.x]\nfile = "no.csv"\n'), ["no.csv", "no such file"]),
     "events of a column's input": (more(STAND, "[events.current_A]\nat_s = [0]\nvalue = [1]\n"), ["fed twice"]),
-}  # fmt: skip
+}
 NETWORKS = {
     **{kind: (spoil, ["network.toml", "[nodes]", "cannot be a name"]) for kind, spoil in NODES.items()},
     "a link with an at sign": (before_losses('[links."a@b"]\nbetween = ["yoke", "ambient"]\nG_W_K = 1'), ["'a@b'"]),
@@ -140,8 +167,10 @@ NETWORKS = {
     "a current twice": (swap("network.toml", '["current_A"]', '["current_A", "current_A"]'), ["'current_A' twice"]),
     "a loss at a boundary": (swap("network.toml", 'at = "winding"', 'at = "ambient"'), ["loss:copper", "boundary"]),
     "a loss at nothing": (swap("network.toml", 'at = "winding"', "at = {}"), ["losses.copper", "sum to 0"]),
-    "a division by rest": (loss('kind = "constant"\nP_W = 10\nof = { input = "vehicle_speed_mps", exponent = -1 }'),
-                           ["loss:copper", "vehicle_speed_mps", "no negative exponent of 0"]),
+    "a division by rest": (
+        loss('kind = "constant"\nP_W = 10\nof = { input = "vehicle_speed_mps", exponent = -1 }'),
+        ["loss:copper", "vehicle_speed_mps", "no negative exponent of 0"],
+    ),
     "a gigawatt": (loss('kind = "constant"\nP_W = 1e9'), ["network.toml", "passes 3000 degC", "check the units"]),
     "a map turned over": (mapped([0, 1000, 2000], [0, 10], [[1, 2, 3], [4, 5, 6]]), ["losses.copper", "no", "grid"]),
     "a ragged map": (mapped([0, 1000], [0, 10], [[1, 2], [3]]), ["losses.copper", "grid"]),
@@ -151,12 +180,14 @@ NETWORKS = {
     "a map that cools": (mapped([0, 1000], [0, 10], [[1, 2], [3, -4]]), ["losses.copper", "P_W[1][1] = -4"]),
     "a parameter of nothing": (before_losses("[parameters.x]\nacts_on = []"), ["parameters.x", "names nothing"]),
     "a parameter of no share": (before_losses("[parameters.x]\nacts_on = {}"), ["parameters.x", "names nothing"]),
-    "a parameter twice": (before_losses('[parameters."link.yoke-air"]\nacts_on = ["link:yoke-air"]'),
-                          ["two parameters", "'link.yoke-air'"]),
+    "a parameter twice": (
+        before_losses('[parameters."link.yoke-air"]\nacts_on = ["link:yoke-air"]'),
+        ["two parameters", "'link.yoke-air'"],
+    ),
     "a parameter of what is not there": (before_losses('[parameters.x]\nacts_on = ["link:x"]'), ["'link:x'", "known"]),
     "a mean of no node": (before_losses("[means.m]\nof = {}"), ["means.m", "averages nothing"]),
     "a stream past nothing": (before_losses('[streams.x]\npath = ["ambient", "mars"]\nmcp_W_K = 5'), ["mars"]),
-}  # fmt: skip
+}
 MODELS = {
     "an effect twice": (model(STEP.replace("[]", '["convection@flange", "convection@flange"]')), ["twice"]),
     "an effect that is not there": (model(STEP.replace("[]", '["warp@yoke"]')), ["unknown effect 'warp'"]),
@@ -169,7 +200,7 @@ MODELS = {
     "answers in words": (model(f'{STEP}answers = {{ x = "yes" }}\n'), ["x = 'yes'", "true or false"]),
     "a folder": (lambda case: (case / "model.toml").mkdir(), ["is no file"]),
     "a link to nowhere": (lambda case: (case / "model.toml").symlink_to("/nowhere/model.toml"), ["no such file"]),
-}  # fmt: skip
+}
 REFUSED = {
     **{f"case: {kind}": spoilt for kind, spoilt in CASES.items()},
     **{f"sheet: {kind}": spoilt for kind, spoilt in SHEETS.items()},
@@ -192,11 +223,13 @@ SAID = {
     "a lag longer than the test": (sensor("lag_s = 3600"), "its lag of 3600 s is longer than the test (2990 s)"),
     "an event after the end": (more(STAND, '[events.fan_on]\nat_s = [0, 1e6]\nvalue = ["off", "on"]\n'), "has ended"),
     "an event nobody reads": (more(STAND, "[events.fan_on]\nat_s = [0]\nvalue = [1]\n"), "fan_on: no law"),
-    "no loss": (lambda case: (case / "network.toml").write_text(
-        (case / "network.toml").read_text().partition("[losses")[0]), "the network has no loss: nothing heats it"),
+    "no loss": (
+        lambda case: (case / "network.toml").write_text((case / "network.toml").read_text().partition("[losses")[0]),
+        "the network has no loss: nothing heats it",
+    ),
     "a loss of nothing": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 0"), "no loss of the network gives"),
     "an input nobody reads": (more(STAND, "[inputs]\nyoke = 20\n"), "no law of the model reads 'yoke'"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("change", "note"), SAID.values(), ids=SAID)

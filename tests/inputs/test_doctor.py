@@ -44,9 +44,15 @@ def hole(table):
 
 
 ILL = {
-    kelvin: "kelvin", fahrenheit: "Fahrenheit", frozen: "frozen", spike: "leap", code: "code for no reading",
-    twins: "same readings", uneven: "unevenly", hole: "no rows from",
-}  # fmt: skip
+    kelvin: "kelvin",
+    fahrenheit: "Fahrenheit",
+    frozen: "frozen",
+    spike: "leap",
+    code: "code for no reading",
+    twins: "same readings",
+    uneven: "unevenly",
+    hole: "no rows from",
+}
 
 
 @pytest.mark.parametrize("ill", ILL, ids=lambda ill: ill.__name__)
@@ -122,10 +128,14 @@ def test_compare_says_the_first_things_that_look_wrong(tmp_path):
 
 @pytest.mark.parametrize(
     ("change", "words"),
-    [(lambda v: 10.0 * v, "tenths of a degree"), (lambda v: v / 10.0, "tenths of a degree"),
-     (lambda v: 40.0 - v, "wires swapped"), (lambda v: v.where(v.index == 100), "was read 1 time in the whole test"),
-     (lambda v: v.where(v.index % 200 == 0), "was read 2 times")],
-)  # fmt: skip
+    [
+        (lambda v: 10.0 * v, "tenths of a degree"),
+        (lambda v: v / 10.0, "tenths of a degree"),
+        (lambda v: 40.0 - v, "wires swapped"),
+        (lambda v: v.where(v.index == 100), "was read 1 time in the whole test"),
+        (lambda v: v.where(v.index % 200 == 0), "was read 2 times"),
+    ],
+)
 def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, change, words):
     case = case_of(tmp_path)
     changed(case, "stand", lambda table: table.__setitem__("T_flange", change(table["T_flange"])))

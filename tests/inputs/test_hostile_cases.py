@@ -28,12 +28,24 @@ NAMES = [n for n in hostile_names(900) if is_plain(n) and not set(n) & RESERVED 
 FILES = [n for n in NAMES if not set(n) & FORBIDDEN and n.strip(" .") == n and n.upper() not in DEVICES]
 OLD = ("winding", "yoke", "flange", "ambient", "current_A", "T_winding", "T_yoke", "T_flange", "wind", "copper")
 WRITES = (
-    ("compare", "--json", "c.json"), ("doctor", "--json", "-"), ("simulate", "--out", "out/s"), ("effects",),
-    ("export", "--as", "xlsx"), ("export", "--as", "csv", "--out", "out/t"), ("export", "--as", "c"),
-    ("export", "--as", "json"), ("export", "--as", "matlab"), ("export", "--as", "observer"), ("calibrate", "--anyway"),
-    ("report", "--out", "out/r"), ("curves",), ("picture", "curves"), ("plan",),
-    ("rate", "--limit", "{hot}=155"), ("undo",),
-)  # fmt: skip
+    ("compare", "--json", "c.json"),
+    ("doctor", "--json", "-"),
+    ("simulate", "--out", "out/s"),
+    ("effects",),
+    ("export", "--as", "xlsx"),
+    ("export", "--as", "csv", "--out", "out/t"),
+    ("export", "--as", "c"),
+    ("export", "--as", "json"),
+    ("export", "--as", "matlab"),
+    ("export", "--as", "observer"),
+    ("calibrate", "--anyway"),
+    ("report", "--out", "out/r"),
+    ("curves",),
+    ("picture", "curves"),
+    ("plan",),
+    ("rate", "--limit", "{hot}=155"),
+    ("undo",),
+)
 
 
 def renamed(node, names):

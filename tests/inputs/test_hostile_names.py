@@ -45,11 +45,12 @@ def test_some_pass_the_door_and_some_do_not():
 
 
 NETWORK = {
-    "network": {"name": "n", "boundaries": ["room"]}, "nodes": {"part": {"C_J_K": 100.0}},
+    "network": {"name": "n", "boundaries": ["room"]},
+    "nodes": {"part": {"C_J_K": 100.0}},
     "links": {"loss": {"between": ["part", "room"], "G_W_K": 1.0}},
     "losses": {"heat": {"kind": "constant", "at": "part", "P_W": 1.0, "of": [{"input": "drive"}]}},
     "parameters": {"factor": {"acts_on": ["link:loss"]}},
-}  # fmt: skip
+}
 PLACES = ("n", "room", "part", "loss", "heat", "drive", "factor")
 
 
@@ -88,9 +89,12 @@ def model():
     one = packed(net, {}, Reference(), [])
     state = Output("", Row(np.array([0]), np.ones(1)))
     return replace(
-        one, name=NAMES[0], effects=tuple(NAMES), inputs=tuple(Signal(n, n, 0.0, 1.0) for n in NAMES),
+        one,
+        name=NAMES[0],
+        effects=tuple(NAMES),
+        inputs=tuple(Signal(n, n, 0.0, 1.0) for n in NAMES),
         outputs=tuple(replace(state, name=n, role=n) for n in NAMES),
-    )  # fmt: skip
+    )
 
 
 def test_exported_code_compiles_and_runs_nothing_of_a_name(model, tmp_path, monkeypatch):

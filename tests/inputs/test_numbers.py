@@ -17,25 +17,48 @@ from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.cycle import load_cycle
 
 NO_NUMBER = {
-    "nan": math.nan, "inf": math.inf, "huge": 10**400, "-1e300": -1e300, "word": "12", "true": True, "list": [[1.0]],
-}  # fmt: skip
+    "nan": math.nan,
+    "inf": math.inf,
+    "huge": 10**400,
+    "-1e300": -1e300,
+    "word": "12",
+    "true": True,
+    "list": [[1.0]],
+}
 NETWORKS = {"documented": documented(), "tclab": shipped("cases/tclab/network.toml")}
 NETWORKS |= {p.stem: shipped(str(p.relative_to(ROOT))) for p in sorted(ROOT.glob("benchmarks/hidden/machines/*.toml"))}
 SHEET = {
     "test": {"time": "time_s", "filter_s": 9.0, "max_gap_s": 30.0, "initial": 21.0},
-    "columns": {"T": {"quantity": "temperature", "unit": "degC", "place": "x", "sigma_K": 0.3, "lag_s": 9.0,
-                      "position_mm": [1.0, 2.0, 3.0]},
-                "R": {"quantity": "resistance", "unit": "ohm", "place": "x", "coefficient_percent_K": [0.39, 0.4],
-                      "reference_degC": 20.0, "cold": {"reading": 2.0, "at_degC": 20.0},
-                      "meter": {"percent": 0.2, "offset": 0.1, "resolution": 0.1, "range": [0.1, 4.0]}}},
+    "columns": {
+        "T": {
+            "quantity": "temperature",
+            "unit": "degC",
+            "place": "x",
+            "sigma_K": 0.3,
+            "lag_s": 9.0,
+            "position_mm": [1.0, 2.0, 3.0],
+        },
+        "R": {
+            "quantity": "resistance",
+            "unit": "ohm",
+            "place": "x",
+            "coefficient_percent_K": [0.39, 0.4],
+            "reference_degC": 20.0,
+            "cold": {"reading": 2.0, "at_degC": 20.0},
+            "meter": {"percent": 0.2, "offset": 0.1, "resolution": 0.1, "range": [0.1, 4.0]},
+        },
+    },
     "means": {"M": {"of": ["T"], "place": "x", "sigma_K": 0.3, "lag_s": 9.0}},
-    "inputs": {"current_A": 8.0}, "boundaries": {"ambient": 21.0},
+    "inputs": {"current_A": 8.0},
+    "boundaries": {"ambient": 21.0},
     "recorders": {"daq": {"file": "daq.csv", "shift_s": 3.0, "limit_s": 60.0}},
-}  # fmt: skip
+}
 CYCLE = {
-    "cycle": {"initial_degC": 20.0}, "boundaries": {"ambient": 20.0}, "load": {"current_A": 100.0},
+    "cycle": {"initial_degC": 20.0},
+    "boundaries": {"ambient": 20.0},
+    "load": {"current_A": 100.0},
     "duty": {"type": "S3", "period_s": 600.0, "duty_percent": 40.0, "cycles": 3, "step_s": 10.0},
-}  # fmt: skip
+}
 MACHINE = shipped("cases/pmsm-bases/machine.toml")
 DOCUMENTS = {**NETWORKS, "sheet": SHEET, "cycle": CYCLE}
 

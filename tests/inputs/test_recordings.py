@@ -86,18 +86,32 @@ def instants(table):
 
 
 NO_NUMBERS = {
-    "overload": "OVERLOAD", "dash": "-", "formula": "=A1+2", "hexadecimal": "0x1F", "true": "TRUE",
-    "underscore": "2_0.5", "two points": "1.2.3", "thousands": "1,234.5", "decimal comma": "20,5", "unit": "20.5 degC",
-    "question": "?", "clock": "12:30", "plus": "+", "apostrophe": "'20", "other digits": "\u0663\u0660",
-}  # fmt: skip
+    "overload": "OVERLOAD",
+    "dash": "-",
+    "formula": "=A1+2",
+    "hexadecimal": "0x1F",
+    "true": "TRUE",
+    "underscore": "2_0.5",
+    "two points": "1.2.3",
+    "thousands": "1,234.5",
+    "decimal comma": "20,5",
+    "unit": "20.5 degC",
+    "question": "?",
+    "clock": "12:30",
+    "plus": "+",
+    "apostrophe": "'20",
+    "other digits": "\u0663\u0660",
+}
 ENDLESS = {"beyond a double": "1e400", "infinite": "inf", "minus infinite": "-Infinity"}
 REFUSED = {
     **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "no number"]) for k, v in NO_NUMBERS.items()},
     **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
     **{f"a time: {k}": (cell(10, "time_s", v), ["line 12", "time_s", "test new"]) for k, v in NO_NUMBERS.items()},
     **{f"a current: {k}": (cell(10, "current", v), ["line 12", "current"]) for k, v in NO_NUMBERS.items()},
-    "times in words": (lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", instants(t).time_s)),
-                       ["line 2", "time_s", "test new"]),
+    "times in words": (
+        lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", instants(t).time_s)),
+        ["line 2", "time_s", "test new"],
+    ),
     "a line of units": (lines(lambda rows: [rows[0], "s,A,km/h,degC,degC,K,degC", *rows[1:]]), ["line 2", "'s'"]),
     "a preamble": (lines(lambda rows: ["# logger 3", *rows]), ["line 2", "the header is line 1"]),
     "a trailer": (lines(lambda rows: [*rows, "# end"]), ["line 302", "cut off"]),
@@ -134,9 +148,11 @@ REFUSED = {
     "an MF4 of noise": (other("mf4", b"MDF     4.10" + bytes(500)), ["stand.mf4"]),
     "a worksheet of a CSV": (worksheet, ["stand.csv", "no worksheets"]),
     "a worksheet that is not there": (lambda case: (excel()(case), worksheet(case)), ["no worksheet 'data'", "Sheet1"]),
-    "nothing but a code": (lambda case: changed(case, "stand", lambda t: t.__setitem__("T_flange", -127.0)),
-                           ["T_flange", "holds no number"]),
-}  # fmt: skip
+    "nothing but a code": (
+        lambda case: changed(case, "stand", lambda t: t.__setitem__("T_flange", -127.0)),
+        ["T_flange", "holds no number"],
+    ),
+}
 
 
 @pytest.fixture(scope="module")
@@ -154,8 +170,11 @@ def test_refused_in_one_line_with_its_place(tmp_path, spoil, words):
 
 
 SAME = {
-    "a workbook": excel(), "numbers in words": excel(lambda t: t.astype(str)), "instants in Excel": excel(instants),
-    "a Parquet": parquet(index=False), "a Parquet of instants": parquet(instants),
+    "a workbook": excel(),
+    "numbers in words": excel(lambda t: t.astype(str)),
+    "instants in Excel": excel(instants),
+    "a Parquet": parquet(index=False),
+    "a Parquet of instants": parquet(instants),
     "a Parquet of zoned instants": parquet(lambda t: t.assign(time_s=instants(t).time_s.dt.tz_localize("UTC"))),
     "a Parquet of spans": parquet(lambda t: t.assign(time_s=pd.to_timedelta(t.time_s, unit="s"))),
     "times as the index": parquet(lambda t: t.set_index("time_s")),
@@ -165,7 +184,7 @@ SAME = {
     "empty lines": lines(lambda rows: [*rows, "", "", ""]),
     "times of the day": lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", t.time_s + 1.7e9)),
     "times before the start": lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", t.time_s - 500)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("change", SAME.values(), ids=SAME)

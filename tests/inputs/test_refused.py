@@ -66,8 +66,11 @@ def beside(case):
 
 def power(case, value):
     """The current column read as a power that a loss takes the amount of."""
-    edited(case / "network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
-           'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }')  # fmt: skip
+    edited(
+        case / "network.toml",
+        'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
+        'kind = "constant"\nP_W = 1.0\nof = { input = "power_W", at = 1.0 }',
+    )
     for test in ("stand", "road", "town"):
         edited(case / f"tests/{test}.toml", 'quantity = "current"\nunit = "A"', 'quantity = "power"\nunit = "W"')
     changed(case, "stand", lambda table: table.__setitem__("current", value(table["current"])))
@@ -99,11 +102,17 @@ AIR = "[columns.air]"
 FLANGE = 'between = ["flange", "ambient"]'
 REFUSED = {
     "a case named with an escape code": (
-        swap("case.toml", 'name = "three"', 'name = "\\u001b[2J"'), ["case.toml", r"\x1b[2J", "printed"]),
+        swap("case.toml", 'name = "three"', 'name = "\\u001b[2J"'),
+        ["case.toml", r"\x1b[2J", "printed"],
+    ),
     "a link to a node with an escape code": (
-        swap("network.toml", 'between = ["winding"', 'between = ["\\u001b[2J"'), ["network.toml", "printed"]),
+        swap("network.toml", 'between = ["winding"', 'between = ["\\u001b[2J"'),
+        ["network.toml", "printed"],
+    ),
     "a node with a name without end": (
-        swap("network.toml", 'between = ["winding"', f'between = ["{"x" * 9999}"'), ["network.toml", "80 letters"]),
+        swap("network.toml", 'between = ["winding"', f'between = ["{"x" * 9999}"'),
+        ["network.toml", "80 letters"],
+    ),
     "name that leads outside": (named("/../../../ESCAPED"), ["case.toml", "ESCAPED", "characters without"]),
     "name with a backslash": (named("a\\\\b"), ["case.toml", "characters without"]),
     "name of dots": (named(".."), ["case.toml", "characters without"]),
@@ -113,7 +122,8 @@ REFUSED = {
     "two recordings of one name": (beside, ["stand.csv and stand.csv.gz", 'file = "tests/stand.csv"']),
     "one recording in two roles": (
         swap("case.toml", 'role = "hold-out"', f'role = "hold-out"\nfile = "tests/stand.csv"\nsheet = "{STAND}"'),
-        ["tests.stand", "tests.town", "one recording"]),
+        ["tests.stand", "tests.town", "one recording"],
+    ),
     "network of a wrong type": (swap("case.toml", '"network.toml"', "3"), ["case.toml", "network = 3"]),
     "network that is a folder": (swap("case.toml", '"network.toml"', '"tests"'), ["tests", "is no file"]),
     "network without a name": (swap("case.toml", '"network.toml"', '""'), ["is no file"]),
@@ -130,40 +140,57 @@ REFUSED = {
     "no workbook": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.xlsx", c)), ["stand.xlsx", "Excel"]),
     "no Parquet": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.parquet", c)), ["stand.parquet"]),
     "decimal commas": (
-        bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b".", b","))), ["decimal commas"]),
+        bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b".", b","))),
+        ["decimal commas"],
+    ),
     "row cut off": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c[:-25])), ["line 301", "cut off"]),
     "semicolons": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b",", b";"))), ["';'"]),
     "a header twice": (
         lambda case: changed(case, "stand", lambda table: table.insert(7, " T_yoke", table["T_yoke"])),
-        ["'T_yoke' stands twice"]),
+        ["'T_yoke' stands twice"],
+    ),
     "last time of 1e12": (column("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
     "time unit that leaves one sample": (
-        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "ms"'), ["2.99 s", "time_unit"]),
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "ms"'),
+        ["2.99 s", "time_unit"],
+    ),
     "time unit that makes decades": (
-        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "year"'), ["time_unit"]),
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "year"'),
+        ["time_unit"],
+    ),
     "time unit to a huge power": (
-        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "s**999999999"'), ["s**999999999", "known: h"]),
+        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "s**999999999"'),
+        ["s**999999999", "known: h"],
+    ),
     "unit of powers of powers": (swap(STAND, '"km/h"', '"km/h**9**9**9**9"'), ["km/h**9", "known"]),
     "unit that is a number": (swap(STAND, '"km/h"', "3"), ["unit = 3"]),
     "unit that is a list": (swap(STAND, '"km/h"', '["km/h"]'), ["no unit"]),
-    "time unit that is a number": (
-        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = 3'), ["unit = 3"]),
+    "time unit that is a number": (swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = 3'), ["unit = 3"]),
     "m/s of a shaft": (swap(STAND, '"vehicle_speed"\nunit = "km/h"', '"speed"\nunit = "m/s"'), ["vehicle_speed"]),
     "input named in another unit": (
-        swap(STAND, '"current"\nunit = "A"', '"current"\nunit = "A"\ninput = "current_mA"'), ["held in A"]),
+        swap(STAND, '"current"\nunit = "A"', '"current"\nunit = "A"\ninput = "current_mA"'),
+        ["held in A"],
+    ),
     "use in quotes": (swap(STAND, '"km/h"', '"km/h"\nuse = "false"'), ["use = 'false'", "without quotes"]),
     "boundary by column and constant": (
-        swap(STAND, AIR, f"[boundaries]\nambient = 20\n{AIR}"), ["ambient", "[columns.air]", "[boundaries]"]),
+        swap(STAND, AIR, f"[boundaries]\nambient = 20\n{AIR}"),
+        ["ambient", "[columns.air]", "[boundaries]"],
+    ),
     "boundary by two columns": (swap(STAND, 'place = "yoke"', 'place = "ambient"'), ["[columns.air]", "T_yoke"]),
     "misspelt boundary": (swap(STAND, AIR, f"[boundaries]\nambeint = 20\n{AIR}"), ["did you mean 'ambient'"]),
     "misspelt input": (
-        swap(STAND, '[columns.current]', '[inputs]\ncurent_A = 20\n[columns.current]\nuse = false'),
-        ["curent_A", "did you mean 'current_A'"]),
+        swap(STAND, "[columns.current]", "[inputs]\ncurent_A = 20\n[columns.current]\nuse = false"),
+        ["curent_A", "did you mean 'current_A'"],
+    ),
     "input by column and constant": (swap(STAND, AIR, f"[inputs]\ncurrent_A = 20\n{AIR}"), ["current_A", "twice"]),
     "one column as two sensors": (
-        swap(STAND, "[columns.T_flange]", '[columns.T_flange]\ncolumn = "T_yoke"'), ["T_flange", "one column"]),
+        swap(STAND, "[columns.T_flange]", '[columns.T_flange]\ncolumn = "T_yoke"'),
+        ["T_flange", "one column"],
+    ),
     "boundary below all weather": (
-        swap(STAND, '"ambient"', '"ambient"\nuse = false\n[boundaries]\nambient = -150'), ["-150", "-100"]),
+        swap(STAND, '"ambient"', '"ambient"\nuse = false\n[boundaries]\nambient = -150'),
+        ["-150", "-100"],
+    ),
     "sensor without end": (swap(STAND, "sigma_K = 0.4", "sigma_K = inf"), ["T_flange", "sigma_K = inf"]),
     "sensor of no width": (swap(STAND, "sigma_K = 0.4", "sigma_K = 0"), ["T_flange", "sigma_K = 0"]),
     "reading below all cold": (column("T_flange", 10, -150), ["line 12", "-150"]),
@@ -172,31 +199,50 @@ REFUSED = {
     "degC read as K": (swap(STAND, 'unit = "degC"\nplace = "winding"', 'unit = "K"\nplace = "winding"'), ["unit"]),
     "reversed clamp": (lambda case: power(case, lambda amps: -amps), ["negative", "clamp", "line"]),
     "one reading of a reversed clamp": (
-        lambda case: power(case, lambda amps: amps.where(amps.index != 40, -50.0)), ["negative", "line 42"]),
+        lambda case: power(case, lambda amps: amps.where(amps.index != 40, -50.0)),
+        ["negative", "line 42"],
+    ),
     "nodes alone": (
-        lambda case: [edited(case / "network.toml", FLANGE, 'between = ["flange", "winding"]'),
-                      edited(case / "network.toml", 'between = ["yoke", "ambient"]', 'between = ["yoke", "winding"]')],
-        ["no heat can leave", "'winding', 'yoke', 'flange'", "ambient"]),
+        lambda case: [
+            edited(case / "network.toml", FLANGE, 'between = ["flange", "winding"]'),
+            edited(case / "network.toml", 'between = ["yoke", "ambient"]', 'between = ["yoke", "winding"]'),
+        ],
+        ["no heat can leave", "'winding', 'yoke', 'flange'", "ambient"],
+    ),
     "a capacity of zero": (swap("network.toml", "C_J_K = 2000", "C_J_K = 0"), ["C_J_K = 0", "1e-09 to 1e+10"]),
     "a capacity of next to nothing": (swap("network.toml", "C_J_K = 2000", "C_J_K = 1e-300"), ["C_J_K", "1e-09"]),
     "a factor down to next to nothing": (parameter("low = 1e-300"), ["low = 1e-300", "1e-12"]),
     "no capacity": (
         lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "") for C in (2000, 6000, 3000)],
-        ["no node has a heat capacity"]),
+        ["no node has a heat capacity"],
+    ),
     "stream in a loop": (
-        swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["ambient", "yoke", "flange", "yoke"]\nmcp_W_K = 5'
-             "\n[losses.copper]"), ["streams.x", "'yoke' 2 times", "circuits"]),
+        swap(
+            "network.toml",
+            "[losses.copper]",
+            '[streams.x]\npath = ["ambient", "yoke", "flange", "yoke"]\nmcp_W_K = 5\n[losses.copper]',
+        ),
+        ["streams.x", "'yoke' 2 times", "circuits"],
+    ),
     "stream to nowhere": (
         swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["yoke"]\nmcp_W_K = 5\n[losses.copper]'),
-        ["leads nowhere"]),
+        ["leads nowhere"],
+    ),
     "shares that make more than a whole": (
-        swap("network.toml", 'at = "winding"', "at = { winding = 0.7, yoke = 0.7 }"), ["sum to 1.4"]),
+        swap("network.toml", 'at = "winding"', "at = { winding = 0.7, yoke = 0.7 }"),
+        ["sum to 1.4"],
+    ),
     "negative share": (swap("network.toml", 'at = "winding"', "at = { winding = 1.5, yoke = -0.5 }"), ["= 1.5"]),
     "capacity of 400 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 400}"), ["C_J_K"]),
     "capacity of 5000 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 5000}"), ["network.toml"]),
     "malformed loss map": (
-        swap("network.toml", 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
-             'kind = "map"\nat_speed = [0, 1]\nat_torque = [0, 1]\nP_W = [1, 2]'), ["losses.copper", "P_W"]),
+        swap(
+            "network.toml",
+            'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
+            'kind = "map"\nat_speed = [0, 1]\nat_torque = [0, 1]\nP_W = [1, 2]',
+        ),
+        ["losses.copper", "P_W"],
+    ),
     "runaway": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 2"), ["winding", "thermal runaway", "copper"]),
     "bounds that cross": (parameter("low = 2\nhigh = 0.5"), ["parameters.x", "low = 2", "high = 0.5"]),
     "bounds without 1": (parameter("value = 3\nlow = 2\nhigh = 5"), ["parameters.x", "neutral value = 1"]),
@@ -205,7 +251,7 @@ REFUSED = {
     "model beyond its bounds": (model('"link.yoke-air" = 5000'), ["revision 1", "link.yoke-air", "0.001 to 1000"]),
     "model with a negative factor": (model('"link.yoke-air" = -1'), ["revision 1", "link.yoke-air"]),
     "model that is not finite": (model('"link.yoke-air" = nan'), ["link.yoke-air", "nan"]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("spoil", "words"), REFUSED.values(), ids=REFUSED)
@@ -221,10 +267,18 @@ def test_one_line_exit_2_files_as_before(tmp_path, spoil, words):
 
 @pytest.mark.parametrize(
     ("option", "name", "words"),
-    [("--json", "case.toml", "stays"), ("--json", "network.toml", "stays"), ("--json", "tests/stand.csv", "stays"),
-     ("--json", "tests/stand.toml", "stays"), ("--json", "tests", "no file"), ("--json", "", "no file"),
-     ("--out", ".", "inputs"), ("--out", "tests", "inputs"), ("--out", "case.toml", "no folder")],
-)  # fmt: skip
+    [
+        ("--json", "case.toml", "stays"),
+        ("--json", "network.toml", "stays"),
+        ("--json", "tests/stand.csv", "stays"),
+        ("--json", "tests/stand.toml", "stays"),
+        ("--json", "tests", "no file"),
+        ("--json", "", "no file"),
+        ("--out", ".", "inputs"),
+        ("--out", "tests", "inputs"),
+        ("--out", "case.toml", "no folder"),
+    ],
+)
 def test_results_never_go_over_inputs(tmp_path, option, name, words):
     case = case_of(tmp_path)
     before = contents(tmp_path)

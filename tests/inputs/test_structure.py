@@ -22,19 +22,39 @@ from thermoscope.case_folder.history import History, Revision, load_history, sav
 
 OTHER = [3, "word", True, [], {"x": "y"}, [[1, 2], [3]], datetime.date(2020, 1, 1), ""]
 DUTY = {
-    "cycle": {"description": "x"}, "load": {"current_A": 100}, "boundaries": {"ambient": 20}, "inputs": {"x": 1.0},
+    "cycle": {"description": "x"},
+    "load": {"current_A": 100},
+    "boundaries": {"ambient": 20},
+    "inputs": {"x": 1.0},
     "duty": {"type": "S3", "period_s": 600, "duty_percent": 40, "cycles": 3, "step_s": 10},
-}  # fmt: skip
+}
 RECORD = {
     "machine": {"rated_kW": 7.0},
-    "cold": {"room_degC": 21.0, "machine_degC": 21.0, "resistance_ohm": 2.0, "emf_V": 100.0, "speed_rpm": 383.0,
-             "range_ohm": 4.0, "hours_since_run": 20.0},
+    "cold": {
+        "room_degC": 21.0,
+        "machine_degC": 21.0,
+        "resistance_ohm": 2.0,
+        "emf_V": 100.0,
+        "speed_rpm": 383.0,
+        "range_ohm": 4.0,
+        "hours_since_run": 20.0,
+    },
     "load": {"readings": [[0, 20.0], [10, 30.0], [20, 35.0]], "resolution_K": 0.5},
     "hot": {"ambient_degC": 21.0, "readings": [[10, 2.5], [20, 2.4], [30, 2.35]]},
-    "coefficients": {"beta_percent_K": [0.39, 0.4]}, "meters": {"resistance": {"percent": 0.2}},
-}  # fmt: skip
-STEP = Revision(0, "add", (), "", {"link.yoke-air": 1.1}, {"link.yoke-air": (1.0, 1.2)}, {"stand": (1.0, 0.5)}, "why",
-                {"score": 1.0})  # fmt: skip
+    "coefficients": {"beta_percent_K": [0.39, 0.4]},
+    "meters": {"resistance": {"percent": 0.2}},
+}
+STEP = Revision(
+    0,
+    "add",
+    (),
+    "",
+    {"link.yoke-air": 1.1},
+    {"link.yoke-air": (1.0, 1.2)},
+    {"stand": (1.0, 0.5)},
+    "why",
+    {"score": 1.0},
+)
 
 
 def ways(document, way=()):
@@ -114,9 +134,10 @@ def test_machine(way):
 CASE = {
     "case": {"name": "x", "description": "x", "network": "network.toml", "sample_s": 20, "model_error_K": 0.1},
     "calibration": {"free": ["link.*"]},
-    "tests": {"stand": {"role": "calibrate", "file": "tests/stand.csv", "sheet": "tests/stand.toml",
-                        "frees": ["link.*"]}},
-}  # fmt: skip
+    "tests": {
+        "stand": {"role": "calibrate", "file": "tests/stand.csv", "sheet": "tests/stand.toml", "frees": ["link.*"]}
+    },
+}
 
 
 @pytest.fixture(scope="module")

@@ -96,11 +96,12 @@ def exact(time, flow, capacity):
 
 
 RIGHT = {
-    "plain": {}, "rows 10 h apart": {"time": np.arange(0.0, 10.0) * 36000.0, "sample": "36000"},
+    "plain": {},
+    "rows 10 h apart": {"time": np.arange(0.0, 10.0) * 36000.0, "sample": "36000"},
     "backwards": {"flow": lambda t: np.where(t < 305.0, 6.0, -3.0), "back": BACK},
     "through zero": {"flow": lambda t: 4.0 * np.cos(t / 100.0), "back": BACK},
     "a capacity of 1e-9": {"capacity": "1e-9"},
-}  # fmt: skip
+}
 WRONG = {
     "a sample of 0 s": ({"sample": "0"}, ["sample_s", "case.toml"]),
     "a sample of -5 s": ({"sample": "-5"}, ["sample_s", "case.toml"]),
@@ -109,7 +110,7 @@ WRONG = {
     "a flow that turns round": ({"flow": lambda t: np.where(t < 305.0, 6.0, -3.0)}, ["flow_l_min", "backwards_from"]),
     "time that jumps back": ({"time": np.append(EVEN, EVEN)}, ["one.csv", "time_s"]),
     "a negative capacity": ({"capacity": "-1e-9"}, ["C_J_K", "jacket"]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("change", RIGHT.values(), ids=RIGHT)

@@ -20,12 +20,14 @@ def machine():
     base = replace(base, links=tuple(moved(x, n) for x in base.links), capacity_group=base.states)
     flange = np.array([base.column("flange.right")])
     faces = {
-        "flange.right.outer": Place("flange.right.outer", "surface", "flange.right", flange, 0.2 * np.eye(1),
-                                    np.array([0.2]), 0.2, "ambient"),
-        "flange.right.inner": Place("flange.right.inner", "surface", "flange.right", flange, 0.1 * np.eye(1),
-                                    np.array([0.1]), 0.1, "air.right"),
+        "flange.right.outer": Place(
+            "flange.right.outer", "surface", "flange.right", flange, 0.2 * np.eye(1), np.array([0.2]), 0.2, "ambient"
+        ),
+        "flange.right.inner": Place(
+            "flange.right.inner", "surface", "flange.right", flange, 0.1 * np.eye(1), np.array([0.1]), 0.1, "air.right"
+        ),
         "air.right": Place("air.right", "fluid", "air.right", np.array([n]), np.eye(1), np.ones(1)),
-    }  # fmt: skip
+    }
     base = replace(base, places={**base.places, **faces})
     coolant = base.surface_link("film:housing:jacket", "film", "housing", "coolant", Fixed(20.0))
     inner = base.surface_link("film:flange.right.inner", "film", "flange.right.inner", "air.right", Fixed(15.0))

@@ -10,17 +10,32 @@ LIMIT_K = 1.0  # of every sensor: two deviations of its reading
 TIME = np.arange(0.0, 3601.0, 30.0)
 PLACES = ("flange.left", "flange.right", "winding.field", "yoke", "housing")
 POSITIONS = {
-    "flange.left": (-0.12, 0.05, 0.10), "flange.right": (-0.08, -0.12, 0.65), "winding.field": (-0.14, 0.0, 0.30),
-    "yoke": (0.0, 0.17, 0.30), "housing": (0.0, 0.20, 0.40),
-}  # fmt: skip
+    "flange.left": (-0.12, 0.05, 0.10),
+    "flange.right": (-0.08, -0.12, 0.65),
+    "winding.field": (-0.14, 0.0, 0.30),
+    "yoke": (0.0, 0.17, 0.30),
+    "housing": (0.0, 0.20, 0.40),
+}
 HISTORY = [
-    {"number": 1, "action": "calibrate", "effect": None, "tests": [
-        {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 3.1, "after": 0.71}},
-        {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 6.4, "after": 4.85}}]},
-    {"number": 2, "action": "add", "effect": "convection@flange.right", "tests": [
-        {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 0.71, "after": 0.68}},
-        {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 4.85, "after": 0.93}}]},
-]  # fmt: skip
+    {
+        "number": 1,
+        "action": "calibrate",
+        "effect": None,
+        "tests": [
+            {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 3.1, "after": 0.71}},
+            {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 6.4, "after": 4.85}},
+        ],
+    },
+    {
+        "number": 2,
+        "action": "add",
+        "effect": "convection@flange.right",
+        "tests": [
+            {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 0.71, "after": 0.68}},
+            {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 4.85, "after": 0.93}},
+        ],
+    },
+]
 
 
 def curve(end: float, tau: float) -> np.ndarray:
@@ -49,11 +64,16 @@ def comparison(wrong_K: float = 6.2, before: bool = False) -> Comparison:
 
 def candidate(effect: str, score: float, decision: str) -> dict:
     return {
-        "effect": effect, "score": score, "threshold": 7.9, "decision": decision, "explained": 0.91,
+        "effect": effect,
+        "score": score,
+        "threshold": 7.9,
+        "decision": decision,
+        "explained": 0.91,
         "amplitude": {"value": 12.34, "unit": "W/m2/K", "ci95": [10.1, 14.6]},
-        "rmse_K": {"before": 4.85, "after": 0.93}, "holdout_rmse_K": {"before": 4.85, "after": 0.93},
+        "rmse_K": {"before": 4.85, "after": 0.93},
+        "holdout_rmse_K": {"before": 4.85, "after": 0.93},
         "confused_with": [],
-    }  # fmt: skip
+    }
 
 
 def candidates() -> list[dict]:
@@ -70,12 +90,18 @@ def documents() -> tuple[dict, dict]:
     """(compare, diagnose) documents."""
     channels = [
         {
-            "channel": p, "place": p, "n": 121, "rmse_K": 5.07 if p == "flange.right" else 0.31, "bias_K": -4.21,
-            "max_abs_K": 7.13, "sigma_K": 0.5, "percent_of_rise": 9.14,
+            "channel": p,
+            "place": p,
+            "n": 121,
+            "rmse_K": 5.07 if p == "flange.right" else 0.31,
+            "bias_K": -4.21,
+            "max_abs_K": 7.13,
+            "sigma_K": 0.5,
+            "percent_of_rise": 9.14,
             "verdict": "over" if p == "flange.right" else "within",
         }
         for p in PLACES
-    ]  # fmt: skip
+    ]
     test = {"name": "road-2", "role": "hold-out", "rmse_K": 4.85, "channels": channels}
     compare = {
         "case": "road-test",
@@ -85,9 +111,10 @@ def documents() -> tuple[dict, dict]:
         "floor_K": 0.62,
     }
     diagnose = {
-        "verdict": "named", "candidates": candidates(),
+        "verdict": "named",
+        "candidates": candidates(),
         "where": [{"place": "flange.right", "evidence_nats": 41.0}],
         "cannot_see": [{"effect": "contact@yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}],
         "next_tests": [{"test": "blower on", "separates": ["radiation@flange.right"], "predicted_gain": 44.0}],
-    }  # fmt: skip
+    }
     return compare, diagnose

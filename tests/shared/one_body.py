@@ -12,8 +12,17 @@ P, G, C, SIGMA = 50.0, 2.0, 4000.0, 0.3
 def one_node(*parameters):
     """One mass, one film to ambient, one constant loss."""
     row, air = Row(np.array([0]), np.ones(1)), Row(np.array([1]), np.ones(1))
-    film = Link("film", "film", ("body", "ambient"), np.array([0, 0]), np.array([0, 1]), np.array([1.0, -1.0]),
-                Fixed(G), row, air)  # fmt: skip
+    film = Link(
+        "film",
+        "film",
+        ("body", "ambient"),
+        np.array([0, 0]),
+        np.array([0, 1]),
+        np.array([1.0, -1.0]),
+        Fixed(G),
+        row,
+        air,
+    )
     loss = Source("loss", "measured", "body", np.array([0]), np.ones(1), Fixed(P), row)
     place = Place("body", "node", "body", np.array([0]), np.eye(1), np.ones(1))
     return Network(

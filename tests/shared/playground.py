@@ -14,18 +14,36 @@ from lumped.transfer.laws import Constant, Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
 
 NODES = {  # heat capacity J/K
-    "shaft": 14e3, "rotor": 70e3, "winding.armature": 25e3, "commutator": 10e3, "yoke": 90e3, "poles": 60e3,
-    "winding.field": 30e3, "housing": 50e3, "flange.left": 16e3, "flange.right": 16e3, "bearing.left": 3e3,
+    "shaft": 14e3,
+    "rotor": 70e3,
+    "winding.armature": 25e3,
+    "commutator": 10e3,
+    "yoke": 90e3,
+    "poles": 60e3,
+    "winding.field": 30e3,
+    "housing": 50e3,
+    "flange.left": 16e3,
+    "flange.right": 16e3,
+    "bearing.left": 3e3,
     "bearing.right": 3e3,
-}  # fmt: skip
+}
 NAMES = tuple(NODES)
 JOINTS = {  # W/K
-    ("rotor", "shaft"): 25.0, ("rotor", "winding.armature"): 60.0, ("commutator", "winding.armature"): 12.0,
-    ("commutator", "shaft"): 8.0, ("poles", "rotor"): 9.0, ("poles", "winding.field"): 25.0, ("poles", "yoke"): 80.0,
-    ("housing", "yoke"): 120.0, ("flange.left", "housing"): 18.0, ("flange.right", "housing"): 18.0,
-    ("bearing.left", "flange.left"): 6.0, ("bearing.right", "flange.right"): 6.0, ("bearing.left", "shaft"): 5.0,
+    ("rotor", "shaft"): 25.0,
+    ("rotor", "winding.armature"): 60.0,
+    ("commutator", "winding.armature"): 12.0,
+    ("commutator", "shaft"): 8.0,
+    ("poles", "rotor"): 9.0,
+    ("poles", "winding.field"): 25.0,
+    ("poles", "yoke"): 80.0,
+    ("housing", "yoke"): 120.0,
+    ("flange.left", "housing"): 18.0,
+    ("flange.right", "housing"): 18.0,
+    ("bearing.left", "flange.left"): 6.0,
+    ("bearing.right", "flange.right"): 6.0,
+    ("bearing.left", "shaft"): 5.0,
     ("bearing.right", "shaft"): 5.0,
-}  # fmt: skip
+}
 FILMS = {"housing": 14.0, "flange.left": 2.0, "flange.right": 2.0}  # W/K at 40 K, natural
 FAN = {
     "rotor": 9.0,
@@ -74,9 +92,16 @@ def network(feedback=True):
     for a in FILMS:
         places[a] = Place(a, "node", a, np.array([NAMES.index(a)]), np.eye(1), np.ones(1), fluid="ambient")
     return Network(
-        "playground", NAMES, np.array(list(NODES.values())), ("ambient",), tuple(links), tuple(sources), places,
-        NAMES, parameters(links, sources),
-    )  # fmt: skip
+        "playground",
+        NAMES,
+        np.array(list(NODES.values())),
+        ("ambient",),
+        tuple(links),
+        tuple(sources),
+        places,
+        NAMES,
+        parameters(links, sources),
+    )
 
 
 def parameters(links, sources):
@@ -176,9 +201,11 @@ class Truth:
 
     def case(self, model=None):
         plans = {
-            "stand-1": ("calibrate", stand(225.0, 700.0)), "stand-2": ("calibrate", stand(270.0, 1000.0)),
-            "road-1": ("validate", road(11.0)), "road-2": ("hold-out", road(9.0)),
-        }  # fmt: skip
+            "stand-1": ("calibrate", stand(225.0, 700.0)),
+            "stand-2": ("calibrate", stand(270.0, 1000.0)),
+            "road-1": ("validate", road(11.0)),
+            "road-2": ("hold-out", road(9.0)),
+        }
         tests = tuple(self.test(name, role, plan) for name, (role, plan) in plans.items())
         return Case(f"playground-{self.seed}", Model(model or network()), tests)
 
@@ -201,9 +228,11 @@ def stand(current, speed):
         still = np.zeros_like(time)
         fan = np.where(time > 2400.0, 90.0, 138.0)
         return {
-            "current_A": steps(time, rng, 0.6 * current, current, 900.0), "vehicle_speed_mps": still,
-            "speed_rpm": steps(time, rng, 0.3 * speed, speed, 1200.0), "fan_flow_m3h": fan,
-        }  # fmt: skip
+            "current_A": steps(time, rng, 0.6 * current, current, 900.0),
+            "vehicle_speed_mps": still,
+            "speed_rpm": steps(time, rng, 0.3 * speed, speed, 1200.0),
+            "fan_flow_m3h": fan,
+        }
 
     return plan
 
@@ -213,9 +242,11 @@ def road(top):
         v = np.convolve(steps(time, rng, 0.2 * top, top, 240.0), np.ones(6) / 6, mode="same")
         current = steps(time, rng, 130.0, 380.0, 180.0)
         return {
-            "current_A": current, "vehicle_speed_mps": v, "speed_rpm": 90.0 * v,
+            "current_A": current,
+            "vehicle_speed_mps": v,
+            "speed_rpm": 90.0 * v,
             "fan_flow_m3h": np.full_like(time, 138.0),
-        }  # fmt: skip
+        }
 
     return plan
 

@@ -92,8 +92,24 @@ def machine(seed: int, most: int = 40) -> Machine:
     heated[:, solid:] = False
     copper, iron = heated * rng.uniform(0.2, 1.0, (2, n))
     time, inputs, around = _record(rng)
-    out = Machine(C, a, b, G, forced, natural, radiating, washed, cell, path, copper, iron, time, inputs, around,
-                  rng.uniform(15.0, 60.0) + rng.uniform(0.0, 20.0, n))  # fmt: skip
+    out = Machine(
+        C,
+        a,
+        b,
+        G,
+        forced,
+        natural,
+        radiating,
+        washed,
+        cell,
+        path,
+        copper,
+        iron,
+        time,
+        inputs,
+        around,
+        rng.uniform(15.0, 60.0) + rng.uniform(0.0, 20.0, n),
+    )
     return _scaled(out, rng.uniform(5.0, 120.0))
 
 
@@ -144,37 +160,51 @@ def built(m: Machine) -> tuple[Network, Record]:
     """The same, declared to the tool; every link and loss is a parameter."""
     names = [f"n{i}" for i in range(m.C.size)]
     net = bare_network("random", dict(zip(names, m.C, strict=True)), (AMBIENT, INLET, OUTLET))
-    links = [node_link(net, f"g{k}", "link", names[i], names[j], Fixed(G))
-             for k, (i, j, G) in enumerate(zip(m.a, m.b, m.G, strict=True))]  # fmt: skip
+    links = [
+        node_link(net, f"g{k}", "link", names[i], names[j], Fixed(G))
+        for k, (i, j, G) in enumerate(zip(m.a, m.b, m.G, strict=True))
+    ]
     for i, name in enumerate(names):
         if m.forced[i]:
             law = InputPower(m.forced[i], (("speed_rpm", 1000.0, 0.8),))
-            links += [node_link(net, f"f{i}", "film", name, AMBIENT, law),
-                      node_link(net, f"s{i}", "film", name, AMBIENT, Fixed(0.1 * m.forced[i]))]  # fmt: skip
+            links += [
+                node_link(net, f"f{i}", "film", name, AMBIENT, law),
+                node_link(net, f"s{i}", "film", name, AMBIENT, Fixed(0.1 * m.forced[i])),
+            ]
         if m.natural[i]:
             links.append(node_link(net, f"c{i}", "film", name, AMBIENT, Fixed(m.natural[i], Power(0.25))))
         if m.radiating[i]:
             links.append(node_link(net, f"r{i}", "film", name, AMBIENT, Fixed(m.radiating[i], Radiation())))
         if m.cell[i] >= 0:
             law = InputPower(m.washed[i], (("flow_l_min", 4.0, 0.8),))
-            links += [node_link(net, f"w{i}", "film", name, names[m.cell[i]], law),
-                      node_link(net, f"v{i}", "film", name, names[m.cell[i]], Fixed(0.05 * m.washed[i]))]  # fmt: skip
+            links += [
+                node_link(net, f"w{i}", "film", name, names[m.cell[i]], law),
+                node_link(net, f"v{i}", "film", name, names[m.cell[i]], Fixed(0.05 * m.washed[i])),
+            ]
     if m.path.size:
         cells = [names[k] for k in m.path]
-        links += [stream(net, "forth", (INLET, *cells), Forward(1.0)),
-                  stream(net, "back", (OUTLET, *cells[::-1]), Forward(-1.0))]  # fmt: skip
+        links += [
+            stream(net, "forth", (INLET, *cells), Forward(1.0)),
+            stream(net, "back", (OUTLET, *cells[::-1]), Forward(-1.0)),
+        ]
         links += [node_link(net, f"leak{k}", "film", cells[k], AMBIENT, Fixed(1.0)) for k in range(len(cells))]
     sources = [
         node_source(net, f"copper{i}", "copper", {names[i]: 1.0}, CopperLoss(P / 100.0, ("current_A",), 1.0, 0.0039))
-        for i, P in enumerate(m.copper) if P
-    ]  # fmt: skip
+        for i, P in enumerate(m.copper)
+        if P
+    ]
     iron = [
         node_source(net, f"iron{i}", "iron", {names[i]: 1.0}, InputPower(P, (("speed_rpm", 1000.0, 1.5),)))
-        for i, P in enumerate(m.iron) if P
-    ]  # fmt: skip
+        for i, P in enumerate(m.iron)
+        if P
+    ]
     given = dict(zip(INPUTS, m.inputs.T, strict=True))
-    record = Record(m.time, given, dict(zip((AMBIENT, INLET, OUTLET), m.around.T, strict=True)),
-                    dict(zip(names, m.start, strict=True)))  # fmt: skip
+    record = Record(
+        m.time,
+        given,
+        dict(zip((AMBIENT, INLET, OUTLET), m.around.T, strict=True)),
+        dict(zip(names, m.start, strict=True)),
+    )
     parameters = tuple(Parameter(x.name, ((x.name, 1.0),)) for x in (*links, *sources, *iron))
     return net.extended(links, [*sources, *iron], parameters), record
 
@@ -295,8 +325,15 @@ def reference(m: Machine, rtol: float = 1e-9) -> np.ndarray:
         zero = u0[2] / (u0[2] - u1[2]) if u0[2] * u1[2] < 0.0 else 1.0
         for begin, end in ((t0, t0 + zero * (t1 - t0)), (t0 + zero * (t1 - t0), t1)):
             if end > begin:
-                run = solve_ivp(lambda t, y: at(t, y)[0], (begin, end), x[warm], "Radau", rtol=rtol, atol=1e-8,
-                                jac=lambda t, y: at(t, y)[1])  # fmt: skip
+                run = solve_ivp(
+                    lambda t, y: at(t, y)[0],
+                    (begin, end),
+                    x[warm],
+                    "Radau",
+                    rtol=rtol,
+                    atol=1e-8,
+                    jac=lambda t, y: at(t, y)[1],
+                )
                 at(end, run.y[:, -1])
         out.append(x.copy())
     return np.array(out)

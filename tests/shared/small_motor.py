@@ -16,11 +16,15 @@ RADII = np.array([0.0, 0.03, 0.09, 0.115, 0.12, 0.155, 0.20, 0.22])
 LEVELS = np.array([0.0, 0.05, 0.10, 0.14, 0.25, 0.38, 0.50, 0.54, 0.60, 0.65, 0.70])
 PARTS = ("shaft", "rotor.core", "winding.armature", "winding.field", "yoke", "housing", "flange.left", "flange.right")
 KNOWN = {
-    "shaft": identity(Role.SHAFT), "rotor.core": identity(Role.ROTOR), "yoke": identity(Role.IRON),
-    "winding.armature": identity(Role.WINDING, True), "winding.field": identity(Role.WINDING),
-    "housing": identity(Role.HOUSING), "flange.left": identity(Role.END_SHIELD),
+    "shaft": identity(Role.SHAFT),
+    "rotor.core": identity(Role.ROTOR),
+    "yoke": identity(Role.IRON),
+    "winding.armature": identity(Role.WINDING, True),
+    "winding.field": identity(Role.WINDING),
+    "housing": identity(Role.HOUSING),
+    "flange.left": identity(Role.END_SHIELD),
     "flange.right": identity(Role.END_SHIELD),
-}  # fmt: skip
+}
 
 
 def _part(ring: int, level: int) -> int:

@@ -97,8 +97,10 @@ print(int(status.partition("VmHWM:")[2].split()[0]) // 1024)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
-@pytest.mark.parametrize(("cell", "word"), [("XFD1048576", "limit 'columns'"), ("ALL1048576", "limit 'cells'"),
-                                            ("B1048576", str(len(ROWS) + 1))])  # fmt: skip
+@pytest.mark.parametrize(
+    ("cell", "word"),
+    [("XFD1048576", "limit 'columns'"), ("ALL1048576", "limit 'cells'"), ("B1048576", str(len(ROWS) + 1))],
+)
 def test_a_cell_far_away_takes_no_memory(tmp_path, cell, word):
     """Filled up, that would be up to 17 billion cells; a few columns wide it is one more row."""
     file = book(tmp_path / "a.xlsx", **{cell: 1.0})

@@ -177,8 +177,11 @@ def _columns(path: Path, top: Table, head: Table) -> Columns:
 def _counted(instants: float, where: str) -> None:
     """A cycle has so many instants that a run of it makes sense and fits into memory."""
     if not LEAST <= instants <= INSTANTS.most:
-        raise InputError(f"the cycle has {instants:.3g} instants", where,
-                         f"{LEAST} to {INSTANTS.most:,} ({INSTANTS.variable}): check step_s and time_unit")  # fmt: skip
+        raise InputError(
+            f"the cycle has {instants:.3g} instants",
+            where,
+            f"{LEAST} to {INSTANTS.most:,} ({INSTANTS.variable}): check step_s and time_unit",
+        )
 
 
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -232,14 +235,23 @@ def _series(
         *rated, L=m.number("inductance_H", 2e-3), J=m.number("inertia_kg_m2", 2.0), B=m.number("friction_Nms", 0.0)
     )
     vehicle = Vehicle(
-        v.number("mass_kg"), v.number("wheel_radius_m"), v.number("gear"), v.number("efficiency", 0.95),
-        v.number("rolling", 0.01), v.number("drag_area_m2", 3.0), v.number("air_density_kg_m3", 1.2),
-        v.number("brakes_m_s2", 3.0), v.number("regeneration", 0.0),
-    )  # fmt: skip
+        v.number("mass_kg"),
+        v.number("wheel_radius_m"),
+        v.number("gear"),
+        v.number("efficiency", 0.95),
+        v.number("rolling", 0.01),
+        v.number("drag_area_m2", 3.0),
+        v.number("air_density_kg_m3", 1.2),
+        v.number("brakes_m_s2", 3.0),
+        v.number("regeneration", 0.0),
+    )
     control = Controller(
-        c.number("Kp", 40.0), c.number("Ki", 4.0), c.number("current_limit_A", rated[3]),
-        c.number("voltage_limit_V", rated[2]), c.number("current_lag_s", 0.02),
-    )  # fmt: skip
+        c.number("Kp", 40.0),
+        c.number("Ki", 4.0),
+        c.number("current_limit_A", rated[3]),
+        c.number("voltage_limit_V", rated[2]),
+        c.number("current_lag_s", 0.02),
+    )
     places = _places(m, network, "winding", WINDING)
     reference = m.number("reference_degC", 20.0)
     for t in (m, v, c):
@@ -257,10 +269,15 @@ def _series(
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:
     m = top.table("pm-machine")
     machine = PMMachine(
-        int(m.number("pole_pairs")), m.number("R20_ohm"), m.number("Ld_H"),
-        m.number("Lq_H"), m.number("psi_Vs"), m.number("current_limit_A"),
-        m.number("voltage_limit_V"), alpha_B=m.number("alpha_B_1_K", -1.1e-3),
-    )  # fmt: skip
+        int(m.number("pole_pairs")),
+        m.number("R20_ohm"),
+        m.number("Ld_H"),
+        m.number("Lq_H"),
+        m.number("psi_Vs"),
+        m.number("current_limit_A"),
+        m.number("voltage_limit_V"),
+        alpha_B=m.number("alpha_B_1_K", -1.1e-3),
+    )
     places = {WINDING: _places(m, network, "winding", WINDING), MAGNET: _places(m, network, "magnet", "rotor")}
     rms = m.word("current_A", "rms" if network.recovery is not None else "peak", ("rms", "peak")) == "rms"
     m.close()
@@ -278,10 +295,18 @@ def _torque_and_speed(m: Table, inputs: dict[str, Array]) -> tuple[Array, Array]
 def _induction(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str], dict[str, Law]]:
     m = top.table(INDUCTION)
     machine = InductionMachine(
-        int(m.number("pole_pairs")), m.number("Rs20_ohm"), m.number("Rr20_ohm"), m.number("Ls_leakage_H"),
-        m.number("Lr_leakage_H"), m.number("Lm_H"), m.number("magnetising_A"), m.number("current_limit_A"),
-        m.number("voltage_limit_V"), m.number("alpha_stator_1_K", ALPHA_CU), m.number("alpha_cage_1_K", ALPHA_AL),
-    )  # fmt: skip
+        int(m.number("pole_pairs")),
+        m.number("Rs20_ohm"),
+        m.number("Rr20_ohm"),
+        m.number("Ls_leakage_H"),
+        m.number("Lr_leakage_H"),
+        m.number("Lm_H"),
+        m.number("magnetising_A"),
+        m.number("current_limit_A"),
+        m.number("voltage_limit_V"),
+        m.number("alpha_stator_1_K", ALPHA_CU),
+        m.number("alpha_cage_1_K", ALPHA_AL),
+    )
     if machine.magnetising > machine.current_limit:
         what = f"magnetising_A = {machine.magnetising:g} is above current_limit_A = {machine.current_limit:g}"
         raise m.error(what, "less: the rated flux has to be within the current")

@@ -46,13 +46,19 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped."""
     columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
-    moves = {n: float(v[finite[-1]] - v[finite[0]]) for n, v in columns.items()
-             if (finite := np.flatnonzero(np.isfinite(v))).size}  # fmt: skip
+    moves = {
+        n: float(v[finite[-1]] - v[finite[0]])
+        for n, v in columns.items()
+        if (finite := np.flatnonzero(np.isfinite(v))).size
+    }
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
         if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
-            yield p.finding(name, f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
-                          "use = false, or the wires the right way round")  # fmt: skip
+            yield p.finding(
+                name,
+                f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
+                "use = false, or the wires the right way round",
+            )
 
 
 def _all_units(p: Patient, network: Network) -> Iterator[Finding]:
@@ -64,8 +70,9 @@ def _all_units(p: Patient, network: Network) -> Iterator[Finding]:
     outside = any(c.is_temperature and c.place in network.boundaries for c in p.sheet.columns)
     for (cold, hot), unit, word in ((ROOM_K, "K", "kelvin"), (ROOM_F, "degF", "Fahrenheit")):
         if cold < low and high < hot and (unit == "K" or (outside and high - low < NEAR_F)):
-            yield p.finding("all temperatures", f"start at {low:.0f} to {high:.0f} degC: {word}?",
-                          f'unit = "{unit}" for each')  # fmt: skip
+            yield p.finding(
+                "all temperatures", f"start at {low:.0f} to {high:.0f} degC: {word}?", f'unit = "{unit}" for each'
+            )
 
 
 def _within(p: Patient, network: Network) -> list[Column]:
@@ -82,20 +89,30 @@ def _declared(p: Patient, network: Network) -> Iterator[Finding]:
             initial if isinstance(initial, float) else initial.get(c.place) if not isinstance(initial, str) else None
         )
         if first is not None and abs(first - starts[c.name]) > OFFSET_K:
-            yield p.finding(c.name, f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
-                          'initial = "first-readings"')  # fmt: skip
+            yield p.finding(
+                c.name,
+                f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
+                'initial = "first-readings"',
+            )
         values, lag = p.samples.values[c.name], c.lag_s
         move = float(np.nanmax(values) - np.nanmin(values))
         if c.sigma_K > max(move, WIDE_K):
-            yield p.finding(c.name, f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of "
-                          "the model could show", "the 1-sigma of the sensor's data sheet")  # fmt: skip
+            yield p.finding(
+                c.name,
+                f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of the model could show",
+                "the 1-sigma of the sensor's data sheet",
+            )
         if lag > span:
-            yield p.finding(c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)",
-                          "lag_s and filter_s in seconds")  # fmt: skip
+            yield p.finding(
+                c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)", "lag_s and filter_s in seconds"
+            )
     for name, events in p.sheet.events.items():
         if events.at_s[-1] > p.samples.start_s + span:
-            yield p.finding(name, f"switches at {events.at_s[-1]:g} s, after the test has ended",
-                          "at_s in seconds from the first row")  # fmt: skip
+            yield p.finding(
+                name,
+                f"switches at {events.at_s[-1]:g} s, after the test has ended",
+                "at_s in seconds from the first row",
+            )
 
 
 def _power(p: Patient, network: Network) -> Iterator[Finding]:
@@ -107,8 +124,11 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < heat_J:
         names = ", ".join(c.name for c in columns)
-        yield p.finding(names, f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise "
-                      f"of {rise:.0f} K: kW?", 'unit = "kW", or check [nodes] C_J_K')  # fmt: skip
+        yield p.finding(
+            names,
+            f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise of {rise:.0f} K: kW?",
+            'unit = "kW", or check [nodes] C_J_K',
+        )
 
 
 def _frozen(p: Patient, network: Network) -> Iterator[Finding]:
@@ -153,8 +173,12 @@ def _rates(patients: list[Patient]) -> Iterator[Finding]:
     usual = float(np.median(list(steps.values()))) if steps else 0.0
     for name, step in steps.items():
         if not usual / RATES <= step <= usual * RATES:
-            yield Finding(name, "clock", f"rows are {step:g} s apart, {usual:g} s in the other tests: ms, min or h?",
-                          'time_unit = "ms" (or min, h)')  # fmt: skip
+            yield Finding(
+                name,
+                "clock",
+                f"rows are {step:g} s apart, {usual:g} s in the other tests: ms, min or h?",
+                'time_unit = "ms" (or min, h)',
+            )
 
 
 def _copies(patients: list[Patient]) -> Iterator[Finding]:
@@ -173,13 +197,19 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
     for name, column in sorted(column_of.items()):
         if name not in read and column not in squared:
-            yield Finding("", name, "no law of the network reads this input; an effect may",
-                          "input = the name that a law reads, or leave it for effects", True)  # fmt: skip
+            yield Finding(
+                "",
+                name,
+                "no law of the network reads this input; an effect may",
+                "input = the name that a law reads, or leave it for effects",
+                True,
+            )
     for name in sorted(n for n in read & set(column_of) if column_of[n]):
         values = np.concatenate([p.inputs[name] for p in patients if name in p.inputs])
         if np.unique(values[np.isfinite(values)]).size < 2:
-            yield Finding("", name, "no test moves this input: what depends on it cannot be told",
-                          "a test in which it changes")  # fmt: skip
+            yield Finding(
+                "", name, "no test moves this input: what depends on it cannot be told", "a test in which it changes"
+            )
 
 
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
@@ -195,8 +225,12 @@ def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
         for item in items:
             terms = item.law.terms if isinstance(item.law, InputPower) else ()
             for _, _, exponent in (t for t in terms if t[0] == name and t[2] != 1.0):
-                yield Finding("", name, f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing",
-                              "exponent = 1.0, or a column that says how much")  # fmt: skip
+                yield Finding(
+                    "",
+                    name,
+                    f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing",
+                    "exponent = 1.0, or a column that says how much",
+                )
 
 
 def _cold(network: Network) -> Iterator[Finding]:
@@ -220,5 +254,10 @@ def _stores(network: Network) -> Iterator[Finding]:
             partners[i] |= ends - {i}
     for i, name in enumerate(network.states):
         if "#" not in name and i not in heated and len(partners[i]) == 1 and min(partners[i]) < len(network.states):
-            yield Finding("", name, "nothing heats or cools this node but one other node: it only stores heat",
-                          "a loss at it, or a second link", True)  # fmt: skip
+            yield Finding(
+                "",
+                name,
+                "nothing heats or cools this node but one other node: it only stores heat",
+                "a loss at it, or a second link",
+                True,
+            )

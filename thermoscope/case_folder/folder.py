@@ -145,8 +145,15 @@ def load_case(
     low = None
     if built and built.small:
         low = _low_fidelity(network, with_quantities(built.small, sheets, tests, history.reference), patients.values())
-    case = Case(settings.name, history.model(network, history.last), tests, _free(network, settings), settings.doubt,
-                history.last.answers, low)  # fmt: skip
+    case = Case(
+        settings.name,
+        history.model(network, history.last),
+        tests,
+        _free(network, settings),
+        settings.doubt,
+        history.last.answers,
+        low,
+    )
     steps = {r.test.name: r.step for r in read}
     notes = (*notes, *_assumed_reference(case, settings))
     return Folder(
@@ -200,9 +207,10 @@ def _assumed_reference(case: Case, settings: Settings) -> list[str]:
         return []
     levels = case_reference(case).levels
     words = ", ".join(f"{n} {u:.4g}" for n, u in levels.items() if any(v.endswith(f"^{n}") for v in case.model.values))
-    return [f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
-            f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
-            ]  # fmt: skip
+    return [
+        f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
+        f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
+    ]
 
 
 def _allowing(test: Test, model_K: float) -> Test:

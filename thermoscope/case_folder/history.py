@@ -105,8 +105,10 @@ def load_history(path: Path) -> History:
     revisions = tuple(_revision(t) for t in top.listed("revision"))
     lines = path.read_bytes().count(b"\n")
     if top.number("lines", lines) != lines or not revisions:  # the first line says how many: one that is cut off has it
-        raise top.error(f"has {lines} lines, not as many as were written: it was cut off or changed by hand",
-                        "the file as thermoscope wrote it, or none: the model as declared")  # fmt: skip
+        raise top.error(
+            f"has {lines} lines, not as many as were written: it was cut off or changed by hand",
+            "the file as thermoscope wrote it, or none: the model as declared",
+        )
     top.close()
     if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
         raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")
@@ -122,8 +124,11 @@ def save_history(path: Path, history: History, before: History) -> History:
         standing = load_history(path)
         if standing != before:
             what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
-            raise InputError(f"{what}step began at {before.last.number}", str(path),
-                             "the step again (in the workbench 'take over' first)")  # fmt: skip
+            raise InputError(
+                f"{what}step began at {before.last.number}",
+                str(path),
+                "the step again (in the workbench 'take over' first)",
+            )
         write_whole(path, _text(history))
         return load_history(path)
 
@@ -161,19 +166,28 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
 
 def _revision(table: Table) -> Revision:
     out = Revision(
-        int(table.number("number")), table.word("action", None, ACTIONS), table.words("effects", []),
-        table.word("effect", ""), _inner(table, "values").constants("values"), _pairs(_inner(table, "intervals")),
-        _before_after(_inner(table, "rmse_K")), table.word("why", ""), _evidence(_inner(table, "evidence")),
-        _answers(_inner(table, "answers")), _reference(_inner(table, "reference")),
-    )  # fmt: skip
+        int(table.number("number")),
+        table.word("action", None, ACTIONS),
+        table.words("effects", []),
+        table.word("effect", ""),
+        _inner(table, "values").constants("values"),
+        _pairs(_inner(table, "intervals")),
+        _before_after(_inner(table, "rmse_K")),
+        table.word("why", ""),
+        _evidence(_inner(table, "evidence")),
+        _answers(_inner(table, "answers")),
+        _reference(_inner(table, "reference")),
+    )
     table.close()
     return out
 
 
 def _reference_document(of: Reference) -> dict[str, Any]:
     """As model.toml holds it: what is not known is left out."""
-    signals = {name: {k: v for k, v in vars(one).items() if v is not None and v is not False and v != ""}
-               for name, one in of.signals.items()}  # fmt: skip
+    signals = {
+        name: {k: v for k, v in vars(one).items() if v is not None and v is not False and v != ""}
+        for name, one in of.signals.items()
+    }
     errors = {n: {"rmse_K": float(f"{error:.4g}"), "role": role} for n, (error, role) in of.errors.items()}
     start = {} if of.start_C is None else {"start_C": of.start_C}
     tables = {"sizes": dict(of.sizes), "signals": signals, "errors": errors}
@@ -185,18 +199,26 @@ def _reference(table: Table) -> Reference | None:
         return None
     signals, errors, sizes = (_inner(table, key) for key in ("signals", "errors", "sizes"))
     out = Reference(
-        {name: _signal(_inner(signals, name)) for name in signals.data}, sizes.constants("sizes"),
-        table.words("tests", []), {name: _error(_inner(errors, name)) for name in errors.data},
+        {name: _signal(_inner(signals, name)) for name in signals.data},
+        sizes.constants("sizes"),
+        table.words("tests", []),
+        {name: _error(_inner(errors, name)) for name in errors.data},
         _optional(table, "start_C"),
-    )  # fmt: skip
+    )
     table.close()
     return out
 
 
 def _signal(table: Table) -> SignalReference:
     low, high = table.number("low"), table.number("high")
-    out = SignalReference(table.number("level"), low, high, _optional(table, "at_load"), table.word("quantity", ""),
-                          table.flag("machine", False))  # fmt: skip
+    out = SignalReference(
+        table.number("level"),
+        low,
+        high,
+        _optional(table, "at_load"),
+        table.word("quantity", ""),
+        table.flag("machine", False),
+    )
     table.close()
     return out
 

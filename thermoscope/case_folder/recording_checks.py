@@ -90,15 +90,22 @@ def _sparse(p: Patient) -> Iterator[Finding]:
     for name, values in p.temperatures.items():
         count = int(np.isfinite(values).sum())
         if count < LEAST_READINGS and name not in after:
-            yield p.finding(name, f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
-                          "says next to nothing of the model", "readings over the test, or use = false")  # fmt: skip
+            yield p.finding(
+                name,
+                f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
+                "says next to nothing of the model",
+                "readings over the test, or use = false",
+            )
 
 
 def _clock(p: Patient) -> Iterator[Finding]:
     low, high = np.percentile(np.diff(p.samples.time), [10.0, 90.0])
     if high - low > UNEVEN * high:
-        yield p.finding("clock", f"rows come unevenly, {low:g} to {high:g} s apart",
-                      "check the recorder's clock; readings are averaged onto the grid as they stand")  # fmt: skip
+        yield p.finding(
+            "clock",
+            f"rows come unevenly, {low:g} to {high:g} s apart",
+            "check the recorder's clock; readings are averaged onto the grid as they stand",
+        )
     for a, b in p.samples.gaps:
         yield p.finding("clock", f"no rows from {a:g} to {b:g} s", "split the test there if the machine ran on")
 
@@ -117,8 +124,11 @@ def _spikes(p: Patient) -> Iterator[Finding]:
         out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
         if out.size:
             at = p.samples.time[finite[out[0] + 1]]
-            yield p.finding(name, f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at "
-                          f"{at:g} s", "empty those cells; look for a loose contact")  # fmt: skip
+            yield p.finding(
+                name,
+                f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at {at:g} s",
+                "empty those cells; look for a loose contact",
+            )
 
 
 def _moved(p: Patient, name: str) -> NDArray[np.bool_]:

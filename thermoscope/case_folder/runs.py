@@ -198,14 +198,19 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
     roles = {t.name: t.role for t in folder.case.tests}
     return [
         {
-            "number": r.number, "action": r.action, "effect": r.effect, "effects": list(r.effects), "why": r.why,
+            "number": r.number,
+            "action": r.action,
+            "effect": r.effect,
+            "effects": list(r.effects),
+            "why": r.why,
             "tests": [
                 {"name": name, "role": roles[name], "rmse_K": {"before": before, "after": after}}
-                for name, (before, after) in r.rmse_K.items() if name in roles
+                for name, (before, after) in r.rmse_K.items()
+                if name in roles
             ],
         }
         for r in folder.history.revisions
-    ]  # fmt: skip
+    ]
 
 
 def parameters(folder: Folder) -> list[dict[str, Any]]:
@@ -217,10 +222,16 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             continue
         low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))
         a, b = last.intervals[p.name]
-        out.append({
-            "name": p.name, "value": last.values[p.name], "unit": p.unit, "ci95": [a, b],
-            "prior": {"from": low, "to": high}, "identified": b - a < BLIND * (high - low),
-        })  # fmt: skip
+        out.append(
+            {
+                "name": p.name,
+                "value": last.values[p.name],
+                "unit": p.unit,
+                "ci95": [a, b],
+                "prior": {"from": low, "to": high},
+                "identified": b - a < BLIND * (high - low),
+            }
+        )
     return out
 
 

@@ -91,9 +91,21 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
     return Settings(
-        path, name, description, machine, network, sample, model_K, entries, free,
-        axial_m, kinds, starts, seed, widened(doubt, f"{file} [doubt]"),
-    )  # fmt: skip
+        path,
+        name,
+        description,
+        machine,
+        network,
+        sample,
+        model_K,
+        entries,
+        free,
+        axial_m,
+        kinds,
+        starts,
+        seed,
+        widened(doubt, f"{file} [doubt]"),
+    )
 
 
 def _title(head: Table, usual: str) -> str:

@@ -29,10 +29,15 @@ def tables(folder: Folder) -> dict[str, Worksheet]:
     errors = [{"test": t.name, "role": t.role, **c.document()} for t in folder.compared.tests for c in t.channels]
     model = folder.case.model
     parameters = [
-        {"parameter": p.name, "value": model.values.get(p.name, p.value), "unit": p.unit, "prior sd": p.prior_sd,
-         "source": p.source}
+        {
+            "parameter": p.name,
+            "value": model.values.get(p.name, p.value),
+            "unit": p.unit,
+            "prior sd": p.prior_sd,
+            "source": p.source,
+        }
         for p in model.network.parameters
-    ]  # fmt: skip
+    ]
     out: dict[str, Worksheet] = {"parameters": _columns(parameters), "errors": _columns(errors)}
     for test in folder.case.tests:
         out[f"{test.name} input"] = _inputs(test)

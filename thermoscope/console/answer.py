@@ -231,5 +231,6 @@ def to_stdout() -> Iterator[None]:
         sys.stdout.flush()
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise InputError("was closed before all was written", "stdout",
-                         "a program that reads to the end, or --json FILE") from None  # fmt: skip
+        raise InputError(
+            "was closed before all was written", "stdout", "a program that reads to the end, or --json FILE"
+        ) from None

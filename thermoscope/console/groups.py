@@ -9,15 +9,21 @@ from copy import copy
 import typer
 
 GROUPS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "model": ("Machines, networks, and the model as it stands.",
-              ("machines", "build", "crosscheck", "calibrate", "add", "remove", "undo")),
-    "test": ("Recordings: bring them in, look at them, hold the model against them.",
-             ("new", "doctor", "compare", "quantities")),
+    "model": (
+        "Machines, networks, and the model as it stands.",
+        ("machines", "build", "crosscheck", "calibrate", "add", "remove", "undo"),
+    ),
+    "test": (
+        "Recordings: bring them in, look at them, hold the model against them.",
+        ("new", "doctor", "compare", "quantities"),
+    ),
     "explain": ("What is missing, and what would show it.", ("diagnose", "improve", "effects", "answer")),
-    "show": ("Report, pictures, the workbench in the browser.",
-             ("report", "render", "picture", "film", "viewer", "plan")),
+    "show": (
+        "Report, pictures, the workbench in the browser.",
+        ("report", "render", "picture", "film", "viewer", "plan"),
+    ),
     "use": ("Run the model, and take it elsewhere.", ("simulate",)),
-}  # fmt: skip
+}
 HOME = {name: group for group, (_, names) in GROUPS.items() for name in names}
 UNTIL = "0.3"  # version from which the old names are gone
 

@@ -245,9 +245,14 @@ def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
     message_column = Column(ratio=1, no_wrap=True, overflow="ellipsis")
     times = Column(no_wrap=True, min_width=len(_remaining((0.99, 3600.0))))
     with Bar(
-        TextColumn("{task.description}", table_column=message_column, markup=False), BarColumn(10), Left(times),
-        TimeElapsedColumn(Column(no_wrap=True, min_width=7)), console=console, transient=True, expand=True,
-    ) as bar:  # fmt: skip
+        TextColumn("{task.description}", table_column=message_column, markup=False),
+        BarColumn(10),
+        Left(times),
+        TimeElapsedColumn(Column(no_wrap=True, min_width=7)),
+        console=console,
+        transient=True,
+        expand=True,
+    ) as bar:
         task = bar.add_task("", total=None)
 
         def tell(message: str) -> None:

@@ -44,12 +44,13 @@ class Case:
     progress: Progress = silent
 
     def __repr__(self) -> str:
-        rows = [[t.name, t.role, len(t.channels), (t.time[-1] - t.time[0]) / 60.0]
-                for t in self.folder.case.tests]  # fmt: skip
+        rows = [[t.name, t.role, len(t.channels), (t.time[-1] - t.time[0]) / 60.0] for t in self.folder.case.tests]
         effects = f" with {', '.join(self.effects)}" if self.effects else ""
         unsaved = f", {counted(len(self.steps), 'step')} not saved" if self.steps else ""
-        return (f"Case '{self.name}', revision {self.folder.history.last.number}{effects}{unsaved}\n"
-                f"{table(['test', 'role', 'sensors', 'minutes'], rows)}")  # fmt: skip
+        return (
+            f"Case '{self.name}', revision {self.folder.history.last.number}{effects}{unsaved}\n"
+            f"{table(['test', 'role', 'sensors', 'minutes'], rows)}"
+        )
 
     @property
     def name(self) -> str:

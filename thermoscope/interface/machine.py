@@ -43,8 +43,10 @@ class Field:
         every = sorted(self.parts.values(), key=lambda part: -part.fem_max_C)
         rows = [[p.place, p.fem_mean_C, p.fem_max_C, p.network_mean_C, p.network_max_C] for p in every]
         headers = ["part", "mean (degC)", "hottest", "network: mean", "hottest"]
-        return (f"Steady field of '{self.built.machine.name}': {self.heat_W:.0f} W of loss, "
-                f"energy balance {self.energy_balance:.1e}\n{table(headers, rows)}")  # fmt: skip
+        return (
+            f"Steady field of '{self.built.machine.name}': {self.heat_W:.0f} W of loss, "
+            f"energy balance {self.energy_balance:.1e}\n{table(headers, rows)}"
+        )
 
     @property
     def T(self) -> Array:
@@ -126,8 +128,11 @@ class Machine:
             check = crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network))
         except NoSolution as fault:
             there = ", ".join(f"{name} = {value:g}" for name, value in point.items())
-            raise InputError(f"does not settle at {there}: its losses grow faster than its cooling", self.name,
-                             "a smaller load: field(current_A=...)") from fault  # fmt: skip
+            raise InputError(
+                f"does not settle at {there}: its losses grow faster than its cooling",
+                self.name,
+                "a smaller load: field(current_A=...)",
+            ) from fault
         return Field(b, check)
 
 

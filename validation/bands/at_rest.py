@@ -50,12 +50,16 @@ class AtRest:
         names = {*self.of.names, *self.of.doubts}
         return {p.name for p in self.network.parameters if p.name in names and head(p) == "thermal"}
 
-    def _moved(
-        self, inputs: Mapping[str, float], boundaries: Mapping[str, float]
-    ) -> Iterator[tuple[str, Test]]:  # fmt: skip
+    def _moved(self, inputs: Mapping[str, float], boundaries: Mapping[str, float]) -> Iterator[tuple[str, Test]]:
         """The operating point with one input or boundary off by what its instrument may be."""
         one = np.ones(1)
-        test = Test("rest", "hold-out", np.zeros(1), {n: u * one for n, u in inputs.items()},
-                    {b: T * one for b, T in boundaries.items()}, ())  # fmt: skip
+        test = Test(
+            "rest",
+            "hold-out",
+            np.zeros(1),
+            {n: u * one for n, u in inputs.items()},
+            {b: T * one for b, T in boundaries.items()},
+            (),
+        )
         yield from moved_inputs(self.network, test, self.of.doubt)
         yield from moved_boundaries(test, self.of.doubt)

@@ -177,9 +177,10 @@ def acting(of: ParameterPosterior, test: Test) -> tuple[Network, tuple[Parameter
     cores = {p.name for p in with_core.parameters[len(of.network.parameters) :]}
     doubts = cores | set(of.doubts)
     free = tuple(
-        p for p in with_core.parameters
+        p
+        for p in with_core.parameters
         if p.name in doubts or ((p.name in of.names or of_measurement(p)) and not _of_sensor(p, test))
-    )  # fmt: skip
+    )
     return with_core, free, np.array([p.prior_sd if p.name in doubts else 1.0 for p in free])
 
 

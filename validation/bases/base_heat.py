@@ -47,8 +47,10 @@ class BaseHeat:
 
     def against(self, other: BaseHeat) -> str:
         """How it differs, by mechanism."""
-        return ", ".join(f"{name} {getattr(self, name):.0f} instead of {getattr(other, name):.0f} W"
-                         for name in ("conduction", "convection", "radiation"))  # fmt: skip
+        return ", ".join(
+            f"{name} {getattr(self, name):.0f} instead of {getattr(other, name):.0f} W"
+            for name in ("conduction", "convection", "radiation")
+        )
 
 
 def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> BaseHeat:
@@ -67,7 +69,7 @@ def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> Base
         _sum(flows, [x for x in below if isinstance(x.law.temperature, Radiation)]),
         _sum(flows, [x for x in outside if x not in below]),
         float(core - np.ravel(test.boundaries[air])[-1]),
-    )  # fmt: skip
+    )
 
 
 def _of_base(network: Network, link: Link) -> bool:

@@ -44,8 +44,14 @@ class Hypothesis:
         return self.deviance > DECISIVE
 
     def document(self) -> dict[str, Any]:
-        return {"test": self.test, "base": self.base, "declared": self.declared, "deviance": self.deviance,
-                "excluded": self.excluded, "heat_W": self.heat.document()}  # fmt: skip
+        return {
+            "test": self.test,
+            "base": self.base,
+            "declared": self.declared,
+            "deviance": self.deviance,
+            "excluded": self.excluded,
+            "heat_W": self.heat.document(),
+        }
 
 
 def switches(network: Network) -> dict[str, str]:
@@ -91,10 +97,15 @@ def _of_test(
     cost = {base: deviance(fit) for base, fit in fits.items()}
     least = min(cost.values())
     rows = [
-        Hypothesis(test.name, base, base == sheet_base, cost[base] - least,
-                   base_heat(fit.network, on_base(test, base, bases), fit.values))
+        Hypothesis(
+            test.name,
+            base,
+            base == sheet_base,
+            cost[base] - least,
+            base_heat(fit.network, on_base(test, base, bases), fit.values),
+        )
         for base, fit in fits.items()
-    ]  # fmt: skip
+    ]
     return sorted(rows, key=lambda h: h.deviance)
 
 

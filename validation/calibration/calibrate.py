@@ -165,10 +165,19 @@ class Iterate:
     """State of a fit between its steps."""
 
     def __init__(
-        self, network: Network, tests: Sequence[Test], unknowns: Unknowns, fixed: dict[str, float], theta: Array,
-        noise: Noise | None, cache: CachedSegments | None, draft: bool, centre: Array | None, worth: float,
+        self,
+        network: Network,
+        tests: Sequence[Test],
+        unknowns: Unknowns,
+        fixed: dict[str, float],
+        theta: Array,
+        noise: Noise | None,
+        cache: CachedSegments | None,
+        draft: bool,
+        centre: Array | None,
+        worth: float,
         error: ModelError | None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         near = cache is not None and cache.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
         self.draft, self.outdated, self.worth = draft or near, cache is not None and cache.outdated, worth
@@ -292,9 +301,18 @@ class Iterate:
         inside = ~((self.theta <= self.low + 1e-9) & (g < 0) | (self.theta >= self.high - 1e-9) & (g > 0))
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
         return Fit(
-            self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective,
-            self.done or slack < STATIONARY, slack, self.error, self.gain_ratio,
-        )  # fmt: skip
+            self.network,
+            self.unknowns,
+            self.theta,
+            H,
+            tuple(self.parts),
+            self.noise,
+            self.objective,
+            self.done or slack < STATIONARY,
+            slack,
+            self.error,
+            self.gain_ratio,
+        )
 
 
 _WHITENED: deque[tuple[Noise, ModelError, list[tuple[str, str, int]], list[Array], Any]] = deque(maxlen=8)
@@ -384,21 +402,43 @@ def calibrated(
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
     fixed = parameter_values(network, values)
-    fit = minimise(network, tests, unknowns, unknowns.coordinates(values), noise, fixed, progress=progress, keep=keep,
-                   draft=rough or rounds > 0, worth=ROUGH if rounds else WORTH)  # fmt: skip
+    fit = minimise(
+        network,
+        tests,
+        unknowns,
+        unknowns.coordinates(values),
+        noise,
+        fixed,
+        progress=progress,
+        keep=keep,
+        draft=rough or rounds > 0,
+        worth=ROUGH if rounds else WORTH,
+    )
     for i in range(rounds):
         fit = minimise(
-            network, tests, unknowns, fit.theta, fit_noise(fit.parts), fixed, 10,
-            CachedSegments(fit.parts, nearby=False, stale=True), draft=rough or i + 1 < rounds,
-            progress=progress, keep=keep,
-        )  # fmt: skip
+            network,
+            tests,
+            unknowns,
+            fit.theta,
+            fit_noise(fit.parts),
+            fixed,
+            10,
+            CachedSegments(fit.parts, nearby=False, stale=True),
+            draft=rough or i + 1 < rounds,
+            progress=progress,
+            keep=keep,
+        )
     return fit
 
 
 def with_model_error(
-    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL, iterations: int = 0,
+    fit: Fit,
+    tests: Sequence[Test],
+    values: Mapping[str, float],
+    doubt: Doubt = USUAL,
+    iterations: int = 0,
     draft: bool = False,
-) -> Fit:  # fmt: skip
+) -> Fit:
     """The fit where it stands, or gone on, with what a model of this kind gets wrong added to the noise.
 
     values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
@@ -407,5 +447,15 @@ def with_model_error(
     fixed = {**values, **fit.values}
     error = model_error(fit.network, tests, fixed, doubt)
     noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
-    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, fixed, iterations,
-                    CachedSegments(fit.parts, nearby=False, stale=iterations > 0), draft, error=error)  # fmt: skip
+    return minimise(
+        fit.network,
+        tests,
+        fit.unknowns,
+        fit.theta,
+        noise,
+        fixed,
+        iterations,
+        CachedSegments(fit.parts, nearby=False, stale=iterations > 0),
+        draft,
+        error=error,
+    )

@@ -65,11 +65,18 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
         trades = abs(correlation[i, partner[i]]) > TRADES
         out.append(
             Estimate(
-                p.name, to_value(p, float(fit.theta[i])), p.unit, interval(fit, i), prior_of(p),
-                bool(fit.sd[i] <= UNINFORMED * p.prior_sd), fit.unknowns.names[partner[i]] if trades else None,
-                bool(fit.at_bound[i]), profile_of.get(p.name), of_measurement(p),
+                p.name,
+                to_value(p, float(fit.theta[i])),
+                p.unit,
+                interval(fit, i),
+                prior_of(p),
+                bool(fit.sd[i] <= UNINFORMED * p.prior_sd),
+                fit.unknowns.names[partner[i]] if trades else None,
+                bool(fit.at_bound[i]),
+                profile_of.get(p.name),
+                of_measurement(p),
             )
-        )  # fmt: skip
+        )
     return tuple(out)
 
 

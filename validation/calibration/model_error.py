@@ -253,9 +253,12 @@ class ModelError:
 
 
 def model_error(
-    network: Network, tests: Sequence[Test], values: Mapping[str, float], doubt: Doubt = USUAL,
+    network: Network,
+    tests: Sequence[Test],
+    values: Mapping[str, float],
+    doubt: Doubt = USUAL,
     sensed: Sequence[Test] = (),
-) -> ModelError:  # fmt: skip
+) -> ModelError:
     """The model error of a network at some values of its parameters, over the instants of its tests' segments.
 
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
@@ -292,10 +295,7 @@ def of_inputs(
     plain : the test as recorded
     """
     columns = []
-    for scale in (
-        *(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)),
-        jumps(network, test, doubt),
-    ):
+    for scale in (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt)):
         more = segments(network, [test.scaled(scale)], values) if scale else plain
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
     return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}

@@ -25,9 +25,8 @@ LOOKS = 8  # at a curve that is near a parabola; each is a fit
 
 
 def profiles(
-    fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], names: Sequence[str],
-    progress: Progress = no_progress,
-) -> dict[str, Profile]:  # fmt: skip
+    fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], names: Sequence[str], progress: Progress = no_progress
+) -> dict[str, Profile]:
     """Name -> profile interval at 95 %; `fixed` are the values of what is not free."""
     out = {}
     for name in names:
@@ -90,9 +89,7 @@ def end(line: Line, side: float) -> tuple[float, bool]:
     return at, False
 
 
-def _next(
-    inner: tuple[float, float], outer: tuple[float, float], target: float, start: float, sd: float
-) -> float:  # fmt: skip
+def _next(inner: tuple[float, float], outer: tuple[float, float], target: float, start: float, sd: float) -> float:
     """By a straight line between the two nearest points, or outwards in proportion while nothing lies beyond."""
     if np.isfinite(outer[1]):
         share = (target - inner[1]) / (outer[1] - inner[1])

@@ -67,9 +67,12 @@ def belongs(name: str, pattern: str) -> bool:
 
 
 def staged_fit(
-    case: Case, tests: Sequence[Test], start: Mapping[str, float], search: Search | None = None,
+    case: Case,
+    tests: Sequence[Test],
+    start: Mapping[str, float],
+    search: Search | None = None,
     progress: Progress = no_progress,
-) -> list[Fit]:  # fmt: skip
+) -> list[Fit]:
     """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
     network, unknowns = working(case)
     search = search or Search()
@@ -91,17 +94,25 @@ def _measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
 
 
 def _one(
-    network: Network, tests: Sequence[Test], unknowns: Unknowns, values: Mapping[str, float], search: Search,
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    values: Mapping[str, float],
+    search: Search,
     progress: Progress,
-) -> Fit:  # fmt: skip
+) -> Fit:
     best = best_start(network, tests, unknowns, values, search, progress) if search.starts > 1 else values
     return calibrated(network, tests, unknowns, best, progress=progress, keep=search.keep)
 
 
 def best_start(
-    network: Network, tests: Sequence[Test], unknowns: Unknowns, values: Mapping[str, float], search: Search,
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    values: Mapping[str, float],
+    search: Search,
     progress: Progress,
-) -> dict[str, float]:  # fmt: skip
+) -> dict[str, float]:
     """Rough fits from several points of the prior; the values of the best."""
     rng, fixed = np.random.default_rng(search.seed), parameter_values(network, values)
     first = unknowns.coordinates(values)

@@ -81,8 +81,13 @@ class TestError:
 
     def document(self) -> dict:
         rows = [c.document() for c in self.channels]
-        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "fitted_rmse_K": self.fitted_rmse_K,
-                "channels": rows}  # fmt: skip
+        return {
+            "name": self.name,
+            "role": self.role,
+            "rmse_K": self.rmse_K,
+            "fitted_rmse_K": self.fitted_rmse_K,
+            "channels": rows,
+        }
 
 
 @dataclass(frozen=True)
@@ -111,8 +116,10 @@ class Comparison:
         records = f"{over} of {every} sensor records are over" if over else f"all {every} sensors within"
         if "unknown" in verdicts:
             records = f"{every} sensor records, held against no limit"
-        return (f"{self.case}, revision {self.revision}{effects}: {records}; rms {self.rmse_K:.2f} K, "
-                f"the sensors' own uncertainty explains {self.floor_K:.2f} K.")  # fmt: skip
+        return (
+            f"{self.case}, revision {self.revision}{effects}: {records}; rms {self.rmse_K:.2f} K, "
+            f"the sensors' own uncertainty explains {self.floor_K:.2f} K."
+        )
 
     @property
     def rmse_K(self) -> float:
@@ -279,9 +286,15 @@ def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
     rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
     return ChannelError(
-        channel.name, channel.place, int(read.sum()), rmse, float(e.mean()), float(np.abs(e).max()), channel.sigma_K,
+        channel.name,
+        channel.place,
+        int(read.sum()),
+        rmse,
+        float(e.mean()),
+        float(np.abs(e).max()),
+        channel.sigma_K,
         percent,
-    )  # fmt: skip
+    )
 
 
 def rise_K(channel: Channel) -> float:

@@ -48,9 +48,12 @@ def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, 
 
 
 def predict(
-    network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = (),
+    network: Network,
+    test: Test,
+    values: Mapping[str, float],
+    tangents: Sequence[Parameter] = (),
     precision: Precision = READINGS,
-) -> Prediction:  # fmt: skip
+) -> Prediction:
     """Readings of every channel of a test and their derivatives with respect to `tangents`."""
     return Watch(network, test, values, tangents, precision).until(len(test.time))
 
@@ -86,9 +89,15 @@ class Course:
     """A run of the network over a test, as far as it was asked for."""
 
     def __init__(
-        self, network: Network, test: Test, heat: Mapping[str, float], shift: Mapping[str, float],
-        tangents: Sequence[Parameter] = (), shifts: Sequence[str | None] = (), precision: Precision = READINGS,
-    ) -> None:  # fmt: skip
+        self,
+        network: Network,
+        test: Test,
+        heat: Mapping[str, float],
+        shift: Mapping[str, float],
+        tangents: Sequence[Parameter] = (),
+        shifts: Sequence[str | None] = (),
+        precision: Precision = READINGS,
+    ) -> None:
         self.precision = precision
         self.network, self.test, self.heat, self.tangents = network, test, heat, tangents
         self.shift, self.shifts, self.kept = shift, shifts, slice(0, 0)
@@ -145,9 +154,13 @@ class Watch:
     """
 
     def __init__(
-        self, network: Network, test: Test, values: Mapping[str, float], tangents: Sequence[Parameter] = (),
+        self,
+        network: Network,
+        test: Test,
+        values: Mapping[str, float],
+        tangents: Sequence[Parameter] = (),
         precision: Precision = READINGS,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.network, self.test, self.tangents = network, test, tangents
         self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
         (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]

@@ -68,9 +68,13 @@ class Uncertainty:
 
 
 def uncertainties(
-    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt = USUAL,
-    budget: Mapping[str, float] | None = None, y: Array | None = None,
-) -> list[Uncertainty]:  # fmt: skip
+    network: Network,
+    test: Test,
+    values: Mapping[str, float],
+    doubt: Doubt = USUAL,
+    budget: Mapping[str, float] | None = None,
+    y: Array | None = None,
+) -> list[Uncertainty]:
     """One row per channel that was read.
 
     budget : channel -> what the model's own numbers may be wrong by (K), None for the integrator's estimate alone

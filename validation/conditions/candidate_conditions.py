@@ -24,7 +24,4 @@ def temporary_effects(scene: Scene) -> tuple[Effect, ...]:
 def single_test_effects(scene: Scene) -> tuple[Effect, ...]:
     """Effects that can hold in one test: those, and a thermometer of a boundary that was elsewhere."""
     table = kinds()
-    return (
-        *temporary_effects(scene),
-        *(table[k](place) for k in IN_WHOLE_TESTS for place in table[k].places(scene)),
-    )
+    return (*temporary_effects(scene), *(table[k](place) for k in IN_WHOLE_TESTS for place in table[k].places(scene)))

@@ -49,9 +49,13 @@ class Condition:
 
 
 def conditions(
-    evidence: Evidence, case: Case, heat_scan: Scan, heat: Sequence[MissingHeat], only: Sequence[str] | None = None,
+    evidence: Evidence,
+    case: Case,
+    heat_scan: Scan,
+    heat: Sequence[MissingHeat],
+    only: Sequence[str] | None = None,
     progress: Callable[[str], None] = no_progress,
-) -> list[During]:  # fmt: skip
+) -> list[During]:
     """The conditions that could carry weight, most probable first.  only : kinds, None for all"""
     values = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
@@ -78,8 +82,11 @@ def declared_conditions(case: Case, evidence: Evidence, events: Sequence[Event])
     share of the prior."""
     laws = [*(x.law for x in evidence.network.links), *(x.law for x in evidence.network.sources)]
     read = {name for law in laws for name in law.reads}
-    inputs = {n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs]) for t in evidence.tests
-              for n in t.inputs}  # fmt: skip
+    inputs = {
+        n: np.concatenate([t.inputs[n] for t in evidence.tests if n in t.inputs])
+        for t in evidence.tests
+        for n in t.inputs
+    }
     switches = [n for n, u in inputs.items() if n not in read and set(np.unique(u)) == {0.0, 1.0}]
     events_confirmed = [e for name, yes in case.answers.items() if yes and (e := event(name))]
     new = [e.name for e in events_confirmed if all(e.overlap(x) < ALIKE for x in events)]
@@ -116,8 +123,9 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
         name = condition_of([evidence.tests[t] for t in subset])
         out += [
             Condition(During.of(base, name, share), float(b) + odds_against_nothing(share))
-            for base, b, visible in zip(bases, log_bayes_of(joint, usual), visibility, strict=True) if visible
-        ]  # fmt: skip
+            for base, b, visible in zip(bases, log_bayes_of(joint, usual), visibility, strict=True)
+            if visible
+        ]
     return out
 
 

@@ -85,8 +85,11 @@ def differences(fit: Fit) -> list[Difference]:
     scores = score(per_test(grams), theta, sd, np.zeros(p * len(grams), int))
     each = [(q, test) for test in grams for q in parameters]
     rows = zip(each, fit.theta.tolist() * len(grams), scores.amplitude, scores.sd, scores.visible, strict=True)
-    return [_row(fit.network, q, test, x, float(a), float(s)) for (q, test), x, a, s, visible in rows
-            if visible and felt_elsewhere(q)]  # fmt: skip
+    return [
+        _row(fit.network, q, test, x, float(a), float(s))
+        for (q, test), x, a, s, visible in rows
+        if visible and felt_elsewhere(q)
+    ]
 
 
 def felt_elsewhere(q: Parameter) -> bool:
@@ -99,8 +102,9 @@ def _row(network: Network, q: Parameter, test: str, x: float, a: float, sd: floa
     wide = (a / q.prior_sd) ** 2
     nats = 0.5 * z**2 - 0.5 * float(np.log1p((q.prior_sd / sd) ** 2)) - 0.5 * wide / (1.0 + (q.prior_sd / sd) ** 2)
     here = float(np.clip(x + a, -20.0, 20.0)) if q.mapping == "log" else x + a
-    return Difference(q.name, test, to_value(q, x), to_value(q, here), q.unit, z, nats, can_differ(network, q),
-                      q.mapping == "log")  # fmt: skip
+    return Difference(
+        q.name, test, to_value(q, x), to_value(q, here), q.unit, z, nats, can_differ(network, q), q.mapping == "log"
+    )
 
 
 def can_differ(network: Network, q: Parameter) -> bool:

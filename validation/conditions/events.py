@@ -39,5 +39,13 @@ def _row(posterior: Posterior, k: int, event: Event, probability: float) -> Poss
     e, fit = posterior.evidence, posterior.single[k].fit
     value = float(e.score.amplitude[k] if fit is None else fit.theta[e.p])
     document = event.document()
-    return PossibleEvent(event.name, document["words"], tuple(document["spans"]), probability, e.names[k],
-                         e.effects[k].title, value, e.parameters[k].unit)  # fmt: skip
+    return PossibleEvent(
+        event.name,
+        document["words"],
+        tuple(document["spans"]),
+        probability,
+        e.names[k],
+        e.effects[k].title,
+        value,
+        e.parameters[k].unit,
+    )

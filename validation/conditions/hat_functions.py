@@ -82,8 +82,11 @@ class HatScores:
 
     def course(self, event: Event, path: Path) -> tuple[NDArray[np.int64], Array]:
         """Indices of the hats, and heat (W) in each, of a path of one unit that is open while an event lasts."""
-        ends = [(i, heat * overlap(self.knots[t], spans)) for t, spans in event.spans.items()
-                for i, heat in self.ends(path, t)]  # fmt: skip
+        ends = [
+            (i, heat * overlap(self.knots[t], spans))
+            for t, spans in event.spans.items()
+            for i, heat in self.ends(path, t)
+        ]
         return np.concatenate([i for i, _ in ends]), np.concatenate([w for _, w in ends])
 
     def sums(self, event: Event, path: Path, test: str) -> tuple[float, float, Array]:

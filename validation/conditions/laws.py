@@ -25,15 +25,22 @@ VARIED = 0.2  # of its largest value: an input that moves less shows no law
 def laws(evidence: Evidence, values: Mapping[str, float]) -> list[Above]:
     """Corrections that could carry weight."""
     turns = levels(evidence)
-    effects = [Above(f"{x}|{name}>{level:g}") for x, names in targets(evidence, list(turns)).items()
-               for name in names for level in turns[name]]  # fmt: skip
+    effects = [
+        Above(f"{x}|{name}>{level:g}")
+        for x, names in targets(evidence, list(turns)).items()
+        for name in names
+        for level in turns[name]
+    ]
     if not effects:
         return []
     share = 1.0 / len(effects)
     prior = np.log(PRIOR["effect"].share * RARE[KIND].share * share / PRIOR["nothing"].share)
     sd = np.array([q.prior_sd for q in extended(evidence.fit.network, effects).parameters[-len(effects) :]])
-    scores = score(total(projected(evidence.fit, columns(evidence, effects, values))), *extended_prior(evidence.fit),
-                  np.zeros(len(effects), int))  # fmt: skip
+    scores = score(
+        total(projected(evidence.fit, columns(evidence, effects, values))),
+        *extended_prior(evidence.fit),
+        np.zeros(len(effects), int),
+    )
     worth = log_bayes_of(scores, sd) + prior
     order = [int(k) for k in np.argsort(-worth) if scores.visible[k] and worth[k] > -HOPELESS]
     return [Above(effects[k].place, share) for k in order[:MOST]]

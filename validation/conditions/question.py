@@ -25,11 +25,14 @@ Array = NDArray[np.float64]
 WORTH = 0.1  # nats: an answer that tells less is not worth a question
 LIKE = 0.3  # of the time in either: then a question speaks of a hypothesis's event
 THINGS = {
-    "loss.constant": "something that heats", "convection.constant": "a fan, a draught or an open lid",
-    "blockage": "a cover, a shield or dirt", "flow": "a pump or fan at another speed, or a squeezed hose",
-    "conduction.bench": "another mounting", "input.factor": "another range or shunt at the meter",
+    "loss.constant": "something that heats",
+    "convection.constant": "a fan, a draught or an open lid",
+    "blockage": "a cover, a shield or dirt",
+    "flow": "a pump or fan at another speed, or a squeezed hose",
+    "conduction.bench": "another mounting",
+    "input.factor": "another range or shunt at the meter",
     "ambient.offset": "a thermometer somewhere else",
-}  # fmt: skip
+}
 
 
 def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapping[str, bool]) -> list[Hypothesis]:
@@ -39,8 +42,10 @@ def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapp
     for about, answer in answers.items():
         yes = [concerns(e, about) for e in evidence.effects]
         agrees = [any(yes[k] for k in h.members) == answer for h in out]
-        out = [replace(h, log_prior=h.log_prior + float(np.log(1.0 - wrong if a else wrong)))
-               for h, a in zip(out, agrees, strict=True)]  # fmt: skip
+        out = [
+            replace(h, log_prior=h.log_prior + float(np.log(1.0 - wrong if a else wrong)))
+            for h, a in zip(out, agrees, strict=True)
+        ]
     return out
 
 
@@ -61,8 +66,9 @@ def best_question(posterior: Posterior) -> Question | None:
     P, e = probabilities(posterior.hypotheses), posterior.evidence
     if P.max() >= SURE:
         return None
-    subjects = dict.fromkeys(x.condition if isinstance(x, During) else x.name for x in e.effects
-                          if isinstance(x, During) or x.fault)  # fmt: skip
+    subjects = dict.fromkeys(
+        x.condition if isinstance(x, During) else x.name for x in e.effects if isinstance(x, During) or x.fault
+    )
     rows = [(about, yes_of(posterior, P, about)) for about in subjects]
     about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))
     if information(yes) < WORTH:

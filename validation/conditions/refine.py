@@ -57,9 +57,15 @@ def refined(evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str
 
 
 def moved(
-    evidence: Evidence, base: Effect, test: Test, span: Span, others: Spans, reach_s: float, values: Values,
+    evidence: Evidence,
+    base: Effect,
+    test: Test,
+    span: Span,
+    others: Spans,
+    reach_s: float,
+    values: Values,
     usual_s: float | None = None,
-) -> TimedEvent:  # fmt: skip
+) -> TimedEvent:
     """Begin and end of one span: every two instants around them, each pair a difference of two steps.
 
     usual_s : how long its repeats last, None for the first of them
@@ -74,8 +80,11 @@ def moved(
     step = float(np.median(np.diff(test.time)))
     count = ways(test.time.size, None if usual_s is None else usual_s / step)
     event = Event.of({test.name: [(at[a[best]], at[b[best]])]})
-    return TimedEvent(event, float(logsumexp(bayes - bayes[best]) - np.log(count)),
-                 ((between(at[a], weight), between(at[b], weight)),))  # fmt: skip
+    return TimedEvent(
+        event,
+        float(logsumexp(bayes - bayes[best]) - np.log(count)),
+        ((between(at[a], weight), between(at[b], weight)),),
+    )
 
 
 def pulse(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[Array, Array]:
@@ -169,7 +178,7 @@ def columns(evidence: Evidence, effects: Sequence[Effect], base_values: Values) 
     return [
         replace(s, J=np.column_stack([s.J[:, :p], new.get((s.test, s.channel), np.zeros((s.r.size, len(amplitudes))))]))
         for s in evidence.parts
-    ]  # fmt: skip
+    ]
 
 
 def acts_in(effect: Effect, test: Test) -> bool:

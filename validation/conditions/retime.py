@@ -77,8 +77,12 @@ def with_ends(effect: During, event: Event) -> During:
 def ends_of(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s: Mapping[str, float]) -> Event:
     """Every span in turn, the others where they are."""
     tests = {t.name: t for t in evidence.tests}
-    return Event.of({t: [span_of(evidence, fit, effect, tests[t], s, reach_s[t]) for s in pairs]
-                     for t, pairs in event.spans.items()})  # fmt: skip
+    return Event.of(
+        {
+            t: [span_of(evidence, fit, effect, tests[t], s, reach_s[t]) for s in pairs]
+            for t, pairs in event.spans.items()
+        }
+    )
 
 
 def span_of(evidence: Evidence, fit: Fit, effect: During, test: Test, span: Span, reach_s: float) -> Span:
@@ -122,8 +126,10 @@ def steps(fit: Fit, base: Effect, test: Test, at: Array) -> tuple[Array, Array]:
     amplitudes = network.parameters[-len(effects) :]
     values = {**parameter_values(network, fit.values), **fit.values}
     new = {(s.test, s.channel): s.J for s in segments(network, [test], values, amplitudes)}
-    parts = [replace(s, J=np.column_stack([s.J, new.get((s.test, s.channel), np.zeros((s.r.size, len(amplitudes))))]))
-             for s in fit.parts]  # fmt: skip
+    parts = [
+        replace(s, J=np.column_stack([s.J, new.get((s.test, s.channel), np.zeros((s.r.size, len(amplitudes))))]))
+        for s in fit.parts
+    ]
     theta, sd = extended_prior(fit)
     scores = score(total(projected(fit, parts)), theta, sd, np.zeros(len(amplitudes), int))
     return scores.u[where], scores.V[np.ix_(where, where)]

@@ -31,5 +31,9 @@ def usual_noise(noise: Noise) -> Noise:
 
 def at_most(level: Level) -> Level:
     """Levels are in units of the error that is usual for their record."""
-    return replace(level, white=min(level.white, START.white), fast=min(level.fast, USUAL["fast"]),
-                   slow=min(level.slow, START.slow))  # fmt: skip
+    return replace(
+        level,
+        white=min(level.white, START.white),
+        fast=min(level.fast, USUAL["fast"]),
+        slow=min(level.slow, START.slow),
+    )

@@ -136,9 +136,14 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
 
 
 def weighed(
-    case: Case, evidence: Evidence, heat_scan: Scan, loudest: Noise, progress: Progress, warm_fits: WarmFits = NOWHERE,
+    case: Case,
+    evidence: Evidence,
+    heat_scan: Scan,
+    loudest: Noise,
+    progress: Progress,
+    warm_fits: WarmFits = NOWHERE,
     again: Collection[tuple[int, ...]] = (),
-) -> tuple[list[Hypothesis], list[MissingHeat]]:  # fmt: skip
+) -> tuple[list[Hypothesis], list[MissingHeat]]:
     """All hypotheses, those that carry weight refitted, and where heat is missing.
 
     loudest : the noise that nothing asks for;  warm_fits : members -> a refit of theirs that may go on

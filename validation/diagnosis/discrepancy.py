@@ -57,5 +57,6 @@ def steps(heat: MissingHeat) -> list[dict]:
     by_test = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
     return [
         {"test": test, "begin_s": a, "end_s": b, "heat_W": level}
-        for test, levels in by_test.items() for (a, b), level in levels
-    ]  # fmt: skip
+        for test, levels in by_test.items()
+        for (a, b), level in levels
+    ]

@@ -53,15 +53,28 @@ def tabulate(
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
     return Diagnosis(
-        verdict=verdict, words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
-        named=tuple(g[0] for g in groups), groups=groups, candidates=rows, cannot_see=hidden_effects(e),
-        where=posterior.heat, next_tests=tuple(tests), next_sensors=tuple(sensors), rmse_K=rmse(e.fit.parts),
-        floor_K=floor(e), threshold=float(np.min(thresholds(e))), pulls=pulls,
-        cosine=confusion(e, [c.effect for c in rows[:12]]), bases=bases, odds=odds(posterior, broken.names),
-        p_nothing=0.0 if broken.names else 1.0 - choice.sure, events=possible_events(posterior),
+        verdict=verdict,
+        words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady(posterior, choice),
+        named=tuple(g[0] for g in groups),
+        groups=groups,
+        candidates=rows,
+        cannot_see=hidden_effects(e),
+        where=posterior.heat,
+        next_tests=tuple(tests),
+        next_sensors=tuple(sensors),
+        rmse_K=rmse(e.fit.parts),
+        floor_K=floor(e),
+        threshold=float(np.min(thresholds(e))),
+        pulls=pulls,
+        cosine=confusion(e, [c.effect for c in rows[:12]]),
+        bases=bases,
+        odds=odds(posterior, broken.names),
+        p_nothing=0.0 if broken.names else 1.0 - choice.sure,
+        events=possible_events(posterior),
         remainder=remainder(posterior, choice, single),
-        contradiction=posterior.against, question=best_question(posterior),
-    )  # fmt: skip
+        contradiction=posterior.against,
+        question=best_question(posterior),
+    )
 
 
 def final(verdict: Verdict, posterior: Posterior, choice: Decision, pulls: Sequence, broken: PlainFaults) -> Verdict:
@@ -107,10 +120,7 @@ def odds(posterior: Posterior, sure: tuple[str, ...] = ()) -> tuple[Odds, ...]:
     """
     P = probabilities(posterior.hypotheses)
     e = posterior.evidence
-    rows = [
-        _odds(e, h, float(p), sure)
-        for h, p in zip(posterior.hypotheses, P, strict=True) if p > LEAST_ODDS
-    ]  # fmt: skip
+    rows = [_odds(e, h, float(p), sure) for h, p in zip(posterior.hypotheses, P, strict=True) if p > LEAST_ODDS]
     rows.sort(key=lambda o: -o.probability)
     rest = 1.0 - sum(o.probability for o in rows)
     return (*rows, Odds("others", (), max(rest, 0.0)))
@@ -142,10 +152,14 @@ def candidates(
     P = probabilities(posterior.hypotheses)
     refits = [h for i in np.argsort(-P, kind="stable") if (h := posterior.hypotheses[i]).fit]
     within = {k: next((h.fit for h in refits if k in h.members), single[k].fit) for k in few}
-    rows = [_row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in members[:1])
-            for k in few]  # fmt: skip
-    return tuple(replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
-                 for r, k in zip(rows, few, strict=True))  # fmt: skip
+    rows = [
+        _row(e, single[k], within[k], float(share[k]), float(limit[k]), float(size[k]), beside, k in members[:1])
+        for k in few
+    ]
+    return tuple(
+        replace(r, decision=_decided(r, k, choice, verdict), confused_with=_others(e, k, choice))
+        for r, k in zip(rows, few, strict=True)
+    )
 
 
 def _decided(row: Candidate, k: int, choice: Decision, verdict: Verdict) -> Decided:
@@ -189,10 +203,20 @@ def _row(
     k, s = h.members[0], e.score
     a, wide = float(s.amplitude[k]), float(np.sqrt(beside.temper))
     row = Candidate(
-        e.names[k], h.nats, limit, a, e.parameters[k].unit, interval(a, wide * float(s.sd[k]), scatter(e, k)), "no",
-        absorbed=float(s.absorbed[k]), smallest_detectable=size, twin=e.twins[k], title=e.effects[k].title,
-        isolating_test=e.effects[k].isolating_test, probability=share,
-    )  # fmt: skip
+        e.names[k],
+        h.nats,
+        limit,
+        a,
+        e.parameters[k].unit,
+        interval(a, wide * float(s.sd[k]), scatter(e, k)),
+        "no",
+        absorbed=float(s.absorbed[k]),
+        smallest_detectable=size,
+        twin=e.twins[k],
+        title=e.effects[k].title,
+        isolating_test=e.effects[k].isolating_test,
+        probability=share,
+    )
     if h.fit is None:
         return row
     before, after = rmse(e.fit.parts), rmse(h.fit.parts)
@@ -206,9 +230,13 @@ def _row(
     hold_out = (rmse(beside.hold_out), rmse(new)) if beside.tests else None
     tests = (*by_test(e.fit.parts, h.fit.parts, False), *by_test(beside.hold_out, new, True))
     return replace(
-        row, rmse_K=(before, after), explained=1.0 - (after / before) ** 2, holdout_rmse_K=hold_out, tests=tests,
+        row,
+        rmse_K=(before, after),
+        explained=1.0 - (after / before) ** 2,
+        holdout_rmse_K=hold_out,
+        tests=tests,
         note=against(e, h.fit, beside) if beside.lead and not leads else "",
-    )  # fmt: skip
+    )
 
 
 def interval(a: float, sd: float, scatter: float = 0.0) -> tuple[float, float]:
@@ -281,9 +309,13 @@ def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:
 
 
 def sentence(
-    verdict: Verdict, posterior: Posterior, choice: Decision, rows: Sequence[Candidate], pulls: Sequence,
+    verdict: Verdict,
+    posterior: Posterior,
+    choice: Decision,
+    rows: Sequence[Candidate],
+    pulls: Sequence,
     broken: PlainFaults,
-) -> str:  # fmt: skip
+) -> str:
     """The verdict in words, with its odds."""
     hides = "it may hide a missing effect"
     if broken:

@@ -13,8 +13,24 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
 from validation.effects.time_window import IN, Event, TimeWindow, event
 
-SAME = ("kind", "title", "unit", "at", "source", "isolating_test", "typical", "sign", "prior_sd", "low", "high",
-        "neutral", "confused_with", "needs", "fault", "empirical")  # fmt: skip
+SAME = (
+    "kind",
+    "title",
+    "unit",
+    "at",
+    "source",
+    "isolating_test",
+    "typical",
+    "sign",
+    "prior_sd",
+    "low",
+    "high",
+    "neutral",
+    "confused_with",
+    "needs",
+    "fault",
+    "empirical",
+)
 
 
 @dataclass(frozen=True)
@@ -87,14 +103,16 @@ class During(Effect):
         new = {x.name: f"{x.name}{IN}{self.condition}" for x in items}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
-            if any(t in new for t, _ in p.targets) else p
+            if any(t in new for t, _ in p.targets)
+            else p
             for p in (*larger.parameters[:-1], replace(parameter, name=self.name))
-        )  # fmt: skip
+        )
         return replace(
-            network, parameters=parameters,
+            network,
+            parameters=parameters,
             links=(*network.links, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in links)),
             sources=(*network.sources, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in sources)),
-        )  # fmt: skip
+        )
 
     def _copied(self, network: Network, parameter: Parameter) -> Network:
         """A share of what is there, more or less while the condition holds.

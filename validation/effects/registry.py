@@ -78,8 +78,11 @@ def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
         window = event(condition)
         for test in window.tests if window else (condition,):
             if test not in scene.tests:
-                raise InputError(f"unknown test or event '{test}'", f"effect '{name}'",
-                                 f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it")  # fmt: skip
+                raise InputError(
+                    f"unknown test or event '{test}'",
+                    f"effect '{name}'",
+                    f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it",
+                )
     return condition
 
 

@@ -62,8 +62,10 @@ class Event:
         """Time in both over time in either."""
         both = sum(
             max(0.0, min(y, d) - max(x, c))
-            for t in self.spans for x, y in self.spans[t] for c, d in other.spans.get(t, ())
-        )  # fmt: skip
+            for t in self.spans
+            for x, y in self.spans[t]
+            for c, d in other.spans.get(t, ())
+        )
         every = sum(y - x for e in (self, other) for x, y in e.every)
         return both / max(every - both, 1e-12)
 
@@ -87,12 +89,16 @@ def checked(occurrence: Event, test: str, first: float, last: float, where: str)
                 f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
             )
         if begin < first or end > last:
-            raise InputError(f"an event from {begin:g} to {end:g} s is outside the record", where,
-                             f"{first:g} to {last:g} s")  # fmt: skip
+            raise InputError(
+                f"an event from {begin:g} to {end:g} s is outside the record", where, f"{first:g} to {last:g} s"
+            )
     for (a, b), (c, d) in pairwise(occurrence.spans[test]):
         if c < b:
-            raise InputError(f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s", where,
-                             "spans that follow one another, or two events")  # fmt: skip
+            raise InputError(
+                f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s",
+                where,
+                "spans that follow one another, or two events",
+            )
 
 
 def share(time: Array, spans: Sequence[Span]) -> Array:

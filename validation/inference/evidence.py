@@ -132,8 +132,17 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
     parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
     exchange(parts, effects, p)
     nuisance_parts = [replace(s, J=s.J[:, :p]) for s in parts]
-    fit = minimise(fit.network, tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), 0,
-                   CachedSegments(nuisance_parts, nearby=False), error=fit.error)  # fmt: skip
+    fit = minimise(
+        fit.network,
+        tests,
+        fit.unknowns,
+        fit.theta,
+        fit.noise,
+        values_of(fit.network, fit.values),
+        0,
+        CachedSegments(nuisance_parts, nearby=False),
+        error=fit.error,
+    )
     evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {}, {})
     there = {}
     for k, a in likely(evidence):
@@ -161,10 +170,15 @@ def jump(evidence: Evidence, k: int, values: Mapping[str, float]) -> list[Array]
 
 
 def weighed(
-    tests: tuple[Test, ...], fit: Fit, network: Network, effects: tuple[Effect, ...],
-    parameters: tuple[Parameter, ...], parts: tuple[Segment, ...], jumps: Mapping[int, Sequence[Array]],
+    tests: tuple[Test, ...],
+    fit: Fit,
+    network: Network,
+    effects: tuple[Effect, ...],
+    parameters: tuple[Parameter, ...],
+    parts: tuple[Segment, ...],
+    jumps: Mapping[int, Sequence[Array]],
     large: Mapping[int, float],
-) -> Evidence:  # fmt: skip
+) -> Evidence:
     """The score under the fit's noise and model error."""
     sign = np.array([q.sign for q in parameters], int)
     grams = projected(fit, parts)
@@ -184,8 +198,16 @@ def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
     parts = tuple(replace(s, J=s.J[:, [*range(p), *(p + k for k in order)]]) for s in e.parts)
     keep = {k: e.jumps[k] for k in e.jumps if k not in by_last}
     large = {k: e.large[k] for k in e.large if k not in by_last}
-    return weighed(e.tests, e.fit, e.network, tuple(e.effects[k] for k in order),
-                   tuple(e.parameters[k] for k in order), parts, keep, large)  # fmt: skip
+    return weighed(
+        e.tests,
+        e.fit,
+        e.network,
+        tuple(e.effects[k] for k in order),
+        tuple(e.parameters[k] for k in order),
+        parts,
+        keep,
+        large,
+    )
 
 
 def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
@@ -233,8 +255,9 @@ def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
     with what they take; a model calibrated to exchanged readings hides that they were."""
     e, few = evidence, [k for k, x in enumerate(evidence.effects) if x.whole]
     try:
-        parts = segments(e.network, e.tests, {q.name: q.value for q in e.network.parameters},
-                         [e.parameters[k] for k in few])  # fmt: skip
+        parts = segments(
+            e.network, e.tests, {q.name: q.value for q in e.network.parameters}, [e.parameters[k] for k in few]
+        )
     except NoSolution:  # the declared values alone run away
         return {}
     exchange(parts, [e.effects[k] for k in few], 0)
@@ -299,8 +322,18 @@ def converged(evidence: Evidence) -> Evidence:
     What nothing falls short of its end, every effect gains.
     """
     e, fit = evidence, evidence.fit
-    new = minimise(fit.network, e.tests, fit.unknowns, fit.theta, fit.noise, values_of(fit.network, fit.values), ROUNDS,
-                   CachedSegments(fit.parts, nearby=False, stale=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+    new = minimise(
+        fit.network,
+        e.tests,
+        fit.unknowns,
+        fit.theta,
+        fit.noise,
+        values_of(fit.network, fit.values),
+        ROUNDS,
+        CachedSegments(fit.parts, nearby=False, stale=True),
+        worth=ENOUGH,
+        error=fit.error,
+    )
     return _calibrated_to(e, new)
 
 
@@ -314,8 +347,18 @@ def _calibrated_to(evidence: Evidence, fit: Fit) -> Evidence:
 
 def continuation(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
     """A calibration that goes on under another noise, with the tangents of where it stands."""
-    return minimise(fit.network, tests, fit.unknowns, fit.theta, noise, values_of(fit.network, fit.values), FURTHER,
-                    CachedSegments(parts, nearby=True), worth=ENOUGH, error=fit.error)  # fmt: skip
+    return minimise(
+        fit.network,
+        tests,
+        fit.unknowns,
+        fit.theta,
+        noise,
+        values_of(fit.network, fit.values),
+        FURTHER,
+        CachedSegments(parts, nearby=True),
+        worth=ENOUGH,
+        error=fit.error,
+    )
 
 
 def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
@@ -336,9 +379,12 @@ def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
 
 
 def refit(
-    evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = (),
+    evidence: Evidence,
+    members: Sequence[int],
+    theta: Array,
+    tangents: Sequence[Segment] = (),
     objective: float | None = None,
-) -> Fit:  # fmt: skip
+) -> Fit:
     """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
 
     tangents : of all these where the fit begins, by default those without the candidates
@@ -347,14 +393,34 @@ def refit(
     network, unknowns, fixed = with_members(evidence, members)
     free, fit = free_of(evidence, members), evidence.fit
     before = fit.objective if objective is None else objective
-    rough = minimise(network, evidence.tests, unknowns, theta, fit.noise, fixed, 8,
-                     CachedSegments(tangents or evidence.parts_of(free)), worth=ENOUGH, error=fit.error)  # fmt: skip
+    rough = minimise(
+        network,
+        evidence.tests,
+        unknowns,
+        theta,
+        fit.noise,
+        fixed,
+        8,
+        CachedSegments(tangents or evidence.parts_of(free)),
+        worth=ENOUGH,
+        error=fit.error,
+    )
     far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
     straight = rough.gain_ratio > STRAIGHT and before - rough.objective < BENDS
     if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
-    return minimise(network, evidence.tests, unknowns, rough.theta, fit.noise, fixed, SECOND, draft=True, worth=ENOUGH,
-                    error=fit.error)  # fmt: skip
+    return minimise(
+        network,
+        evidence.tests,
+        unknowns,
+        rough.theta,
+        fit.noise,
+        fixed,
+        SECOND,
+        draft=True,
+        worth=ENOUGH,
+        error=fit.error,
+    )
 
 
 def tangents_beside(evidence: Evidence, one: int, alone: Fit, others: Sequence[int]) -> dict[int, list[Array]]:
@@ -389,8 +455,19 @@ def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finel
     other_times, fit = before.unknowns.names != unknowns.names, evidence.fit
     cache = CachedSegments(before.parts, nearby=other_times, renewed=True, stale=True)
     steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
-    return minimise(network, evidence.tests, unknowns, before.theta, fit.noise, fixed, steps, cache, draft=not finely,
-                    worth=worth, error=fit.error)  # fmt: skip
+    return minimise(
+        network,
+        evidence.tests,
+        unknowns,
+        before.theta,
+        fit.noise,
+        fixed,
+        steps,
+        cache,
+        draft=not finely,
+        worth=worth,
+        error=fit.error,
+    )
 
 
 def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:

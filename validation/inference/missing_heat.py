@@ -171,8 +171,15 @@ def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
 
     each = side_by_side(of_test, tests, lambda test: len(test.time))
     parts = tuple(s for some, _ in each for s in some)
-    return Scan(places, knots, parts, fit.unknowns.sd, power_scale(fit.network), doing(tests, knots),
-                np.vstack([T for _, T in each]))  # fmt: skip
+    return Scan(
+        places,
+        knots,
+        parts,
+        fit.unknowns.sd,
+        power_scale(fit.network),
+        doing(tests, knots),
+        np.vstack([T for _, T in each]),
+    )
 
 
 def knots_of(test: Test, knot_s: float) -> Array:
@@ -185,8 +192,10 @@ def knots_of(test: Test, knot_s: float) -> Array:
 def doing(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:
     """(m, k) all inputs that every test records, at the knots of all tests, each over its range; constants left out."""
     common = [n for n in tests[0].inputs if all(n in t.inputs for t in tests)]
-    rows = [np.column_stack([*(at_knots(t, t.inputs[n], knots[t.name]) for n in common), np.zeros(knots[t.name].size)])
-            for t in tests]  # fmt: skip
+    rows = [
+        np.column_stack([*(at_knots(t, t.inputs[n], knots[t.name]) for n in common), np.zeros(knots[t.name].size)])
+        for t in tests
+    ]
     return over_range(np.vstack(rows))
 
 

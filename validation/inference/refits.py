@@ -46,9 +46,12 @@ NEARLY, MOST_LINEAR = 0.4, 3  # linear amplitude, and how many, of effects that 
 
 
 def refitted(
-    evidence: Evidence, hypotheses: Sequence[Hypothesis], progress: Callable[[str], None] = no_progress,
-    warm_fits: WarmFits = NOWHERE, again: Collection[tuple[int, ...]] = (),
-) -> list[Hypothesis]:  # fmt: skip
+    evidence: Evidence,
+    hypotheses: Sequence[Hypothesis],
+    progress: Callable[[str], None] = no_progress,
+    warm_fits: WarmFits = NOWHERE,
+    again: Collection[tuple[int, ...]] = (),
+) -> list[Hypothesis]:
     """The hypotheses with those that carry weight refitted, until none does that is not.
 
     warm_fits : members -> a refit of theirs under another noise
@@ -170,9 +173,10 @@ def exchanged(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[int]
     tangents, so they are refitted in any case."""
     a, mended = evidence.score.amplitude, mended_by_exchange(evidence)
     whole = [
-        (i, h.members[0]) for i, h in enumerate(hypotheses)
+        (i, h.members[0])
+        for i, h in enumerate(hypotheses)
         if len(h.members) == 1 and evidence.effects[h.members[0]].whole
-    ]  # fmt: skip
+    ]
     near = sorted((x for x in whole if a[x[1]] > NEARLY), key=lambda x: -hypotheses[x[0]].log_bayes)[:MOST_LINEAR]
     before = sorted((x for x in whole if x[1] in mended), key=lambda x: -mended[x[1]])[:MOST_LINEAR]
     return [i for i, _ in dict.fromkeys([*near, *before])]
@@ -188,8 +192,9 @@ def far_from_prior(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list
     return [i for _, i in order[:MOST_LINEAR]]
 
 
-def laplace(evidence: Evidence, h: Hypothesis, near: Beside | None = None, warm_fits: WarmFits = NOWHERE,
-            finely: bool = False) -> Hypothesis:  # fmt: skip
+def laplace(
+    evidence: Evidence, h: Hypothesis, near: Beside | None = None, warm_fits: WarmFits = NOWHERE, finely: bool = False
+) -> Hypothesis:
     """The hypothesis with the best of its refits and the evidence that follows.
 
     near : one of two effects, its fit without the other, and tangents there

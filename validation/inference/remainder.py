@@ -59,9 +59,10 @@ def _of(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit, measur
 def second(posterior: Posterior, lead: frozenset[int], s: Segment) -> tuple[int | None, float, float]:
     """The effect beside the leading ones that brings a record down most surely, its probability, the error (K) then."""
     rows = [
-        (h, float(p)) for h, p in zip(posterior.hypotheses, probabilities(posterior.hypotheses), strict=True)
+        (h, float(p))
+        for h, p in zip(posterior.hypotheses, probabilities(posterior.hypotheses), strict=True)
         if lead <= set(h.members) and not h.heat
-    ]  # fmt: skip
+    ]
     whole = sum(p for _, p in rows)
     better = [(p / whole, h, e) for h, p in rows if (e := _brought(h, lead, s)) is not None and e < LESS * rms(s.r)]
     if not better:

@@ -61,8 +61,10 @@ def grams(parts: Sequence[tuple[Segment, Sequence[Array]]], noise: Noise, p: int
         at = np.concatenate([k + begin for k, begin in zip(nonzero, first)])
         G = out.setdefault(s.test, np.zeros((first[-1], first[-1])))
         G[np.ix_(at, at)] += X.T @ X
-    return {test: Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))
-            for test, G in out.items()}  # fmt: skip
+    return {
+        test: Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))
+        for test, G in out.items()
+    }
 
 
 def total(grams: Mapping[str, Gram]) -> Gram:
@@ -130,9 +132,13 @@ def per_test(grams: Mapping[str, Gram]) -> Gram:
     """Every effect in every test as an effect of its own: test by test, in the order of the tests."""
     each = list(grams.values())
     return Gram(
-        np.sum([g.JJ for g in each], axis=0), np.hstack([g.JZ for g in each]), block_diag(*(g.ZZ for g in each)),
-        np.sum([g.Jr for g in each], axis=0), np.concatenate([g.Zr for g in each]), sum(g.rr for g in each),
-    )  # fmt: skip
+        np.sum([g.JJ for g in each], axis=0),
+        np.hstack([g.JZ for g in each]),
+        block_diag(*(g.ZZ for g in each)),
+        np.sum([g.Jr for g in each], axis=0),
+        np.concatenate([g.Zr for g in each]),
+        sum(g.rr for g in each),
+    )
 
 
 def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:

@@ -60,8 +60,11 @@ def at_every_second(posterior: Posterior, first: int) -> Posterior:
     e, every = posterior.evidence, posterior.hypotheses
     fit = thinned(e, e.fit, None, first)
     new = replace(e, fit=fit)
-    gained = {h.members: log_bayes(new, thinned(e, h.fit, fit.error, first), h.members)
-              - log_bayes(e, h.fit, h.members) for h in every if h.fit and h.members}  # fmt: skip
+    gained = {
+        h.members: log_bayes(new, thinned(e, h.fit, fit.error, first), h.members) - log_bayes(e, h.fit, h.members)
+        for h in every
+        if h.fit and h.members
+    }
     best = max((h for h in every if h.members in gained), key=lambda h: h.log_bayes, default=None)
     share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
     increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
@@ -75,8 +78,17 @@ def thinned(e: Evidence, fit: Fit, error: ModelError | None, first: int) -> Fit:
         error = replace(fit.error, columns={key: columns[first::2] for key, columns in fit.error.columns.items()})
     parts = [every_second(s, first) for s in fit.parts]
     fixed = values_of(fit.network, fit.values)
-    return minimise(fit.network, e.tests, fit.unknowns, fit.theta, e.fit.noise, fixed, 0,
-                    CachedSegments(parts, nearby=False), error=error)  # fmt: skip
+    return minimise(
+        fit.network,
+        e.tests,
+        fit.unknowns,
+        fit.theta,
+        e.fit.noise,
+        fixed,
+        0,
+        CachedSegments(parts, nearby=False),
+        error=error,
+    )
 
 
 def every_second(s: Segment, first: int) -> Segment:

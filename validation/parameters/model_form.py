@@ -193,9 +193,17 @@ def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: flo
     if not targets:
         return network
     new = Parameter(
-        name, tuple((t, 1.0) for t in targets), value=0.0, unit=unit, low=-2.5 * sd,
-        high=2.5 * sd, prior_sd=sd, mapping="amplitude", neutral=0.0, source="scatter of published exponents",
-    )  # fmt: skip
+        name,
+        tuple((t, 1.0) for t in targets),
+        value=0.0,
+        unit=unit,
+        low=-2.5 * sd,
+        high=2.5 * sd,
+        prior_sd=sd,
+        mapping="amplitude",
+        neutral=0.0,
+        source="scatter of published exponents",
+    )
     return replace(network, parameters=(*network.parameters, new))
 
 
@@ -208,6 +216,10 @@ def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator
         return
     for body, names in by_body.items():
         yield Parameter(
-            f"{parent}:{body}", tuple((n, 1.0) for n in names), low=0.5, high=2.0, prior_sd=doubt["share"],
+            f"{parent}:{body}",
+            tuple((n, 1.0) for n in names),
+            low=0.5,
+            high=2.0,
+            prior_sd=doubt["share"],
             source="scatter of published film sets",
-        )  # fmt: skip
+        )

@@ -29,10 +29,17 @@ def reference_of(network: Network, tests: Sequence[Test], effects: Collection[st
     load, records = load_point(network, tests), _records(tests)
     mains = {network.signal(q) for q in INPUTS}
     signals = {
-        n: SignalReference(_rounded(np.sqrt(np.nanmean(u**2))), _rounded(np.nanmin(u)), _rounded(np.nanmax(u)),
-                           load.get(n), network.measures(n), n in mains)
-        for n, u in records.items() if np.isfinite(u).any()
-    }  # fmt: skip
+        n: SignalReference(
+            _rounded(np.sqrt(np.nanmean(u**2))),
+            _rounded(np.nanmin(u)),
+            _rounded(np.nanmax(u)),
+            load.get(n),
+            network.measures(n),
+            n in mains,
+        )
+        for n, u in records.items()
+        if np.isfinite(u).any()
+    }
     for name in dict.fromkeys(b for t in tests for b in t.boundaries):
         each = [np.asarray(t.boundaries[name], float) for t in tests if name in t.boundaries]
         mean = _rounded(np.mean([np.mean(u) for u in each]))
@@ -40,15 +47,20 @@ def reference_of(network: Network, tests: Sequence[Test], effects: Collection[st
         signals[name] = SignalReference(mean, _rounded(low), _rounded(high), mean)
     start = tests[0].initial if tests else None
     mean_start = float(np.mean(list(start.values()))) if isinstance(start, Mapping) else start
-    return Reference(signals, effect_sizes(network, effects, tests), tuple(t.name for t in tests),
-                     start_C=None if mean_start is None else _rounded(mean_start))  # fmt: skip
+    return Reference(
+        signals,
+        effect_sizes(network, effects, tests),
+        tuple(t.name for t in tests),
+        start_C=None if mean_start is None else _rounded(mean_start),
+    )
 
 
 def _records(tests: Sequence[Test]) -> dict[str, Array]:
     """Input -> its samples in all tests that record it."""
     names = dict.fromkeys(name for t in tests for name in t.inputs)
-    return {n: np.concatenate([np.atleast_1d(t.inputs[n]).astype(float) for t in tests if n in t.inputs])
-            for n in names}  # fmt: skip
+    return {
+        n: np.concatenate([np.atleast_1d(t.inputs[n]).astype(float) for t in tests if n in t.inputs]) for n in names
+    }
 
 
 def _rounded(value: float) -> float:

@@ -102,9 +102,17 @@ def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Par
 
 def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:
     return Parameter(
-        name, ((target, 1.0),), value=0.0, unit=unit, low=-20 * sd, high=20 * sd, prior_sd=sd, mapping="offset",
-        neutral=0.0, source=source,
-    )  # fmt: skip
+        name,
+        ((target, 1.0),),
+        value=0.0,
+        unit=unit,
+        low=-20 * sd,
+        high=20 * sd,
+        prior_sd=sd,
+        mapping="offset",
+        neutral=0.0,
+        source=source,
+    )
 
 
 def scene_of(case: Case) -> Scene:
@@ -126,8 +134,9 @@ def case_reference(case: Case) -> Reference:
     new = reference_of(extended(case.model.network, effects_of(case)), case.usable, names)
     levels = stored.levels
     signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
-    return replace(new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes},
-                   errors=stored.errors)  # fmt: skip
+    return replace(
+        new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes}, errors=stored.errors
+    )
 
 
 def standing_reference(case: Case) -> Reference:

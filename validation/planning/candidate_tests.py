@@ -162,7 +162,7 @@ CANDIDATE_TESTS = (
     Experiment("ambient raised by 20 K", _boundary_step(Role.AMBIENT, 20.0), (), 8.0),
     Experiment("coolant inlet raised by 20 K", _boundary_step(Role.COOLANT, 20.0), (), 4.0),
     Experiment("bench plate heated by 20 K", _boundary_step(Role.TEST_BED, 20.0), (), 6.0),
-)  # fmt: skip
+)
 
 
 def candidate_tests(test: Test, network: Network) -> list[tuple[Experiment, Test]]:

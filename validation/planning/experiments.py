@@ -34,12 +34,16 @@ def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
     candidates = {e.name: (e, plan) for e, plan in permissible_tests(before, network, [limits])}
     return [
         Experiment(
-            "test", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours,
+            "test",
+            p.what,
+            separable_pairs(evidence, p.gaps),
+            p.gain,
+            p.hours,
             currents=current_levels(candidates[p.what][1], before, network),
             current_factor=candidates[p.what][0].current_factor,
         )
         for p in refitted_gains(evidence, models, _planned(evidence, models, candidates))
-    ]  # fmt: skip
+    ]
 
 
 def _planned(

@@ -81,8 +81,9 @@ def permissible_tests(
     factors = side_by_side(lambda one: _factor(one[1], names, models), candidates, lambda one: one[1].time.size)
     return [
         (replace(e, current_factor=factor), plan.scaled(dict.fromkeys(names, factor)))
-        for (e, plan), factor in zip(candidates, factors, strict=True) if factor is not None
-    ]  # fmt: skip
+        for (e, plan), factor in zip(candidates, factors, strict=True)
+        if factor is not None
+    ]
 
 
 def _factor(plan: Test, names: Sequence[str], models: Sequence[HeatLimits]) -> float | None:

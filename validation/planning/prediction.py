@@ -101,8 +101,18 @@ def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(extra))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(network, tests, Unknowns(free), theta, models.noise, fixed, STEPS, CachedSegments(near),
-                   worth=ENOUGH, error=error)  # fmt: skip
+    fit = minimise(
+        network,
+        tests,
+        Unknowns(free),
+        theta,
+        models.noise,
+        fixed,
+        STEPS,
+        CachedSegments(near),
+        worth=ENOUGH,
+        error=error,
+    )
     return deviance_difference(fit, models.fit(right))
 
 

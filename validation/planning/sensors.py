@@ -25,9 +25,11 @@ SIGMA_K = 0.5  # of a further thermocouple, as a sheet's usual
 PREFIX = "planned: "
 HOURS = {"outside": 0.5, "inside": 4.0, "air": 2.0, "turning": 16.0}  # to mount one, from the bench's own practice
 WHY = {
-    "outside": "glued on from outside", "inside": "the machine has to be opened", "air": "a probe through an opening",
+    "outside": "glued on from outside",
+    "inside": "the machine has to be opened",
+    "air": "a probe through an opening",
     "turning": "needs telemetry or slip rings",
-}  # fmt: skip
+}
 
 
 def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
@@ -36,11 +38,13 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
     places = {p.name: p for p in free_places(network, evidence.tests)}
     plans = [
         Plan(
-            place.name, HOURS[access(network, place)], [with_thermocouples(t, [place]) for t in evidence.tests],
+            place.name,
+            HOURS[access(network, place)],
+            [with_thermocouples(t, [place]) for t in evidence.tests],
             separation(evidence, models, more),
         )
         for place, more in with_sensors(evidence, tuple(places.values()), models.group)
-    ]  # fmt: skip
+    ]
     return [
         Experiment(
             "place", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])]

@@ -40,13 +40,19 @@ class Step:
         return self.revision.effect if self.revision else None
 
     def document(self) -> dict:
-        tests = [{"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
-                 for t in self.comparison.tests]  # fmt: skip
+        tests = [
+            {"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
+            for t in self.comparison.tests
+        ]
         return {
-            "step": self.step, "effect": self.effect, "revision": self.comparison.revision, "tests": tests,
-            "rmse_K": self.comparison.rmse_K, "fitted_rmse_K": self.comparison.fitted_rmse_K,
+            "step": self.step,
+            "effect": self.effect,
+            "revision": self.comparison.revision,
+            "tests": tests,
+            "rmse_K": self.comparison.rmse_K,
+            "fitted_rmse_K": self.comparison.fitted_rmse_K,
             "evidence": dict(self.evidence),
-        }  # fmt: skip
+        }
 
 
 @dataclass(frozen=True)
@@ -64,9 +70,13 @@ class Improvement:
 
     def document(self) -> dict:
         return {
-            "verdict": self.diagnosis.verdict, "words": self.diagnosis.words, "adequate": self.adequate,
-            "why": self.why, "stairs": [s.document() for s in self.stairs], "diagnosis": self.diagnosis.document(),
-        }  # fmt: skip
+            "verdict": self.diagnosis.verdict,
+            "words": self.diagnosis.words,
+            "adequate": self.adequate,
+            "why": self.why,
+            "stairs": [s.document() for s in self.stairs],
+            "diagnosis": self.diagnosis.document(),
+        }
 
 
 @dataclass(frozen=True)
@@ -95,9 +105,12 @@ def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
 
 
 def improve(
-    case: Case, supervisor: Supervisor, most: int = MOST, progress: Progress = no_progress,
+    case: Case,
+    supervisor: Supervisor,
+    most: int = MOST,
+    progress: Progress = no_progress,
     kinds: Sequence[str] | None = None,
-) -> Improvement:  # fmt: skip
+) -> Improvement:
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
     A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
@@ -139,7 +152,7 @@ def _added(
 
 def _with_step(
     case: Case, step: Revision, supervisor: Supervisor, evidence: Mapping[str, float | str], stairs: list[Step]
-) -> Case:  # fmt: skip
+) -> Case:
     supervisor.keep(step, evidence)
     stairs.append(Step(step.after, evidence, step))
     return with_model(case, step.model)
@@ -161,7 +174,10 @@ def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
 def evidence(diagnosis: Diagnosis, candidate: Candidate) -> dict[str, float | str]:
     """What speaks for an effect, as the history keeps it."""
     numbers: dict[str, float | str] = {
-        "probability": candidate.probability, "score": candidate.score, "threshold": candidate.threshold,
-        "decision": candidate.decision, "verdict": diagnosis.verdict,
-    }  # fmt: skip
+        "probability": candidate.probability,
+        "score": candidate.score,
+        "threshold": candidate.threshold,
+        "decision": candidate.decision,
+        "verdict": diagnosis.verdict,
+    }
     return numbers | ({"confused_with": ", ".join(candidate.confused_with)} if candidate.confused_with else {})

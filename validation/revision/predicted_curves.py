@@ -81,8 +81,9 @@ def predicted_curves(case: Case, models: Mapping[str, Model], experiment: str | 
     limits = [heat_limits(*model, case.tests) for model in hypothetical.values()]
     predictions = [
         PredictedCurves(e, test, curves, current_levels(test, before, network))
-        for e, test in permissible_tests(before, network, limits, experiment) if (curves := _curves(hypothetical, test))
-    ]  # fmt: skip
+        for e, test in permissible_tests(before, network, limits, experiment)
+        if (curves := _curves(hypothetical, test))
+    ]
     if not predictions:
         right = "fewer hypotheses, or another test"
         raise InputError("has no test that keeps every hypothesis as cool as the tests so far", case.name, right)

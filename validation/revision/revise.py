@@ -44,9 +44,11 @@ class Change:
 
     def document(self) -> dict:
         return {
-            "name": self.name, "role": self.role, "rmse_K": {"before": self.before, "after": self.after},
+            "name": self.name,
+            "role": self.role,
+            "rmse_K": {"before": self.before, "after": self.after},
             "fitted_rmse_K": {"before": self.fitted_before, "after": self.fitted_after},
-        }  # fmt: skip
+        }
 
 
 @dataclass(frozen=True)
@@ -69,8 +71,10 @@ class Revision:
         what = " ".join(x for x in (self.action, self.effect) if x)
         rows = [[t.name, t.role, t.before, t.after] for t in self.tests]
         accepted = "accepted" if self.accepted else "not accepted"
-        return (f"Revision {self.revision}, {what}, {accepted}: {self.why}\n"
-                f"{table(['test', 'role', 'rms before (K)', 'after (K)'], rows)}")  # fmt: skip
+        return (
+            f"Revision {self.revision}, {what}, {accepted}: {self.why}\n"
+            f"{table(['test', 'role', 'rms before (K)', 'after (K)'], rows)}"
+        )
 
     @property
     def revision(self) -> int:
@@ -145,9 +149,15 @@ def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:
 
 @one_blas_thread
 def _revised(
-    case: Case, model: Model, action: str, name: str | None, roles: Sequence[str], progress: Progress,
-    profiled: Sequence[str] = (), search: Search | None = None,
-) -> Revision:  # fmt: skip
+    case: Case,
+    model: Model,
+    action: str,
+    name: str | None,
+    roles: Sequence[str],
+    progress: Progress,
+    profiled: Sequence[str] = (),
+    search: Search | None = None,
+) -> Revision:
     case = replace(case, tests=without(case.tests, broken_channels(case.tests)))
     before = errors(case)
     tests = [t for t in case.tests if t.role in roles]
@@ -195,7 +205,7 @@ def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
 
 def _profiled(
     fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
-) -> dict[str, Profile]:  # fmt: skip
+) -> dict[str, Profile]:
     """Profile intervals of a stage's own parameters that match a glob."""
     names = [
         p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
@@ -237,9 +247,11 @@ def judge(
     foretells = any(c.check == "left out" and c.value > c.limit for c in acceptance)
     fell = now <= (GETS_WORSE * was if action == "calibrate" or foretells else was)
     reasons = [
-        failures(acceptance), "" if converged else "not converged", f"rms over the tests used {fall(was, now)}",
+        failures(acceptance),
+        "" if converged else "not converged",
+        f"rms over the tests used {fall(was, now)}",
         *other_changes(changes, fitted),
-    ]  # fmt: skip
+    ]
     return bool(fell and converged and not failures(acceptance)), "; ".join(filter(None, reasons))
 
 

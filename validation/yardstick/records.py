@@ -67,8 +67,11 @@ def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:
     present = [{c.name for c in t.channels if np.isfinite(c.y).any()} for t in every]
     steady = np.array([all(name in names for names in present) for name in sensors], bool)
     boundaries = _in_all([t.boundaries for t in every])
-    inputs = _telling([n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted)],
-                      fitted, MOST_INPUTS if len(sensors) <= FEW_SENSORS else FEW_INPUTS)  # fmt: skip
+    inputs = _telling(
+        [n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted)],
+        fitted,
+        MOST_INPUTS if len(sensors) <= FEW_SENSORS else FEW_INPUTS,
+    )
     scale = np.array([max(float(np.max(np.abs(t.inputs[n]))) for t in fitted) for n in inputs])
     return Columns(sensors, steady, boundaries, inputs, scale)
 
@@ -122,9 +125,13 @@ def table_record(test: Test, columns: Columns, step: int = 1) -> Record:
     empty = np.empty((test.time.size, 0))
     read = np.isfinite(y)[:n].reshape(-1, step, y.shape[1]).any(axis=1)
     return Record(
-        test.name, mean(test.time), mean(full), read,
-        mean(np.column_stack(boundary) if boundary else empty), mean(np.column_stack(inputs) if inputs else empty),
-    )  # fmt: skip
+        test.name,
+        mean(test.time),
+        mean(full),
+        read,
+        mean(np.column_stack(boundary) if boundary else empty),
+        mean(np.column_stack(inputs) if inputs else empty),
+    )
 
 
 def _filled(time: Array, y: Array) -> Array:

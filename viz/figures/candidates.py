@@ -62,8 +62,12 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
     """
     rows = contradiction["differences"][:most][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
-    ax.barh(range(len(rows)), [d["sd"] for d in rows], height=0.62,
-            color=[BLUE if d["possible"] else VERMILION for d in rows])  # fmt: skip
+    ax.barh(
+        range(len(rows)),
+        [d["sd"] for d in rows],
+        height=0.62,
+        color=[BLUE if d["possible"] else VERMILION for d in rows],
+    )
     for y, d in enumerate(rows):
         ax.text(
             d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha="left" if d["sd"] > 0 else "right", fontsize=8.5
@@ -97,8 +101,15 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | P
     ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
     for i, j in np.ndindex(c.shape):
         if i != j and c[i, j] >= 0.5:
-            ax.text(j, i, f"{c[i, j]:.2f}".lstrip("0"), ha="center", va="center", fontsize=7.5,
-                    color="white" if c[i, j] > 0.6 else "black")  # fmt: skip
+            ax.text(
+                j,
+                i,
+                f"{c[i, j]:.2f}".lstrip("0"),
+                ha="center",
+                va="center",
+                fontsize=7.5,
+                color="white" if c[i, j] > 0.6 else "black",
+            )
     ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
     ax.set_yticks(range(len(names)), names)
     ax.grid(False)

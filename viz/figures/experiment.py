@@ -46,9 +46,15 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
         ax.set_visible(False)
     names = list(plan.curves)[: len(COLOURS)]
     figure.legend(
-        axes[0].get_lines()[: len(names)], names, loc="outside upper left", ncols=2, frameon=False,
-        labelcolor="linecolor", handlelength=1.2, fontsize=8.5,
-    )  # fmt: skip
+        axes[0].get_lines()[: len(names)],
+        names,
+        loc="outside upper left",
+        ncols=2,
+        frameon=False,
+        labelcolor="linecolor",
+        handlelength=1.2,
+        fontsize=8.5,
+    )
     figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
     figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.save(figure, png)

@@ -18,13 +18,30 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 DPI = 150  # sharp on a page
 _STYLE: dict[Any, Any] = {
-    "font.size": 9.5, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
-    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": LIGHT.faint, "axes.labelcolor": LIGHT.ink,
-    "axes.titlecolor": LIGHT.ink, "text.color": LIGHT.ink, "xtick.color": LIGHT.ink, "ytick.color": LIGHT.ink,
-    "axes.grid": True, "grid.color": LIGHT.faint, "grid.alpha": 0.25, "grid.linewidth": 0.6, "xtick.major.size": 0,
-    "ytick.major.size": 0, "lines.linewidth": 1.6, "svg.fonttype": "none", "svg.hashsalt": "thermoscope",
-    "figure.constrained_layout.use": True, "text.parse_math": False,
-}  # fmt: skip
+    "font.size": 9.5,
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": LIGHT.faint,
+    "axes.labelcolor": LIGHT.ink,
+    "axes.titlecolor": LIGHT.ink,
+    "text.color": LIGHT.ink,
+    "xtick.color": LIGHT.ink,
+    "ytick.color": LIGHT.ink,
+    "axes.grid": True,
+    "grid.color": LIGHT.faint,
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.6,
+    "xtick.major.size": 0,
+    "ytick.major.size": 0,
+    "lines.linewidth": 1.6,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "thermoscope",
+    "figure.constrained_layout.use": True,
+    "text.parse_math": False,
+}
 _CSS = {LIGHT.ink: "ink", LIGHT.faint: "faint", LIGHT.paper: "paper", BLUE: "blue", VERMILION: "red"}
 
 

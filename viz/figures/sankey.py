@@ -78,9 +78,13 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
     heights = spread_labels(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
     for (name, watts), height in zip(parts.items(), heights, strict=True):
         ax.text(
-            outer + 0.02 * sign, height, f"{name}  {watts:.0f} W", ha="right" if sign < 0 else "left", va="center",
+            outer + 0.02 * sign,
+            height,
+            f"{name}  {watts:.0f} W",
+            ha="right" if sign < 0 else "left",
+            va="center",
             fontsize=9,
-        )  # fmt: skip
+        )
 
 
 def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:

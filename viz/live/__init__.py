@@ -9,8 +9,12 @@ from __future__ import annotations
 from geom.lazy import loaded_when_used
 
 _HOME = {
-    "sensor": "curves", "residuals": "curves", "against_input": "curves", "parity": "curves",
-    "confusion": "candidates", "save": "style",
-}  # fmt: skip
+    "sensor": "curves",
+    "residuals": "curves",
+    "against_input": "curves",
+    "parity": "curves",
+    "confusion": "candidates",
+    "save": "style",
+}
 __all__ = sorted(_HOME)
 __getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.live.")

@@ -22,9 +22,16 @@ def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, theme: Theme
     numbers = [str(i) for i in range(1, len(names) + 1)]
     labels = [f"{as_text(name)}  {i}" for name, i in zip(names, numbers, strict=True)]
     out.add_heatmap(
-        z=[plain(row) for row in c], x=numbers, y=labels, zmin=0, zmax=1, colorscale="Blues", showscale=False,
-        texttemplate="%{z:.2f}", hovertemplate="%{x}<br>%{y}<br>%{z:.3f}<extra></extra>",
-    )  # fmt: skip
+        z=[plain(row) for row in c],
+        x=numbers,
+        y=labels,
+        zmin=0,
+        zmax=1,
+        colorscale="Blues",
+        showscale=False,
+        texttemplate="%{z:.2f}",
+        hovertemplate="%{x}<br>%{y}<br>%{z:.3f}<extra></extra>",
+    )
     out.update_yaxes(autorange="reversed", dtick=1)
     out.update_xaxes(type="category", dtick=1, tickangle=0)
     return out

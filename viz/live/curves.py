@@ -106,6 +106,13 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
 def _line(out: go.Figure, x: list, y: np.ndarray, name: str, colour: str, row: int, dash: str = "solid") -> None:
     style = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": dash}
     out.add_scatter(
-        x=x, y=plain(y), mode="lines", name=as_text(name), line=style, showlegend=row == 1, row=row, col=1,
+        x=x,
+        y=plain(y),
+        mode="lines",
+        name=as_text(name),
+        line=style,
+        showlegend=row == 1,
+        row=row,
+        col=1,
         hovertemplate="%{y:.2f}",
-    )  # fmt: skip
+    )

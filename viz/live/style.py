@@ -25,11 +25,15 @@ def figure(theme: Theme = LIGHT, rows: Sequence[float] = (1.0,), **layout: Any) 
     out = make_subplots(len(rows), 1, shared_xaxes=True, row_heights=list(rows), vertical_spacing=0.06)
     grid = {"gridcolor": faded(theme.faint, 0.25), "linecolor": theme.faint, "zeroline": False, "automargin": True}
     out.update_layout(
-        template=None, paper_bgcolor=theme.paper, plot_bgcolor=theme.paper, hovermode="closest",
+        template=None,
+        paper_bgcolor=theme.paper,
+        plot_bgcolor=theme.paper,
+        hovermode="closest",
         font={"family": "DejaVu Sans, Arial, sans-serif", "size": 12, "color": theme.ink},
-        margin={"l": 56, "r": 16, "t": 56, "b": 44}, legend={"orientation": "h", "y": 1.0, "yanchor": "bottom"},
+        margin={"l": 56, "r": 16, "t": 56, "b": 44},
+        legend={"orientation": "h", "y": 1.0, "yanchor": "bottom"},
         **layout,
-    )  # fmt: skip
+    )
     out.update_xaxes(**grid)
     out.update_yaxes(**grid)
     return out

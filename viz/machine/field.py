@@ -67,9 +67,14 @@ def cutaway(
 
 
 def uncertainty(
-    nodes: SplitMesh, half95: Array, *, sensors: Sequence[Sensor] = (), title: str = "", note: str = "",
+    nodes: SplitMesh,
+    half95: Array,
+    *,
+    sensors: Sequence[Sensor] = (),
+    title: str = "",
+    note: str = "",
     png: str | Path | None = None,
-) -> pyvista.Plotter:  # fmt: skip
+) -> pyvista.Plotter:
     """Half the width of the 95 % band (K), the darker the less sure; the scale begins at zero.
 
     half95 : (n_nodes,) K;  sensors : where it was measured
@@ -157,16 +162,29 @@ def paint(
     data.point_data["T"] = surface.values(T)
     scene.outline(p, data if outlined is None else scene.polydata(outlined), theme)
     p.add_mesh(
-        data, scalars="T", cmap=colours or heat(), clim=rounded(*(limits or (float(T.min()), float(T.max())))),
-        show_scalar_bar=False, ambient=0.8, diffuse=0.28, specular=0.0, interpolate_before_map=True, culling="back",
-    )  # fmt: skip
+        data,
+        scalars="T",
+        cmap=colours or heat(),
+        clim=rounded(*(limits or (float(T.min()), float(T.max())))),
+        show_scalar_bar=False,
+        ambient=0.8,
+        diffuse=0.28,
+        specular=0.0,
+        interpolate_before_map=True,
+        culling="back",
+    )
     return data
 
 
 def paint_cut(
-    p: pyvista.Plotter, surface: Surface, cut: Ghosted, T: Array, limits: tuple[float, float] | None, theme: Theme,
+    p: pyvista.Plotter,
+    surface: Surface,
+    cut: Ghosted,
+    T: Array,
+    limits: tuple[float, float] | None,
+    theme: Theme,
     colours: Colormap | None = None,
-) -> list[tuple[Surface, pyvista.PolyData]]:  # fmt: skip
+) -> list[tuple[Surface, pyvista.PolyData]]:
     """Add a surface with its windows; what was painted, to be repainted."""
     import pyvista
 
@@ -178,9 +196,15 @@ def paint_cut(
         clear = scene.polydata(cut.ghost)
         clear.point_data["T"] = cut.ghost.values(T)
         p.add_mesh(
-            clear, scalars="T", cmap=colours or heat(), clim=rounded(*limits), show_scalar_bar=False, opacity=OPACITY,
-            lighting=False, culling="back",
-        )  # fmt: skip
+            clear,
+            scalars="T",
+            cmap=colours or heat(),
+            clim=rounded(*limits),
+            show_scalar_bar=False,
+            opacity=OPACITY,
+            lighting=False,
+            culling="back",
+        )
         out.append((cut.ghost, clear))
     solid = paint(p, cut.solid, T, limits, theme, outlined=surface, colours=colours)  # last: a colour bar is of this
     out.append((cut.solid, solid))

@@ -68,9 +68,16 @@ def missing_in_machine(
     data.cell_data["W"] = watts[surface.part]
     scene.outline(p, data, theme)
     p.add_mesh(
-        data, scalars="W", cmap=missing(), clim=rounded(-top, top), nan_color="#E4E8EC", show_scalar_bar=False,
-        ambient=0.8, diffuse=0.28, culling="back",
-    )  # fmt: skip
+        data,
+        scalars="W",
+        cmap=missing(),
+        clim=rounded(-top, top),
+        nan_color="#E4E8EC",
+        show_scalar_bar=False,
+        ambient=0.8,
+        diffuse=0.28,
+        culling="back",
+    )
     scene.colour_bar(p, "W", theme)
     unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
@@ -83,8 +90,9 @@ def missing_in_machine(
     anchor_points = {nodes.parts[i]: xyz for i, xyz in anchors(surface, view, room, surface.framed).items()}
     labels = [
         Label(tuple(anchor_points[n]), text, VERMILION if heat[n] > 0 else BLUE)  # type: ignore[arg-type]
-        for n, text in words.items() if n in anchor_points
-    ]  # fmt: skip
+        for n, text in words.items()
+        if n in anchor_points
+    ]
     callouts(p, labels, surface.framed, view, theme, size=SMALL)
     scene.save(p, png)
     return p

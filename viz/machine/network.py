@@ -35,8 +35,13 @@ NODE = 25  # radius of a node, pixels
 ASIDE = 20  # pixels from a line to the middle of a label beside it
 SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
 BELOW: dict[str, Any] = {
-    "vertical": False, "position_x": 0.28, "position_y": 0.05, "width": 0.36, "height": 0.022, "unit": "W",
-}  # fmt: skip
+    "vertical": False,
+    "position_x": 0.28,
+    "position_y": 0.05,
+    "width": 0.36,
+    "height": 0.022,
+    "unit": "W",
+}
 
 
 def network_in_machine(
@@ -149,9 +154,15 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
         line = pyvista.Line(a, b)
         line.point_data["W"] = np.full(line.n_points, f.watts)
         actor = p.add_mesh(
-            line, scalars="W", cmap=colours, clim=rounded(0.0, most), lighting=False, show_scalar_bar=False,
-            name=f"link {i}", line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
-        )  # fmt: skip
+            line,
+            scalars="W",
+            cmap=colours,
+            clim=rounded(0.0, most),
+            lighting=False,
+            show_scalar_bar=False,
+            name=f"link {i}",
+            line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
+        )
         on_top(actor, 1)
         place = clear_place(a, b, list(at.values()), labels, pixel_m) if len(labels) < LABELLED else None
         if place is not None:

@@ -138,9 +138,14 @@ def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
 
 
 def _paint(
-    p: pyvista.Plotter, surface: Surface, T: Array | None, theme: Theme, shift: Array | None = None, mesh: bool = False,
+    p: pyvista.Plotter,
+    surface: Surface,
+    T: Array | None,
+    theme: Theme,
+    shift: Array | None = None,
+    mesh: bool = False,
     limits: tuple[float, float] | None = None,
-) -> None:  # fmt: skip
+) -> None:
     data = scene.polydata(surface, shift)
     scene.outline(p, data, theme)
     light: dict[str, Any] = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}

@@ -43,9 +43,16 @@ class Pulses:
         self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
         if mask.any():
             actor = self._p.add_points(
-                self._xyz[mask], scalars=colours[mask], rgb=True, point_size=size, lighting=False,
-                render_points_as_spheres=True, name=name, reset_camera=False, render=False,
-            )  # fmt: skip
+                self._xyz[mask],
+                scalars=colours[mask],
+                rgb=True,
+                point_size=size,
+                lighting=False,
+                render_points_as_spheres=True,
+                name=name,
+                reset_camera=False,
+                render=False,
+            )
             on_top(actor, order)
 
 

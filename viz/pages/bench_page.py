@@ -57,10 +57,11 @@ def render(page: BenchPage) -> str:
     table += _currents(page)
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
     parts = [
-        head + html.text(says) + _careful(page), html.section("Drive", table),
+        head + html.text(says) + _careful(page),
+        html.section("Drive", table),
         html.section("What to expect", html.plot(predicted(plan), "predicted", caption), _decisive(plan)),
         f"<footer>{escape(page.provenance)}</footer>" if page.provenance else "",
-    ]  # fmt: skip
+    ]
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
 
 

@@ -25,11 +25,18 @@ class Offer(NamedTuple):
 def deciding(diagnosis: Document) -> list[Offer]:
     """Tests, then sensors, each best first, that are expected to tell at least one pair apart."""
     return [
-        Offer(kind, o[name], o["separates"], o["predicted_gain"], o.get("hours"),
-              o.get("why") or currents(o.get("currents", [])))
+        Offer(
+            kind,
+            o[name],
+            o["separates"],
+            o["predicted_gain"],
+            o.get("hours"),
+            o.get("why") or currents(o.get("currents", [])),
+        )
         for kind, key, name in (("test", "next_tests", "test"), ("sensor", "next_sensors", "place"))
-        for o in diagnosis.get(key, []) if o["separates"]
-    ]  # fmt: skip
+        for o in diagnosis.get(key, [])
+        if o["separates"]
+    ]
 
 
 def currents(levels: Sequence[Document]) -> str:

@@ -28,9 +28,20 @@ def _printed(browser: str, page: Path, pdf: Path) -> Path | None:
     """By a browser without a window, its profile in a folder that is thrown away; None if it fails."""
     with TemporaryDirectory() as profile:
         process = subprocess.run(
-            [browser, "--headless", "--disable-gpu", "--no-sandbox", f"--user-data-dir={profile}", "--no-first-run",
-             "--disable-extensions", "--no-pdf-header-footer", f"--print-to-pdf={pdf.resolve()}",
-             page.resolve().as_uri()],
-            capture_output=True, timeout=LONGEST_S, check=False,
-        )  # fmt: skip
+            [
+                browser,
+                "--headless",
+                "--disable-gpu",
+                "--no-sandbox",
+                f"--user-data-dir={profile}",
+                "--no-first-run",
+                "--disable-extensions",
+                "--no-pdf-header-footer",
+                f"--print-to-pdf={pdf.resolve()}",
+                page.resolve().as_uri(),
+            ],
+            capture_output=True,
+            timeout=LONGEST_S,
+            check=False,
+        )
     return pdf if process.returncode == 0 and pdf.is_file() else None

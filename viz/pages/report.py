@@ -126,9 +126,7 @@ def _curves(r: Report) -> str:
         name = f"{c.test.name} ({c.test.role})"
         both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
         both += html.plot(
-            curves.measured_and_model(c),
-            f"curves{i}",
-            f"{name}: readings, what counts as within, and the model.",
+            curves.measured_and_model(c), f"curves{i}", f"{name}: readings, what counts as within, and the model."
         )
         parts.append(html.more(name, both, expanded=i == 0))
     return html.section("Measured and modelled", *parts)
@@ -176,9 +174,17 @@ def _contradiction(diagnosis: Document) -> str:
     if not row or not row["differences"]:
         return ""
     rows: list[list[html.Cell]] = [
-        [d["test"], d["parameter"], _number(d["others"]), _number(d["here"]), "" if d["unit"] == "1" else d["unit"],
-         _number(abs(d["sd"])), "yes" if d["possible"] else "no"] for d in row["differences"][:12]
-    ]  # fmt: skip
+        [
+            d["test"],
+            d["parameter"],
+            _number(d["others"]),
+            _number(d["here"]),
+            "" if d["unit"] == "1" else d["unit"],
+            _number(abs(d["sd"])),
+            "yes" if d["possible"] else "no",
+        ]
+        for d in row["differences"][:12]
+    ]
     headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
     table = html.table(headers, rows, [d["possible"] is False for d in row["differences"][:12]])
     figure = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
@@ -211,8 +217,9 @@ def _hidden(r: Report) -> str:
 
 def _next_tests(diagnosis: Document) -> str:
     """Tests and sensors that would tell a group apart, or that no test would."""
-    rows = [(o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.how)
-            for o in deciding(diagnosis)]  # fmt: skip
+    rows = [
+        (o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.how) for o in deciding(diagnosis)
+    ]
     if not rows:
         return html.text(undecided(diagnosis))
     headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "how"]
@@ -240,11 +247,19 @@ def _sensors(r: Report) -> str:
     for test in r.comparison["tests"]:
         rows = [
             (
-                c["channel"], c["place"], c["n"], _number(c["rmse_K"]), _number(c["bias_K"]), _number(c["max_abs_K"]),
-                _number(c.get("limit_K")), _number(c["sigma_K"]), _number(c["percent_of_rise"]), c["verdict"],
+                c["channel"],
+                c["place"],
+                c["n"],
+                _number(c["rmse_K"]),
+                _number(c["bias_K"]),
+                _number(c["max_abs_K"]),
+                _number(c.get("limit_K")),
+                _number(c["sigma_K"]),
+                _number(c["percent_of_rise"]),
+                c["verdict"],
             )
             for c in test["channels"]
-        ]  # fmt: skip
+        ]
         headers = [
             "sensor",
             "place",

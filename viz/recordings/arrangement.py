@@ -96,9 +96,12 @@ def _machine(comparison: Comparison, points: NDArray[np.float64]) -> rrb.Spatial
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     first = rrb.EyeControls3D(position=eye(points), look_target=middle, eye_up=View().up)
     return rrb.Spatial3DView(
-        origin="machine", name=f"{comparison.test.name}: temperature", background=[255, 255, 255], line_grid=False,
+        origin="machine",
+        name=f"{comparison.test.name}: temperature",
+        background=[255, 255, 255],
+        line_grid=False,
         eye_controls=first,
-    )  # fmt: skip
+    )
 
 
 def _text(origin: str, name: str) -> rrb.TextDocumentView:

@@ -85,9 +85,13 @@ def write_recording(
 
 
 def _machine(
-    stream: rr.RecordingStream, surface: Surface, times: Array, fields: Array, revisions: Array | None,
+    stream: rr.RecordingStream,
+    surface: Surface,
+    times: Array,
+    fields: Array,
+    revisions: Array | None,
     limits: tuple[float, float],
-) -> None:  # fmt: skip
+) -> None:
     import rerun as rr
 
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
@@ -115,18 +119,24 @@ def _colours(
 
 
 def _sensors(
-    stream: rr.RecordingStream, c: Comparison, times: Array, positions: Mapping[str, Sequence[float]],
-    revisions: Sequence[Mapping[str, float]], surface: Surface,
-) -> None:  # fmt: skip
+    stream: rr.RecordingStream,
+    c: Comparison,
+    times: Array,
+    positions: Mapping[str, Sequence[float]],
+    revisions: Sequence[Mapping[str, float]],
+    surface: Surface,
+) -> None:
     import rerun as rr
 
     channels = [channel for channel in c.channels if channel.name in positions]
     if not channels:
         return
     dots = rr.Points3D(
-        [positions[channel.name] for channel in channels], labels=[short(channel.name) for channel in channels],
-        radii=rr.Radius.ui_points(5.0), show_labels=False,
-    )  # fmt: skip
+        [positions[channel.name] for channel in channels],
+        labels=[short(channel.name) for channel in channels],
+        radii=rr.Radius.ui_points(5.0),
+        show_labels=False,
+    )
     stream.log("machine/sensors", dots, static=True)
     _names(stream, sorted(channels, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in channels], axis=1)
@@ -147,9 +157,12 @@ def _names(
     at = np.where(hidden[:, None], beside(places, surface.points), places)
     visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
-        at[visible], labels=[short(channels[i].name) for i in visible], radii=rr.Radius.ui_points(0.0),
-        show_labels=True, colors=[255, 255, 255],
-    )  # fmt: skip
+        at[visible],
+        labels=[short(channels[i].name) for i in visible],
+        radii=rr.Radius.ui_points(0.0),
+        show_labels=True,
+        colors=[255, 255, 255],
+    )
     stream.log("machine/names", labels, static=True)
     stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
     lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
@@ -158,7 +171,7 @@ def _names(
 
 def _markers(
     stream: rr.RecordingStream, c: Comparison, channels: Sequence[Channel], index: Any, residual: Array
-) -> None:  # fmt: skip
+) -> None:
     """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
     import rerun as rr
 

@@ -29,9 +29,12 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
     height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
     words = [f"{m:.{decimals(high - low)}f} °C" for m in at]
     points = rr.Points2D(
-        [[WIDE + GAP, h] for h in height], labels=words, show_labels=True, radii=rr.Radius.ui_points(0.0),
+        [[WIDE + GAP, h] for h in height],
+        labels=words,
+        show_labels=True,
+        radii=rr.Radius.ui_points(0.0),
         colors=[31, 41, 51],
-    )  # fmt: skip
+    )
     stream.log("scale/marks", points, static=True)
 
 

@@ -34,9 +34,14 @@ class Label:
 
 
 def callouts(
-    p: pyvista.Plotter, labels: Sequence[Label], points: Array, view: View, theme: Theme = LIGHT, size: int = SMALL,
+    p: pyvista.Plotter,
+    labels: Sequence[Label],
+    points: Array,
+    view: View,
+    theme: Theme = LIGHT,
+    size: int = SMALL,
     dots: bool = True,
-) -> None:  # fmt: skip
+) -> None:
     """Markers on the machine with labels beside it, in the order of their heights so that lines seldom cross.
 
     The camera must stand.  points : (n, 3) m that the labels stand beside;  dots : draw the markers too

@@ -168,9 +168,14 @@ def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
 
 
 def _line(
-    p: pyvista.Plotter, text: str, at: tuple[float, float], size: int, theme: Theme, name: str,
+    p: pyvista.Plotter,
+    text: str,
+    at: tuple[float, float],
+    size: int,
+    theme: Theme,
+    name: str,
     anchor: tuple[str, str] = ("left", "bottom"),
-) -> None:  # fmt: skip
+) -> None:
     """In place of the line of that name. Its font comes with it: a plotter that has drawn draws again at once."""
     line = p.add_text(
         text, position=at, viewport=True, font_size=size, color=theme.ink, name=name, font_file=font_file()

@@ -54,9 +54,13 @@ def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRu
     return {
         "nodes": [{"name": name, "z": round(float(z), 4), "y": round(float(y), 4)} for name, (_, y, z) in at.items()],
         "links": [[names.index(a), names.index(b), round(runs[0].conductance.get((a, b), 0.0), 2)] for a, b in active],
-        "widest": widest, "most": most,
-        "tests": [{
-            "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
-            "W": packed_numbers(_side_by_side([r.watts[pair] for pair in active], len(r.T[names[0]])), STEP_W),
-        } for r in runs],
-    }  # fmt: skip
+        "widest": widest,
+        "most": most,
+        "tests": [
+            {
+                "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
+                "W": packed_numbers(_side_by_side([r.watts[pair] for pair in active], len(r.T[names[0]])), STEP_W),
+            }
+            for r in runs
+        ],
+    }

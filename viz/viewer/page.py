@@ -65,10 +65,16 @@ class Recorded:
 
 
 def document(
-    title: str, nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
-    conductivity: Mapping[str, tuple[float, float]] | None = None, revisions: Sequence[str] = ("now", "before"),
-    mesh: NamedMesh | None = None, limits: tuple[float, float] | None = None, machine: Machine | None = None,
-) -> dict[str, Any]:  # fmt: skip
+    title: str,
+    nodes: SplitMesh,
+    tests: Sequence[Recorded],
+    positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None = None,
+    revisions: Sequence[str] = ("now", "before"),
+    mesh: NamedMesh | None = None,
+    limits: tuple[float, float] | None = None,
+    machine: Machine | None = None,
+) -> dict[str, Any]:
     """All the page draws: the machine, its temperatures and readings in every test, and what can follow.
 
     machine : is drawn as it looks, too;  mesh : of the tests' networks
@@ -96,19 +102,28 @@ def machine_document(
     """
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
     return {
-        "title": title, "points": packed_numbers(nodes.points), "tets": packed_integers(nodes.tets[order]),
-        "faces": packed_integers(_faces(nodes)[order, None]), "parts": _parts(nodes, colours),
-        "looks": looks, "k": conductivity and [conductivity[name] for name in nodes.parts],
-        "heat": _palette(heat()), "missing": _palette(missing()), "power": _palette(power()),
+        "title": title,
+        "points": packed_numbers(nodes.points),
+        "tets": packed_integers(nodes.tets[order]),
+        "faces": packed_integers(_faces(nodes)[order, None]),
+        "parts": _parts(nodes, colours),
+        "looks": looks,
+        "k": conductivity and [conductivity[name] for name in nodes.parts],
+        "heat": _palette(heat()),
+        "missing": _palette(missing()),
+        "power": _palette(power()),
         "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
-    }  # fmt: skip
+    }
 
 
 def temperature_document(
-    nodes: SplitMesh, tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]],
-    conductivity: Mapping[str, tuple[float, float]] | None, revisions: Sequence[str],
+    nodes: SplitMesh,
+    tests: Sequence[Recorded],
+    positions: Mapping[str, Sequence[float]],
+    conductivity: Mapping[str, tuple[float, float]] | None,
+    revisions: Sequence[str],
     limits: tuple[float, float] | None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Temperatures and readings of tests; those of more tests replace them.
 
     revisions : names of a test's states;  limits : of the colours (degC), wider where a state is beyond
@@ -117,17 +132,24 @@ def temperature_document(
     ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
     low, high = rounded(min(ends), max(ends))
     return {
-        "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K), "revisions": list(revisions),
-        "tests": _tests(tests, positions), "marks": marks(low, high), "change_marks": _change(tests),
+        "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K),
+        "revisions": list(revisions),
+        "tests": _tests(tests, positions),
+        "marks": marks(low, high),
+        "change_marks": _change(tests),
         "flux_marks": conductivity and _flux(nodes, tests, conductivity),
-    }  # fmt: skip
+    }
 
 
 def with_limits(content: Mapping[str, Any], limits: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
     """The same with the largest errors that count as agreement (K): test -> channel -> limit."""
-    return {**content, "tests": [{
-        **test, "sensors": [{**s, "limit": limits[test["test"]].get(s["channel"])} for s in test["sensors"]],
-    } for test in content["tests"]]}  # fmt: skip
+    return {
+        **content,
+        "tests": [
+            {**test, "sensors": [{**s, "limit": limits[test["test"]].get(s["channel"])} for s in test["sensors"]]}
+            for test in content["tests"]
+        ],
+    }
 
 
 def render(content: Mapping[str, Any]) -> str:

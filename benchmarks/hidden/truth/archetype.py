@@ -165,17 +165,27 @@ def _logged(kind: Archetype, plan: Plan, seed: int, change: Change) -> Record:
     true, draw = heated(kind, plan, seed, change), Draw(seed, change.factors)
     machine, at, fine, inputs, T, rng = true.machine, true.at, true.fine, true.inputs, true.T, true.rng
     room = true.driving["T_ambient"]
-    readings = {s.name: read(s, kind.logger, fine, T[:, s.cell], room, at, rng)
-                for s in sensors(kind, machine, draw, change)}  # fmt: skip
+    readings = {
+        s.name: read(s, kind.logger, fine, T[:, s.cell], room, at, rng) for s in sensors(kind, machine, draw, change)
+    }
     readings |= {name: shows(readings[name]) for name, shows in change.shown.items()}
     readings = with_gaps(readings, rng, kind.logger.missing)
     for a, b in change.swaps:
         readings[a], readings[b] = readings[b], readings[a]
-    baths = {f"T_{name}": np.interp(at, fine, T[:, machine.skeleton.cell(spot.body, spot.position)])
-             for name, spot in kind.baths.items()}  # fmt: skip
+    baths = {
+        f"T_{name}": np.interp(at, fine, T[:, machine.skeleton.cell(spot.body, spot.position)])
+        for name, spot in kind.baths.items()
+    }
     shown = {k: change.inputs[k](at, v) if k in change.inputs else v for k, v in {**inputs, **baths}.items()}
     written = recorded(shown, kind.logger, rng)
     boundaries = {k[2:]: v for k, v in written.items() if k.startswith("T_")}
     first = float(np.median([y[np.isfinite(y)][0] for y in readings.values()]))
-    return Record(plan.name, plan.role, at, {k: v for k, v in written.items() if not k.startswith("T_")}, boundaries,
-                  readings, first)  # fmt: skip
+    return Record(
+        plan.name,
+        plan.role,
+        at,
+        {k: v for k, v in written.items() if not k.startswith("T_")},
+        boundaries,
+        readings,
+        first,
+    )

@@ -77,15 +77,20 @@ CANDIDATE_TESTS: Mapping[str, tuple[Step, ...]] = {
     "heating at standstill, then cooling down": (overloaded_then_off, no_bars, STILL),
     "no load, fast and slow": (held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0), at_two_speeds),
     "spin without current": (
-        held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0), no_faster(held(speed_rpm=1000.0)),
+        held(current_A=0.0, rotor_A=0.0, vehicle_speed_mps=0.0),
+        no_faster(held(speed_rpm=1000.0)),
     ),
     "same current at two speeds": (even_current, no_faster(on_off("speed_rpm", 1500.0, 2))),
     "cool-down with wind on and off": (held(speed_rpm=0.0), no_bars, on_off("vehicle_speed_mps", 12.0, 3)),
-    "blower on the machine at standstill": (even_current, held(speed_rpm=0.0), no_bars,
-                                            on_off("vehicle_speed_mps", 8.0, 3)),
+    "blower on the machine at standstill": (
+        even_current,
+        held(speed_rpm=0.0),
+        no_bars,
+        on_off("vehicle_speed_mps", 8.0, 3),
+    ),
     "fan flow halved midway": (halved_flow,),
     "coolant inlet raised by 20 K": (warmer("T_coolant", 20.0),),
-}  # fmt: skip
+}
 
 
 MINUTES = 240.0

@@ -47,11 +47,18 @@ class Change:
     def __add__(self, other: Change) -> Change:
         factors = {k: self.factors.get(k, 1.0) * other.factors.get(k, 1.0) for k in {**self.factors, **other.factors}}
         return Change(
-            factors, self.bodies + other.bodies, self.joints + other.joints,
-            lambda s: self.terms(s) + other.terms(s), {**self.signals, **other.signals},
-            {**self.readings, **other.readings}, self.swaps + other.swaps, {**self.inputs, **other.inputs},
-            {**self.driven, **other.driven}, {**self.shown, **other.shown}, {**self.in_test, **other.in_test},
-        )  # fmt: skip
+            factors,
+            self.bodies + other.bodies,
+            self.joints + other.joints,
+            lambda s: self.terms(s) + other.terms(s),
+            {**self.signals, **other.signals},
+            {**self.readings, **other.readings},
+            self.swaps + other.swaps,
+            {**self.inputs, **other.inputs},
+            {**self.driven, **other.driven},
+            {**self.shown, **other.shown},
+            {**self.in_test, **other.in_test},
+        )
 
     @property
     def lasts(self) -> bool:

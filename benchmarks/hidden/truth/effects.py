@@ -60,8 +60,14 @@ def bridge(name: str, a: float, one: str, other: str, spots: tuple[float, float]
     return Change(joints=(Joint(f"hidden {name}", one, other, a, spots, 5e-4),))
 
 
-def heating(body: str, a: float, speed: tuple[float, float] = (0, 0), current: tuple[float, float] = (0, 0),
-            input_A: str = "current_A", fade: float = 0.0) -> Change:  # fmt: skip
+def heating(
+    body: str,
+    a: float,
+    speed: tuple[float, float] = (0, 0),
+    current: tuple[float, float] = (0, 0),
+    input_A: str = "current_A",
+    fade: float = 0.0,
+) -> Change:
     """Extra loss a (W) at 1000 rpm and 100 A.
 
     speed, current : (exponent a textbook would use, true exponent); equal at 1500 rpm; fade : less per K above 60 degC

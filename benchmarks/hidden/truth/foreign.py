@@ -22,8 +22,9 @@ def cable(body: str, G: float, C: float) -> Change:
         cells = s.cells("cable")
         return (Film("cable air", cells, "T_ambient", np.full(cells.size, G / cells.size), lambda T, Ta, u: 0.5),)
 
-    return Change(bodies=(Body("cable", C, 4, 1.0 / G),), joints=(Joint("cable", body, "cable", G, (0.5, 0.0)),),
-                  terms=terms)  # fmt: skip
+    return Change(
+        bodies=(Body("cable", C, 4, 1.0 / G),), joints=(Joint("cable", body, "cable", G, (0.5, 0.0)),), terms=terms
+    )
 
 
 def gusts(body: str, watts: float, seed: int) -> Change:

@@ -52,12 +52,15 @@ class Course:
         signals = {k: s(self.time) for k, s in change.signals.items()}
         planned = {k: np.array([u[k] for u in self.inputs]) for k in change.driven}
         signals |= {k: true(self.time, planned[k]) for k, true in change.driven.items()}
-        return np.stack([
-            changed.slope(T, {**u, **{k: float(v[i]) for k, v in signals.items()},
-            "T_ambient": u["T_ambient"] + room_K})
-            - self.machine.slope(T, u)
-            for i, (T, u) in enumerate(zip(self.T, self.inputs, strict=True))
-        ])  # fmt: skip
+        return np.stack(
+            [
+                changed.slope(
+                    T, {**u, **{k: float(v[i]) for k, v in signals.items()}, "T_ambient": u["T_ambient"] + room_K}
+                )
+                - self.machine.slope(T, u)
+                for i, (T, u) in enumerate(zip(self.T, self.inputs, strict=True))
+            ]
+        )
 
     def added(self, change: Change) -> Array:
         """The same for a change of terms alone, which is quicker."""

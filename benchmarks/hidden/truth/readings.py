@@ -56,8 +56,9 @@ def lagged(time: Array, T: Array, tau: float) -> Array:
     return np.asarray(lfilter([1.0 - share, share - keep], [1.0, -keep], T - T[0]) + T[0])
 
 
-def read(sensor: Sensor, logger: Logger, time: Array, T: Array, ambient: Array, at: Array, rng: np.random.Generator
-         ) -> Array:  # fmt: skip
+def read(
+    sensor: Sensor, logger: Logger, time: Array, T: Array, ambient: Array, at: Array, rng: np.random.Generator
+) -> Array:
     """Readings (degC) at the times `at`.
 
     time, T, ambient : (n,) of the fine run

@@ -16,8 +16,12 @@ def bases(case: str, target: str | None) -> int:
         folder = open_case(case, tell)
         hypotheses = which_base(folder.case, progress=tell)
     wrong = [h for h in hypotheses if h.declared and h.excluded]
-    document = {"case": folder.case.name, "revision": folder.case.model.revision,
-                "wrong": [h.test for h in wrong], "hypotheses": [h.document() for h in hypotheses]}  # fmt: skip
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "wrong": [h.test for h in wrong],
+        "hypotheses": [h.document() for h in hypotheses],
+    }
     give(document, target, lambda: answer(document))
     return 1 if wrong else 0
 

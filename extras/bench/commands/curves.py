@@ -25,12 +25,36 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """The rule assembly by assembly, the repeats, then eq. 8 and eq. 9 sensor by sensor."""
     rows_of_tests = [(t["name"], a) for t in document["tests"] for a in t["assemblies"]]
     over = sum(a["verdict"] != "within" for _, a in rows_of_tests)
-    rows = [[a["place"], name, a["measured"], a["calculated"], a["percent"], a["percent_of_rise"], a["U95_percent"],
-             a["verdict"]] for name, a in rows_of_tests]  # fmt: skip
-    headers = ["assembly", "test", "measured (degC)", "calculated (degC)", "%", "% of rise", "reading's 95 % (%)",
-               "verdict"]  # fmt: skip
-    rule = Grid("Within 3 to 4 % of the measured temperature, never above 7 %", headers, rows, ["beyond 7 %"],
-                ["test", "%", "verdict"])  # fmt: skip
+    rows = [
+        [
+            a["place"],
+            name,
+            a["measured"],
+            a["calculated"],
+            a["percent"],
+            a["percent_of_rise"],
+            a["U95_percent"],
+            a["verdict"],
+        ]
+        for name, a in rows_of_tests
+    ]
+    headers = [
+        "assembly",
+        "test",
+        "measured (degC)",
+        "calculated (degC)",
+        "%",
+        "% of rise",
+        "reading's 95 % (%)",
+        "verdict",
+    ]
+    rule = Grid(
+        "Within 3 to 4 % of the measured temperature, never above 7 %",
+        headers,
+        rows,
+        ["beyond 7 %"],
+        ["test", "%", "verdict"],
+    )
     sentence = f"{len(rows_of_tests) - over} of {len(rows_of_tests)} assemblies are within the 3 to 4 % rule."
     parts: list[Grid | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
     return Answer(sentence, parts, "--json FILE")
@@ -44,23 +68,43 @@ def _warming(document: Mapping[str, Any]) -> Grid:
 
 
 def _repeats(document: Mapping[str, Any]) -> Grid:
-    rows = [[r["place"], ", ".join(r["tests"]), r["mean"], r["sd_mean"], r["spread"], r["limit"],
-             "yes" if r["repeat"] else "no"] for r in document["repeats"]]  # fmt: skip
+    rows = [
+        [
+            r["place"],
+            ", ".join(r["tests"]),
+            r["mean"],
+            r["sd_mean"],
+            r["spread"],
+            r["limit"],
+            "yes" if r["repeat"] else "no",
+        ]
+        for r in document["repeats"]
+    ]
     headers = ["place", "equal tests", "mean rise (K)", "1 sigma (K)", "largest difference", "95 % limit", "repeat"]
     return Grid("Equal tests pooled", headers, rows, ["no"], ["repeat", "mean rise (K)", "equal tests"])
 
 
 def _doubts(document: Mapping[str, Any]) -> list[str]:
-    return [f"{t['name']}, {c['channel']}: {words}" for t in document["tests"] for c in t["curves"]
-            for words in [*((c["eq8"] or {}).get("warnings", [])), *([c["why"]] if c["why"] else [])]]  # fmt: skip
+    return [
+        f"{t['name']}, {c['channel']}: {words}"
+        for t in document["tests"]
+        for c in t["curves"]
+        for words in [*((c["eq8"] or {}).get("warnings", [])), *([c["why"]] if c["why"] else [])]
+    ]
 
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
     e, q = c["eq8"], c["equilibrium"]
-    fit = ["-"] * 6 if e is None else [
-        *(_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c"))),
-        e["rmse_K"], e["start_degC"], e["tau95_min"],
-    ]  # fmt: skip
+    fit = (
+        ["-"] * 6
+        if e is None
+        else [
+            *(_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c"))),
+            e["rmse_K"],
+            e["start_degC"],
+            e["tau95_min"],
+        ]
+    )
     return [*fit, *(["-", "-"] if q is None else [_since(q), q["drift_K_h"]])]
 
 

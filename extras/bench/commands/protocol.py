@@ -85,12 +85,17 @@ def read_record(file: Path) -> Record:
     coefficients, meters = top.table("coefficients"), top.table("meters")
     top.close()
     record = Record(
-        machine.number("rated_kW"), _cold(cold) if cold.data else None, _pairs(load, file, 60.0),
-        load.number("resolution_K", 0.5), _hot(hot, file) if hot.data else None,
-        meter_of(meters, "resistance", OHMMETER), meter_of(meters, "emf", VOLTMETER),
-        beta=_range(coefficients, "beta_percent_K", COPPER), alpha=_range(coefficients, "alpha_percent_K", NDFEB),
+        machine.number("rated_kW"),
+        _cold(cold) if cold.data else None,
+        _pairs(load, file, 60.0),
+        load.number("resolution_K", 0.5),
+        _hot(hot, file) if hot.data else None,
+        meter_of(meters, "resistance", OHMMETER),
+        meter_of(meters, "emf", VOLTMETER),
+        beta=_range(coefficients, "beta_percent_K", COPPER),
+        alpha=_range(coefficients, "alpha_percent_K", NDFEB),
         curve=saturation_of(coefficients),
-    )  # fmt: skip
+    )
     for one in (machine, load, coefficients, meters):
         one.close()
     return record
@@ -102,19 +107,26 @@ def _optional(table: Table, key: str) -> float | None:
 
 def _cold(table: Table) -> Cold:
     cold = Cold(
-        table.number("room_degC"), table.number("machine_degC"),
-        table.number("resistance_ohm"), _optional(table, "emf_V"), _optional(table, "speed_rpm"),
-        _optional(table, "range_ohm"), _optional(table, "hours_since_run"),
-    )  # fmt: skip
+        table.number("room_degC"),
+        table.number("machine_degC"),
+        table.number("resistance_ohm"),
+        _optional(table, "emf_V"),
+        _optional(table, "speed_rpm"),
+        _optional(table, "range_ohm"),
+        _optional(table, "hours_since_run"),
+    )
     table.close()
     return cold
 
 
 def _hot(table: Table, file: Path) -> Hot:
     hot = Hot(
-        table.number("ambient_degC"), _pairs(table, file, 1.0), _optional(table, "emf_V"),
-        _optional(table, "speed_rpm"), _optional(table, "range_ohm"),
-    )  # fmt: skip
+        table.number("ambient_degC"),
+        _pairs(table, file, 1.0),
+        _optional(table, "emf_V"),
+        _optional(table, "speed_rpm"),
+        _optional(table, "range_ohm"),
+    )
     table.close()
     return hot
 

@@ -64,10 +64,16 @@ def answer(document: Mapping[str, Any]) -> Answer:
     """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
     tables = [_effects(name, effects) for name, effects in document.get("effects", {}).items()]
     tables += [_ranking(name, effects) for name, effects in document.get("rankings", {}).items()]
-    leading = "; ".join(f"{g.title.partition(':')[0]}: {g.rows[0][1] if document.get('effects') else g.rows[0][0]}"
-                        for g in tables if g.rows)  # fmt: skip
-    return Answer(f"{document['machine']}, {document['design']}: what moves most. {leading}.", tables,
-                  "--out DIR for plots; --json FILE")  # fmt: skip
+    leading = "; ".join(
+        f"{g.title.partition(':')[0]}: {g.rows[0][1] if document.get('effects') else g.rows[0][0]}"
+        for g in tables
+        if g.rows
+    )
+    return Answer(
+        f"{document['machine']}, {document['design']}: what moves most. {leading}.",
+        tables,
+        "--out DIR for plots; --json FILE",
+    )
 
 
 def _effects(name: str, effects: Mapping[str, Any]) -> Grid:
@@ -136,8 +142,11 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
     with progress() as tell:
         calibrated = open_case(source, tell)
         transfers = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
-    document = {"source": calibrated.case.name, "revision": calibrated.case.model.revision,
-                "targets": [one.document() for one in transfers]}  # fmt: skip
+    document = {
+        "source": calibrated.case.name,
+        "revision": calibrated.case.model.revision,
+        "targets": [one.document() for one in transfers],
+    }
     give(document, target, lambda: show_transfer(document))
     return 0 if all(one.agrees for one in transfers) else 1
 
@@ -145,14 +154,28 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
 def show_transfer(document: Mapping[str, Any]) -> Answer:
     """Where the model of one machine is over on the others."""
     keys = ("test", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
-    headers = ["sensor", "case", "test", "measured (degC)", "simulated (degC)", "difference (K)", "95 % (K)",
-               "worst case (K)", "verdict"]  # fmt: skip
-    rows = [[r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
-            for one in document["targets"] for r in sorted(one["rows"], key=lambda r: r["within"])]  # fmt: skip
+    headers = [
+        "sensor",
+        "case",
+        "test",
+        "measured (degC)",
+        "simulated (degC)",
+        "difference (K)",
+        "95 % (K)",
+        "worst case (K)",
+        "verdict",
+    ]
+    rows = [
+        [r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
+        for one in document["targets"]
+        for r in sorted(one["rows"], key=lambda r: r["within"])
+    ]
     over = sum(row[-1] == "over" for row in rows)
     parameters = document["targets"][0]["parameters"] if document["targets"] else []
-    sentence = (f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
-                "sensors are over.")  # fmt: skip
+    sentence = (
+        f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
+        "sensors are over."
+    )
     keep = ["case", "difference (K)", "95 % (K)", "verdict"]
     return Answer(
         sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]

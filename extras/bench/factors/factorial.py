@@ -122,8 +122,13 @@ class Effects:
 
     def document(self) -> dict[str, Any]:
         rows = [{"effect": e, "words": self.words(e), "value": v, "active": e in self.active} for e, v in self.ranked]
-        return {"response": self.response, "PSE": self.PSE, "margin": self.margin, "simultaneous": self.simultaneous,
-                "effects": rows}  # fmt: skip
+        return {
+            "response": self.response,
+            "PSE": self.PSE,
+            "margin": self.margin,
+            "simultaneous": self.simultaneous,
+            "effects": rows,
+        }
 
     def words(self, letters: str) -> str:
         return " x ".join(self.names[c] for c in letters)

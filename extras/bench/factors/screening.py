@@ -61,13 +61,17 @@ def settings(level: Mapping[str, Any], load: Load) -> PmSettings:
     """Factors' levels as settings of the network."""
     end = level["end-winding impregnation"]
     return PmSettings(
-        convection=level["convection"], emissivity=level["emissivity"],
-        base=(level["emissivity"] if level["base"] > 0.5 else None), impregnation=level["winding impregnation"],
+        convection=level["convection"],
+        emissivity=level["emissivity"],
+        base=(level["emissivity"] if level["base"] > 0.5 else None),
+        impregnation=level["winding impregnation"],
         end_impregnation=(GOOD if end is True else POOR if end is False else float(end)),
-        resistance_ohm=load.resistance_ohm, phases=load.phases,
-        magnetic_W=load.magnetic_W * level["magnetic loss"] * 383.0 / level["speed"], friction_W=0.0,
+        resistance_ohm=load.resistance_ohm,
+        phases=load.phases,
+        magnetic_W=load.magnetic_W * level["magnetic loss"] * 383.0 / level["speed"],
+        friction_W=0.0,
         gap_mm=level.get("liner gap"),
-    )  # fmt: skip
+    )
 
 
 def path_mK_W(rises: Mapping[str, float], load: Load) -> float:
@@ -88,9 +92,11 @@ class Screening:
 
     def document(self) -> dict[str, Any]:
         return {
-            "runs": len(self.rises), "resolution": self.design.resolution, "responses": list(RESPONSES),
+            "runs": len(self.rises),
+            "resolution": self.design.resolution,
+            "responses": list(RESPONSES),
             "effects": {name: e.document() for name, e in self.effects.items()},
-        }  # fmt: skip
+        }
 
 
 def screen(machine: Machine, design: Design, load: Load | None = None) -> Screening:
@@ -120,11 +126,15 @@ def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], di
         return cache[key]
 
     factors = [
-        Varied("convection", 5.0, 10.0), Varied("emissivity", 0.2, 0.8), Varied("base", 0.0, 1.0),
+        Varied("convection", 5.0, 10.0),
+        Varied("emissivity", 0.2, 0.8),
+        Varied("base", 0.0, 1.0),
         Varied("winding impregnation", 0.2, 0.8, "impregnation"),
-        Varied("end-winding impregnation", 0.2, 0.8, "impregnation"), Varied("speed", 200.0, 400.0),
-        Varied("magnetic loss", 1.0, 1.5), Varied("liner gap", 0.7, 1.4),
-    ]  # fmt: skip
+        Varied("end-winding impregnation", 0.2, 0.8, "impregnation"),
+        Varied("speed", 200.0, 400.0),
+        Varied("magnetic loss", 1.0, 1.5),
+        Varied("liner gap", 0.7, 1.4),
+    ]
     return factors, {
         "magnets": lambda levels: rises(levels)["magnets"],
         STEP: lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],

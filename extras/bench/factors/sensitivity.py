@@ -45,10 +45,14 @@ class Ranking:
         return sorted(self.measure, key=lambda n: -self.measure[n])
 
     def document(self) -> dict[str, Any]:
-        return {"method": self.method, "runs": self.runs, "ranking": [
-            {"factor": n, "measure": self.measure[n], "conf95": self.conf[n], "spread": self.spread[n]}
-            for n in self.ranked
-        ]}  # fmt: skip
+        return {
+            "method": self.method,
+            "runs": self.runs,
+            "ranking": [
+                {"factor": n, "measure": self.measure[n], "conf95": self.conf[n], "spread": self.spread[n]}
+                for n in self.ranked
+            ],
+        }
 
 
 def morris(factors: Sequence[Varied], response: Response, trajectories: int = 10, seed: int = 0) -> Ranking:

@@ -36,8 +36,10 @@ class Assembly:
     @property
     def verdict(self) -> Verdict:
         limits: tuple[tuple[float, Verdict], ...] = (
-            (CLOSE, "calibrated"), (TOLERANCE, "allowed"), (NEVER, "correct the model")
-        )  # fmt: skip
+            (CLOSE, "calibrated"),
+            (TOLERANCE, "allowed"),
+            (NEVER, "correct the model"),
+        )
         return next((word for limit, word in limits if self.percent <= limit), "beyond 7 %")
 
     def document(self) -> dict[str, Any]:
@@ -72,6 +74,7 @@ def worst(rows: Sequence[Assembly]) -> Mapping[str, Any]:
     """The summary the paper gives: typical and largest error (%), and whether the model counts as calibrated."""
     errors = [r.percent for r in rows]
     return {
-        "typical_percent": float(np.median(errors)), "largest_percent": max(errors),
+        "typical_percent": float(np.median(errors)),
+        "largest_percent": max(errors),
         "calibrated": all(e <= TOLERANCE for e in errors),
-    }  # fmt: skip
+    }

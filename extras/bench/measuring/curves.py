@@ -34,8 +34,13 @@ class Curve:
     why: str = ""
 
     def document(self) -> dict[str, Any]:
-        return {"channel": self.channel, "place": self.place, "eq8": self.warming and self.warming.document(),
-                "equilibrium": self.equilibrium and self.equilibrium.document(), "why": self.why}  # fmt: skip
+        return {
+            "channel": self.channel,
+            "place": self.place,
+            "eq8": self.warming and self.warming.document(),
+            "equilibrium": self.equilibrium and self.equilibrium.document(),
+            "why": self.why,
+        }
 
 
 @dataclass(frozen=True)
@@ -55,15 +60,25 @@ class Curves:
 
     def document(self) -> dict[str, Any]:
         tests = [
-            {"name": name, "curves": [c.document() for c in rows],
-             "assemblies": [{"place": a.place, **a.document()} for a in self.rules[name]],
-             "rule": worst(self.rules[name]) if self.rules[name] else None}
+            {
+                "name": name,
+                "curves": [c.document() for c in rows],
+                "assemblies": [{"place": a.place, **a.document()} for a in self.rules[name]],
+                "rule": worst(self.rules[name]) if self.rules[name] else None,
+            }
             for name, rows in self.curves.items()
-        ]  # fmt: skip
-        equal = [{"tests": list(names), "place": place, **pooled.document()}
-                 for (names, place), pooled in self.pooled.items()]  # fmt: skip
-        return {"case": self.case.name, "revision": self.case.model.revision, "agrees": self.agrees, "tests": tests,
-                "repeats": equal}  # fmt: skip
+        ]
+        equal = [
+            {"tests": list(names), "place": place, **pooled.document()}
+            for (names, place), pooled in self.pooled.items()
+        ]
+        return {
+            "case": self.case.name,
+            "revision": self.case.model.revision,
+            "agrees": self.agrees,
+            "tests": tests,
+            "repeats": equal,
+        }
 
 
 def curves(case: Case, resolution_K: float = 0.5) -> Curves:

@@ -115,11 +115,13 @@ class Protocol:
 
     def document(self) -> dict[str, Any]:
         return {
-            "steps": [s.document() for s in self.steps], "complete": self.complete,
+            "steps": [s.document() for s in self.steps],
+            "complete": self.complete,
             "winding_rise_K": self.winding and self.winding.document(),
             "magnet_rise_K": self.magnets and self.magnets.document(),
-            "switch_off": [w.document() for w in self.ways], "temperatures_degC": dict(self.temperatures),
-        }  # fmt: skip
+            "switch_off": [w.document() for w in self.ways],
+            "temperatures_degC": dict(self.temperatures),
+        }
 
 
 Check = Callable[[Record], tuple[State, str]]

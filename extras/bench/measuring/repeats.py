@@ -51,8 +51,15 @@ def repeats(values: Sequence[float], u: float) -> Repeats:
         raise InputError(f"{x.size} runs with uncertainty {u:g}", "repeats", "2 or more runs, an uncertainty above 0")
     sd = float(x.std(ddof=1))
     chi = float(((x - x.mean()) ** 2).sum() / u**2)
-    return Repeats(x.size, float(x.mean()), sd, max(sd, u) / np.sqrt(x.size), float(np.ptp(x)),
-                   NORMAL_95 * np.sqrt(2.0) * u, float(chi2.sf(chi, x.size - 1)))  # fmt: skip
+    return Repeats(
+        x.size,
+        float(x.mean()),
+        sd,
+        max(sd, u) / np.sqrt(x.size),
+        float(np.ptp(x)),
+        NORMAL_95 * np.sqrt(2.0) * u,
+        float(chi2.sf(chi, x.size - 1)),
+    )
 
 
 def pooled_curves(minutes: Sequence[Array], T: Sequence[Array]) -> tuple[Array, Array, Array]:

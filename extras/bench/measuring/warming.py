@@ -51,10 +51,15 @@ class Warming:
 
     def document(self) -> dict[str, Any]:
         return {
-            "a_degC": self.a, "b": self.b, "c_1_min": self.c, "ci95": {k: list(v) for k, v in self.ci95.items()},
-            "rmse_K": self.rmse_K, "start_degC": self.start, "tau95_min": self.time_to_share_min(),
+            "a_degC": self.a,
+            "b": self.b,
+            "c_1_min": self.c,
+            "ci95": {k: list(v) for k, v in self.ci95.items()},
+            "rmse_K": self.rmse_K,
+            "start_degC": self.start,
+            "tau95_min": self.time_to_share_min(),
             "warnings": list(self.warnings),
-        }  # fmt: skip
+        }
 
 
 def eq8(minutes: Any, a: Any, b: Any, c: Any) -> Any:
@@ -74,8 +79,11 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
     finite = np.isfinite(T)
     minutes, T = minutes[finite], T[finite]
     if T.size < 5 or np.min(T) <= 0 or np.ptp(T) < 4 * resolution_K:
-        raise InputError(f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K", "eq. 8",
-                         f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K")  # fmt: skip
+        raise InputError(
+            f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K",
+            "eq. 8",
+            f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K",
+        )
     end, first = float(T[-1]), float(T[0])
     guess = (end, np.log(min(first / end, 0.99)), -3.0 / (minutes[-1] - minutes[0]))
     p, covariance = curve_fit(eq8, minutes, T, guess, maxfev=5000)
@@ -90,11 +98,15 @@ def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K
 def _doubts(fit: Warming, measured: float | None, last_min: float) -> tuple[str, ...]:
     out = []
     if measured is not None and abs(fit.start - measured) > START_K:
-        out.append(f"the formula starts at {fit.start:.1f} degC, the record at {measured:.1f} degC: "
-                   "eq. 8 does not describe the first minutes")  # fmt: skip
+        out.append(
+            f"the formula starts at {fit.start:.1f} degC, the record at {measured:.1f} degC: "
+            "eq. 8 does not describe the first minutes"
+        )
     if fit.b < 0 and fit.c < 0 and fit.time_to_share_min() > last_min:
-        out.append(f"95 % of the end is reached after {fit.time_to_share_min():.0f} min, after the record's end: "
-                   "the end temperature is extrapolated")  # fmt: skip
+        out.append(
+            f"95 % of the end is reached after {fit.time_to_share_min():.0f} min, after the record's end: "
+            "the end temperature is extrapolated"
+        )
     return tuple(out)
 
 

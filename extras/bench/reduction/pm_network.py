@@ -23,8 +23,17 @@ K1, K2, K3 = SCHUBERT
 WALL = 0.3  # share of the rotor's tip speed that passes a wall at rest
 # Of their space (assumed): end turns lie looser than wires in slots.
 COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
-JOINTS = {"base": 500.0, "foot": 1000.0, "endcap": 1000.0, "shaft": 4000.0, "bearing": 150.0, "seat": 1500.0,
-          "magnets": 520.0, "gap": 5000.0, "wire": 1000.0}  # fmt: skip
+JOINTS = {
+    "base": 500.0,
+    "foot": 1000.0,
+    "endcap": 1000.0,
+    "shaft": 4000.0,
+    "bearing": 150.0,
+    "seat": 1500.0,
+    "magnets": 520.0,
+    "gap": 5000.0,
+    "wire": 1000.0,
+}
 BANDS = 5  # of a base plate, from foot to rim; chosen
 
 
@@ -114,9 +123,13 @@ class _Builder:
         self._shared()
         return {
             "network": {"name": self.machine.name, "boundaries": ["ambient"]},
-            "nodes": self.nodes, "surfaces": self.surfaces, "means": self._means(), "links": self.links,
-            "losses": self._losses(), "parameters": self.parameters,
-        }  # fmt: skip
+            "nodes": self.nodes,
+            "surfaces": self.surfaces,
+            "means": self._means(),
+            "links": self.links,
+            "losses": self._losses(),
+            "parameters": self.parameters,
+        }
 
     def link(self, a: str, b: str, **keys: Any) -> None:
         self.links[f"{a}-{b}"] = {"between": [a, b], **keys}
@@ -212,8 +225,14 @@ class _Builder:
         k = machine.conductivity("base")[0] * b.thickness
         post = foot.height / (machine.conductivity("foot")[0] * rows["foot"].contacts["base"])
         spread = math.log(max(b.width / (foot.width + foot.length), 1.05)) / (2 * math.pi * k)
-        R = sum((1 / (JOINTS["foot"] * rows["foot"].contacts["stator.core"]), post,
-                 1 / (JOINTS["base"] * rows["foot"].contacts["base"]), spread))  # fmt: skip
+        R = sum(
+            (
+                1 / (JOINTS["foot"] * rows["foot"].contacts["stator.core"]),
+                post,
+                1 / (JOINTS["base"] * rows["foot"].contacts["base"]),
+                spread,
+            )
+        )
         self.link("stator.core", f"{name}.0", R_K_W=R, prior_sd=0.4)
         if switch:
             self.links[f"stator.core-{name}.0"]["of"] = {"input": switch, "at": 1, "exponent": 1}
@@ -237,8 +256,11 @@ class _Builder:
         self._film(node, "plate facing up", size, one, emissivity)
         under = self._still("plate facing down", size)
         self.links[f"{node}.under-ambient"] = {
-            "between": [node, "ambient"], "area_m2": one, **under, "radiation": {"emissivity": emissivity},
-        }  # fmt: skip
+            "between": [node, "ambient"],
+            "area_m2": one,
+            **under,
+            "radiation": {"emissivity": emissivity},
+        }
 
     def _means(self) -> dict[str, Any]:
         volume = {p: fill * self.rows[p].volume for p, fill in COPPER_SHARE.items()}
@@ -249,13 +271,26 @@ class _Builder:
     def _losses(self) -> dict[str, Any]:
         s, speed = self.settings, {"input": "speed_rpm", "at": 383, "exponent": 1.4}
         shares: dict[str, Any] = self._means()["winding.copper"]["of"]
-        copper = {"at": shares, "kind": "copper", "currents": ["current_A"], "factor": s.phases,
-                  "R20_ohm": s.resistance_ohm, "temperature_of": "winding", "prior_sd": 0.02}  # fmt: skip
+        copper = {
+            "at": shares,
+            "kind": "copper",
+            "currents": ["current_A"],
+            "factor": s.phases,
+            "R20_ohm": s.resistance_ohm,
+            "temperature_of": "winding",
+            "prior_sd": 0.02,
+        }
         out: dict[str, Any] = {"copper": copper}
         if s.magnetic_W:
             parts = {"stator.core": 1 - s.in_magnets, "magnets": s.in_magnets}
-            out["magnetic"] = {"at": parts, "kind": "iron", "eddy_W": 0.0, "hysteresis_W": s.magnetic_W,
-                               "speed_at": 383, "prior_sd": 0.15}  # fmt: skip
+            out["magnetic"] = {
+                "at": parts,
+                "kind": "iron",
+                "eddy_W": 0.0,
+                "hysteresis_W": s.magnetic_W,
+                "speed_at": 383,
+                "prior_sd": 0.15,
+            }
         caps: dict[str, Any] = {"endcap.left": 0.5, "endcap.right": 0.5}
         out["bearings"] = {"at": caps, "kind": "bearing", "P_W": s.friction_W, "of": speed}
         return out

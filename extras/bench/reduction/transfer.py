@@ -55,8 +55,12 @@ class Transfer:
         return all(r.within for r in self.rows)
 
     def document(self) -> dict[str, Any]:
-        return {"case": self.case.name, "parameters": list(self.parameters), "agrees": self.agrees,
-                "rows": [r.document() for r in self.rows]}  # fmt: skip
+        return {
+            "case": self.case.name,
+            "parameters": list(self.parameters),
+            "agrees": self.agrees,
+            "rows": [r.document() for r in self.rows],
+        }
 
 
 def transferred(source: Case, target: Case) -> Transfer:

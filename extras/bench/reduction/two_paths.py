@@ -54,8 +54,11 @@ class TwoPaths:
         return max((abs(v) for pair in self.residual.values() for v in pair), default=0.0)
 
     def document(self) -> dict[str, Any]:
-        return {**{k: v for k, v in vars(self).items() if k != "residual"}, "largest_residual_K": self.largest_K,
-                "residual_K": {f"{k:g}": list(v) for k, v in self.residual.items()}}  # fmt: skip
+        return {
+            **{k: v for k, v in vars(self).items() if k != "residual"},
+            "largest_residual_K": self.largest_K,
+            "residual_K": {f"{k:g}": list(v) for k, v in self.residual.items()},
+        }
 
 
 def two_paths(

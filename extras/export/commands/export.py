@@ -35,9 +35,14 @@ VERSIONS = (2, 3)  # of FMI
 
 
 def export(
-    case: str, out: Path | None, form: str, limits: Sequence[str], version: int, target: str | None,
+    case: str,
+    out: Path | None,
+    form: str,
+    limits: Sequence[str],
+    version: int,
+    target: str | None,
     sensors: Sequence[str] = (),
-) -> int:  # fmt: skip
+) -> int:
     """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
     further = {} if form in (*WORKBOOKS, *MODELS) else plugins("exports")
     if form not in (*WORKBOOKS, *MODELS, *further):
@@ -78,13 +83,20 @@ def _model(
     where = out or folder.settings.out / form
     paths = [write_whole(where / name, content) for name, content in files.items()]
     document = {
-        "case": folder.case.name, "revision": model.revision, "as": form, "files": [str(p) for p in paths],
-        "platforms": platforms, "states": len(model.states), "state_bytes": state_bytes(model),
-        "step_multiplications": step_operations(model), "inputs": [vars(s) for s in model.signals],
-        "outputs": [{"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role}
-                    for o in model.outputs],
+        "case": folder.case.name,
+        "revision": model.revision,
+        "as": form,
+        "files": [str(p) for p in paths],
+        "platforms": platforms,
+        "states": len(model.states),
+        "state_bytes": state_bytes(model),
+        "step_multiplications": step_operations(model),
+        "inputs": [vars(s) for s in model.signals],
+        "outputs": [
+            {"name": o.name, "limit_degC": o.limit, "error_K": o.error_K, "role": o.role} for o in model.outputs
+        ],
         "difference_K": differences,
-    }  # fmt: skip
+    }
     give(document, target, lambda: answer(document))
     return 0
 
@@ -111,8 +123,11 @@ def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, floa
     for test in folder.case.tests:
         out[test.name] = difference(code, network, sampled(record(test, {})), values)
         what = f"the exported code differs from the simulation of '{test.name}' by {out[test.name]:.3g} K"
-        outside = [f"{s.name} = {u:.4g} (to {reach:.4g})" for s in model.inputs
-                  if (reach := reach_of(s)) < (u := float(np.max(np.abs(test.inputs.get(s.name, 0.0)))))]  # fmt: skip
+        outside = [
+            f"{s.name} = {u:.4g} (to {reach:.4g})"
+            for s in model.inputs
+            if (reach := reach_of(s)) < (u := float(np.max(np.abs(test.inputs.get(s.name, 0.0)))))
+        ]
         if not out[test.name] <= AGREES_K and outside:
             notes([f"{what}, where an input is beyond what the fitted tests give a table for: {', '.join(outside)}"])
         elif not out[test.name] <= AGREES_K:

@@ -41,10 +41,14 @@ def law(g, hot, cold, u):
         return film(g, hot, cold)
     if g["kind"] == "stream table":
         return stream(g, hot, cold, u[g["input"]] if g["input"] else g["size"])
-    laws = {"constant": lambda: 1.0, "power": lambda: (d * d + 1e-4) ** (g["a"] / 2),
-            "linear": lambda: 1 + g["a"] * (hot - g["b"]), "inverse": lambda: 1 / (1 + g["a"] * (hot - g["b"])),
-            "table": lambda: np.interp(hot - cold if g["x"][0] < 0 else d, g["x"], g["y"]),
-            "radiation": lambda: 5.670374419e-8 * (h * h + c * c) * (h + c)}  # fmt: skip
+    laws = {
+        "constant": lambda: 1.0,
+        "power": lambda: (d * d + 1e-4) ** (g["a"] / 2),
+        "linear": lambda: 1 + g["a"] * (hot - g["b"]),
+        "inverse": lambda: 1 / (1 + g["a"] * (hot - g["b"])),
+        "table": lambda: np.interp(hot - cold if g["x"][0] < 0 else d, g["x"], g["y"]),
+        "radiation": lambda: 5.670374419e-8 * (h * h + c * c) * (h + c),
+    }
     return laws[g["kind"]]()
 
 

@@ -38,15 +38,24 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
         if like is not None and like not in sheets:
             raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
         test = next(t for t in folder.case.tests if like in (None, t.name))
-        reader = Reader(replace(folder.case, tests=()), test, load_sheet(sheets[test.name]),
-                        folder.settings.sample_s or STEP_S, tuple(sheets))  # fmt: skip
+        reader = Reader(
+            replace(folder.case, tests=()),
+            test,
+            load_sheet(sheets[test.name]),
+            folder.settings.sample_s or STEP_S,
+            tuple(sheets),
+        )
         with dask_cluster(cluster) if cluster else nullcontext() as executor:
             units = histories(files, reader, tell, executor)
         tell("the motors together")
         spread = population(units)
     fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
-    document = {"case": folder.case.name, "revision": folder.case.model.revision, "recordings": len(files),
-                **_document(spread, fits)}  # fmt: skip
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "recordings": len(files),
+        **_document(spread, fits),
+    }
     give(document, target, lambda: answer(document))
     return 0
 
@@ -55,10 +64,13 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
     parameters = []
     for k, name in enumerate(of.names):
         row: dict[str, Any] = {
-            "name": name, "mean": np.exp(of.mean[k]), "mean_ci95": _factor(of.mean[k], of.mean_sd[k]),
-            "spread_percent": 100.0 * of.spread[k], "differs": bool(of.spread_probability[k] < DIFFERS),
+            "name": name,
+            "mean": np.exp(of.mean[k]),
+            "mean_ci95": _factor(of.mean[k], of.mean_sd[k]),
+            "spread_percent": 100.0 * of.spread[k],
+            "differs": bool(of.spread_probability[k] < DIFFERS),
             "probability_equal": of.spread_probability[k],
-        }  # fmt: skip
+        }
         if of.drift is not None and of.drift_sd is not None and of.drift_spread is not None:
             low, high = of.drift[k] - NORMAL_95 * of.drift_sd[k], of.drift[k] + NORMAL_95 * of.drift_sd[k]
             row["drift_percent_year"] = 100.0 * of.drift[k]
@@ -68,26 +80,38 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
         parameters.append(row)
     return {
         "units": [
-            {"unit": name, "rmse_K": fits[name],
-             "parameters": {n: np.exp(of.posterior[i, k]) for k, n in enumerate(of.names)},
-             "ci95": {n: _factor(of.posterior[i, k], of.posterior_sd[i, k]) for k, n in enumerate(of.names)},
-             **_drifts(of, i)}
+            {
+                "unit": name,
+                "rmse_K": fits[name],
+                "parameters": {n: np.exp(of.posterior[i, k]) for k, n in enumerate(of.names)},
+                "ci95": {n: _factor(of.posterior[i, k], of.posterior_sd[i, k]) for k, n in enumerate(of.names)},
+                **_drifts(of, i),
+            }
             for i, name in enumerate(of.units)
         ],
         "parameters": parameters,
         "outliers": [
-            {"unit": o.unit, "parameter": o.parameter, "factor": np.exp(o.change),
-             "factor_ci95": _factor(o.change, o.sd), "z": o.z, "probability": o.probability, "instead": o.instead}
+            {
+                "unit": o.unit,
+                "parameter": o.parameter,
+                "factor": np.exp(o.change),
+                "factor_ci95": _factor(o.change, o.sd),
+                "z": o.z,
+                "probability": o.probability,
+                "instead": o.instead,
+            }
             for o in of.outliers
         ],
-    }  # fmt: skip
+    }
 
 
 def _drifts(of: Population, i: int) -> dict[str, Any]:
     if of.unit_drift is None or of.unit_drift_sd is None:
         return {}
-    rows = {n: [100.0 * (of.unit_drift[i, k] + s * NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
-            for k, n in enumerate(of.names)}  # fmt: skip
+    rows = {
+        n: [100.0 * (of.unit_drift[i, k] + s * NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
+        for k, n in enumerate(of.names)
+    }
     return {"drift_percent_year": {n: [low, high] for n, (low, _, high) in rows.items()}}
 
 
@@ -102,13 +126,24 @@ def answer(document: Mapping[str, Any]) -> Answer:
     names = dict.fromkeys(o["unit"] for o in outliers)
     sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
     rows = [[o["unit"], o["parameter"], o["factor"], *o["factor_ci95"], o["instead"]] for o in outliers]
-    differ = [[p["name"], p["mean"], p["spread_percent"], p["differs"], p.get("drift_percent_year"),
-               *(p.get("drift_ci95") or [None, None])]
-              for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])]  # fmt: skip
+    differ = [
+        [
+            p["name"],
+            p["mean"],
+            p["spread_percent"],
+            p["differs"],
+            p.get("drift_percent_year"),
+            *(p.get("drift_ci95") or [None, None]),
+        ]
+        for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])
+    ]
     parts = [
         Grid("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
-        Grid("Parameters over the fleet",
-             ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"], differ,
-             keep=["mean", "spread (%)", "differs", "drift (%/year)"]),
-    ]  # fmt: skip
+        Grid(
+            "Parameters over the fleet",
+            ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"],
+            differ,
+            keep=["mean", "spread (%)", "differs", "drift (%/year)"],
+        ),
+    ]
     return Answer(sentence, [p for p in parts if p.rows], "--json FILE")

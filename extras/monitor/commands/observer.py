@@ -26,15 +26,29 @@ def export_observer(
         tell("writing the observer")
         looks = code_writer().outputs(model_of(folder)[0], folder, limits)
         filters = [design.as_learned(c) for c in sensors]
-        of = observer_model(design.process, design.noise, design.noise.sd, design.rise_K, [s.channel for s in filters],
-                            standing_reference(folder.case), looks, np.array([s.bias_K for s in filters]))  # fmt: skip
+        of = observer_model(
+            design.process,
+            design.noise,
+            design.noise.sd,
+            design.rise_K,
+            [s.channel for s in filters],
+            standing_reference(folder.case),
+            looks,
+            np.array([s.bias_K for s in filters]),
+        )
     where = out or folder.settings.out / "observer"
     paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {
-        "case": folder.case.name, "revision": folder.case.model.revision, "as": "observer",
-        "files": [str(p) for p in paths], "state_bytes": of.bytes, "inputs": of.input_names,
-        "sensors": [c.name for c in sensors], "missing_heat": of.process.bodies, "outputs": [o.name for o in looks],
-    }  # fmt: skip
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "as": "observer",
+        "files": [str(p) for p in paths],
+        "state_bytes": of.bytes,
+        "inputs": of.input_names,
+        "sensors": [c.name for c in sensors],
+        "missing_heat": of.process.bodies,
+        "outputs": [o.name for o in looks],
+    }
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
     give(document, target, lambda: Answer(sentence, [str(p) for p in paths], "--json FILE"))
     return 0

@@ -63,8 +63,14 @@ def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: P
     where = out or (Path("out") / folder.settings.path.name if _shipped(folder) else folder.settings.out)
     label = "pipe" if follow == PIPE else stem_of(Path(follow))
     file = write_whole(where / f"watch-{label}.csv", session.csv())
-    document = {"case": folder.case.name, "revision": folder.case.model.revision, "source": follow, "like": name,
-                **session.document(), "file": str(file)}  # fmt: skip
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "source": follow,
+        "like": name,
+        **session.document(),
+        "file": str(file),
+    }
     give(document, target, lambda: answer(document))
     return 0
 
@@ -172,23 +178,50 @@ class Session:
         states = dict(zip((c.name for c in self.sensors), self.one.states, strict=True))
         noise, last = self.design.noise, self.last
         return {
-            "duration_s": last.time_s - self.start_s, "samples": len(self.lines),
+            "duration_s": last.time_s - self.start_s,
+            "samples": len(self.lines),
             "process_noise": {"time_s": noise.time_s},
-            "sensors": [{"sensor": c.name, "place": c.place, "given": c in self.sensors,
-                         "dropped": states[c.name].dropped if c.name in states else ""}
-                        for c in (*self.sensors, *self.withheld)],
-            "places": [{"place": n, "end_C": T, "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
-                        "max_C": self.hottest[n][0], "max_at_s": self.hottest[n][1]}
-                       for n, (T, sd) in temperatures.items()],
+            "sensors": [
+                {
+                    "sensor": c.name,
+                    "place": c.place,
+                    "given": c in self.sensors,
+                    "dropped": states[c.name].dropped if c.name in states else "",
+                }
+                for c in (*self.sensors, *self.withheld)
+            ],
+            "places": [
+                {
+                    "place": n,
+                    "end_C": T,
+                    "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
+                    "max_C": self.hottest[n][0],
+                    "max_at_s": self.hottest[n][1],
+                }
+                for n, (T, sd) in temperatures.items()
+            ],
             "missing_heat": [
-                {"place": b, "end_W": last.heat[i], "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
-                 "allowed_sd_W": noise.sd[i]}
-                for i, b in enumerate(self.design.process.bodies)],
+                {
+                    "place": b,
+                    "end_W": last.heat[i],
+                    "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
+                    "allowed_sd_W": noise.sd[i],
+                }
+                for i, b in enumerate(self.design.process.bodies)
+            ],
             "events": [vars(e) for e in self.one.events],
-            "withheld": [{"sensor": c.name, "n": int(n[0]), "rmse_K": float(np.sqrt(s[0] / n[0])),
-                          "open_loop_rmse_K": float(np.sqrt(s[1] / n[1]))}
-                         for c in self.withheld for s, n in [self.errors[c.name]] if n[0] > 0],
-        }  # fmt: skip
+            "withheld": [
+                {
+                    "sensor": c.name,
+                    "n": int(n[0]),
+                    "rmse_K": float(np.sqrt(s[0] / n[0])),
+                    "open_loop_rmse_K": float(np.sqrt(s[1] / n[1])),
+                }
+                for c in self.withheld
+                for s, n in [self.errors[c.name]]
+                if n[0] > 0
+            ],
+        }
 
 
 def _interval(value: float, sd: float) -> list[float]:
@@ -205,11 +238,14 @@ def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> 
 def answer(document: dict[str, Any]) -> Answer:
     """Where the machine stands, what was dropped, where the model failed."""
     hottest = max(document["places"], key=lambda p: p["max_C"])
-    sentence = (f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, "
-                f"{hottest['max_C']:.1f} degC.")  # fmt: skip
+    sentence = (
+        f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, {hottest['max_C']:.1f} degC."
+    )
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
-    events = [[_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
-              for e in document["events"]]  # fmt: skip
+    events = [
+        [_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+        for e in document["events"]
+    ]
     withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [
         Grid("What was said", ["event", "from (s)", "to (s)"], events),

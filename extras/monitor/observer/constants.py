@@ -69,9 +69,16 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
         law = InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
         network = copy_link(network, link, name, law)
     new = Parameter(
-        f"{LEARNED}{p.name} by {signal}", tuple((n, 1.0) for n in names), 0.0, "1", 0.0, 10.0, p.prior_sd, "amplitude",
+        f"{LEARNED}{p.name} by {signal}",
+        tuple((n, 1.0) for n in names),
         0.0,
-    )  # fmt: skip
+        "1",
+        0.0,
+        10.0,
+        p.prior_sd,
+        "amplitude",
+        0.0,
+    )
     return replace(network, parameters=(*network.parameters, new))
 
 
@@ -114,9 +121,10 @@ class Constants:
     def sd(self) -> Array:
         """(k,) priors."""
         of_sensors = [
-            x for c, near in zip(self.channels, self.beside, strict=True)
+            x
+            for c, near in zip(self.channels, self.beside, strict=True)
             for x in (*(share for _, share in near), self.doubt["gain"], c.sigma_K)
-        ]  # fmt: skip
+        ]
         return np.array([*(p.prior_sd for p in self.parameters), *of_sensors])
 
     def first(self, j: int) -> int:

@@ -39,9 +39,7 @@ class Design:
         """With some sensors, from their first readings (s,)."""
         sensor_models = [self.as_learned(c) for c in sensors]
         bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
-        return observer(
-            self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias
-        )  # fmt: skip
+        return observer(self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias)
 
     def as_learned(self, c: Channel) -> Sensor:
         """A sensor by its name; as declared where no test had it."""
@@ -78,9 +76,14 @@ class Lesson:
 
 
 def taught(
-    network: Network, values: Mapping[str, float], bodies: Sequence[str], table: Array, tests: Sequence[Test],
-    doubt: Doubt, progress: Progress = lambda message: None,
-) -> Lesson:  # fmt: skip
+    network: Network,
+    values: Mapping[str, float],
+    bodies: Sequence[str],
+    table: Array,
+    tests: Sequence[Test],
+    doubt: Doubt,
+    progress: Progress = lambda message: None,
+) -> Lesson:
     """What some tests, those of a calibration, tell of the constants."""
     one = JointFilter(constants_of(network, values, tests, doubt), tuple(bodies), ProcessNoise(table, TIME_S))
     for test in tests:
@@ -91,7 +94,7 @@ def taught(
 
 def design_of(
     network: Network, values: Mapping[str, float], lesson: Lesson, tests: Sequence[Test], doubt: Doubt
-) -> Design:  # fmt: skip
+) -> Design:
     """tests : those of the lesson"""
     constants = constants_of(network, values, tests, doubt)
     process = Process(constants.network, constants.values(lesson.constants), lesson.bodies)

@@ -190,9 +190,15 @@ class Observer:
 
 
 def observer(
-    process: Process, noise: ProcessNoise, table_sd: Array, sensors: Sequence[Channel], readings: Array,
-    boundaries: Mapping[str, float], rise_K: float, bias: Array | None = None,
-) -> Observer:  # fmt: skip
+    process: Process,
+    noise: ProcessNoise,
+    table_sd: Array,
+    sensors: Sequence[Channel],
+    readings: Array,
+    boundaries: Mapping[str, float],
+    rise_K: float,
+    bias: Array | None = None,
+) -> Observer:
     """At its start, from the first readings (s,): places without a sensor begin at the mean of the others.
 
     table_sd (m,) W that the table of doubt allows;  rise_K : usual rise, of which a sensor may miss a share

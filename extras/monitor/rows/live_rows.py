@@ -128,8 +128,11 @@ class LiveTable:
     def _forward_fill(self, name: str, values: Array, first: int) -> Array:
         if not np.isfinite(values[0]):
             if name not in self.last:
-                raise InputError(f"column '{name}' begins with no number", f"{self.where} line {first}",
-                                 "what drives the machine from the first row on")  # fmt: skip
+                raise InputError(
+                    f"column '{name}' begins with no number",
+                    f"{self.where} line {first}",
+                    "what drives the machine from the first row on",
+                )
             values[0] = self.last[name]
         at = np.maximum.accumulate(np.where(np.isfinite(values), np.arange(values.size), 0))
         self.last[name] = float(values[at[-1]])
@@ -143,8 +146,11 @@ class LiveTable:
         time = np.asarray(converted(raw, "time", self.sheet.time_unit), float)
         wrong = np.flatnonzero(~(np.diff(time, prepend=self.time) > 0.0))
         if wrong.size:
-            raise InputError(f"time {raw[wrong[0]]:g} does not come after the one before",
-                             f"{self.where} line {first + wrong[0]}", "times that rise from row to row")  # fmt: skip
+            raise InputError(
+                f"time {raw[wrong[0]]:g} does not come after the one before",
+                f"{self.where} line {first + wrong[0]}",
+                "times that rise from row to row",
+            )
         self.time = float(time[-1])
         return time
 

@@ -90,6 +90,8 @@ def joined(before: Rows | None, now: Rows) -> Rows:
         return {n: np.concatenate([a[n][-1:], v]) for n, v in b.items()}
 
     return Rows(
-        np.concatenate([before.time[-1:], now.time]), both(before.inputs, now.inputs),
-        both(before.boundaries, now.boundaries), both(before.readings, now.readings),
-    )  # fmt: skip
+        np.concatenate([before.time[-1:], now.time]),
+        both(before.inputs, now.inputs),
+        both(before.boundaries, now.boundaries),
+        both(before.readings, now.readings),
+    )

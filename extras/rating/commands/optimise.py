@@ -25,9 +25,19 @@ WORDS = {PEAK: "peak (degC)", SETTLING: "settling (min)", COPPER: "copper (W)", 
 
 
 def optimise(
-    name: str, limits: Sequence[str], torque: float | None, at: Sequence[str], vary: Sequence[str], method: str,
-    effort: Effort, cluster: str | None, cycle: str | None, robust: bool, out: Path | None, target: str | None,
-) -> int:  # fmt: skip
+    name: str,
+    limits: Sequence[str],
+    torque: float | None,
+    at: Sequence[str],
+    vary: Sequence[str],
+    method: str,
+    effort: Effort,
+    cluster: str | None,
+    cycle: str | None,
+    robust: bool,
+    out: Path | None,
+    target: str | None,
+) -> int:
     """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
     if method not in METHODS:
         raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
@@ -89,16 +99,25 @@ def document_of(problem: Problem, designs: Sequence[Design], method: str, effort
         "limits": [{"place": s.name, "degC": s.limit} for s in problem.spots],
         "operating_point": {"inputs": dict(reference.inputs), "boundaries": dict(problem.boundaries)},
         "torque_Nm": None if problem.driven else problem.electrics.torque(problem.inputs.get("current_A", 0.0)),
-        "variables": [{"name": v.name, "low": v.low, "high": v.high, "usual": v.usual}
-                      for v in problem.space.variables],
-        "reference": {"values": usual, **dict(reference.objectives), "feasible": reference.feasible,
-                      "places": dict(reference.places)},
+        "variables": [
+            {"name": v.name, "low": v.low, "high": v.high, "usual": v.usual} for v in problem.space.variables
+        ],
+        "reference": {
+            "values": usual,
+            **dict(reference.objectives),
+            "feasible": reference.feasible,
+            "places": dict(reference.places),
+        },
         "designs": [
-            {"design": f"design-{k + 1:02d}", "values": problem.space.named(d.x), **dict(d.performance.objectives),
-             "places": dict(d.performance.places)}
+            {
+                "design": f"design-{k + 1:02d}",
+                "values": problem.space.named(d.x),
+                **dict(d.performance.objectives),
+                "places": dict(d.performance.places),
+            }
             for k, d in enumerate(designs)
         ],
-    }  # fmt: skip
+    }
 
 
 def _spread(designs: Sequence[Design], count: int) -> list[int]:
@@ -133,8 +152,11 @@ def _write(
 def answer(document: Mapping[str, Any], where: Path) -> Answer:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
     designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
-    ends = ", ".join(f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
-                     f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}" for o in objectives)  # fmt: skip
+    ends = ", ".join(
+        f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
+        f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}"
+        for o in objectives
+    )
     sentence = f"{len(designs)} designs that none beats, of {document['judged']} judged: {ends}."
     names = [v["name"] for v in document["variables"]]
     headers = ["design", *(WORDS[o] for o in objectives), *(short_key(n) for n in names)]

@@ -50,10 +50,20 @@ WARM = 0.75  # load at rest from which an overload begins warm
 
 
 def rate(
-    name: str, limits: Sequence[str], at: Sequence[str], losses: Path | None, voltage: float | None, overload: float,
-    top_rpm: float | None, loads: Sequence[str], cycle: str | None, mapped: bool, start: str,
-    sure: bool | None, target: str | None,
-) -> int:  # fmt: skip
+    name: str,
+    limits: Sequence[str],
+    at: Sequence[str],
+    losses: Path | None,
+    voltage: float | None,
+    overload: float,
+    top_rpm: float | None,
+    loads: Sequence[str],
+    cycle: str | None,
+    mapped: bool,
+    start: str,
+    sure: bool | None,
+    target: str | None,
+) -> int:
     """Ratings of a case, or of a machine with nothing measured."""
     options = read_limits(limits), read_at(at), tuple(loads)
     request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped, read_start(start))
@@ -65,8 +75,11 @@ def rate(
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     with progress() as tell, once() as messages:
         folder = case_or_machine(name, tell)
-        document = {"case": folder.case.name, "revision": folder.case.model.revision,
-                    **document_of(folder, request, sure, tell)}  # fmt: skip
+        document = {
+            "case": folder.case.name,
+            "revision": folder.case.model.revision,
+            **document_of(folder, request, sure, tell),
+        }
     notes(messages)
     give(document, target, lambda: answer(document))
     return 0
@@ -130,15 +143,20 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     load, main = here["S1"].load, op.inputs[op.main]
     return {
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
-        "reference": {"input": op.main, "value": main, "inputs": dict(op.inputs), "boundaries": dict(op.boundaries),
-                      "start": "cold" if request.start is None else request.start},
+        "reference": {
+            "input": op.main,
+            "value": main,
+            "inputs": dict(op.inputs),
+            "boundaries": dict(op.boundaries),
+            "start": "cold" if request.start is None else request.start,
+        },
         "ratings": [row(folder, op, r, before.get(f), posterior) for f, r in here.items()],
         "envelope": [point(folder, op, r, old, posterior) for r in envelope],
         "derating": derated(folder, it, old, load, posterior),
         "overload": _overload(it, request, load),
         "cycle": _cycle(folder, it, request, tell),
         "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if request.mapped else {},
-    }  # fmt: skip
+    }
 
 
 def _before(folder: Folder, request: RatingRequest, tell: Progress) -> Rated | None:
@@ -182,8 +200,10 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
         currents = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
         op = replace(op, inputs={**currents, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *currents))))
     lap, short = Lap(record, op.loads), short_of(record)
-    notes(f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
-          for name, seconds in short.items())  # fmt: skip
+    notes(
+        f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
+        for name, seconds in short.items()
+    )
     share, at = share_for_ever(model, op, it.limits, lap)
     until_s = time_to_limit(model, op, it.limits, lap)
     return {"name": cycle.name, "share": share, "at": at, "until_s": until_s, "short_of_s": short}
@@ -216,8 +236,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
     sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}{_change(first)}."
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
-    rows = [[r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
-            for r in document["ratings"]]  # fmt: skip
+    rows = [
+        [r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
+        for r in document["ratings"]
+    ]
     headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
@@ -225,17 +247,23 @@ def answer(document: Mapping[str, Any]) -> Answer:
     table = Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
     parts: list[Grid | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
-        parts.append(f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
-                     f"from rest at {over['warm_percent']:g} %.")  # fmt: skip
+        parts.append(
+            f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
+            f"from rest at {over['warm_percent']:g} %."
+        )
     if cycle := document["cycle"]:
         parts.append(_of_cycle(cycle))
     parts += [_of_map(document["map"], main)] if document["map"] else []
-    shares = [[d["of"], d["value"], d["unit"], *_percent([d["share"], *(d["share_ci95"] or (None, None)),
-               d["share_before"]])] for d in document["derating"]]  # fmt: skip
+    shares = [
+        [d["of"], d["value"], d["unit"], *_percent([d["share"], *(d["share_ci95"] or (None, None)), d["share_before"]])]
+        for d in document["derating"]
+    ]
     elsewhere = ["over", "value", "unit", "% of it", "95 % from", "to", "before (%)"]
     parts.append(Grid("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
-    envelope = [[e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
-                for e in document["envelope"]]  # fmt: skip
+    envelope = [
+        [e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
+        for e in document["envelope"]
+    ]
     over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
     parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
     return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
@@ -263,6 +291,8 @@ def _of_cycle(cycle: Mapping[str, Any]) -> str:
 
 def _of_map(grid: Mapping[str, Any], main: str) -> Grid:
     """A row per load, the largest first; a column per speed."""
-    rows = [[u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
-            for k, u in reversed(list(enumerate(grid[main])))]  # fmt: skip
+    rows = [
+        [u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
+        for k, u in reversed(list(enumerate(grid[main])))
+    ]
     return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)

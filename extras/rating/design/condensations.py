@@ -59,9 +59,15 @@ class Condensations:
         inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(larger)}
         from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
         return replace(
-            self.problem, network=larger, values={}, inputs=inputs, spots=spots, scaling=None, sure=None,
+            self.problem,
+            network=larger,
+            values={},
+            inputs=inputs,
+            spots=spots,
+            scaling=None,
+            sure=None,
             from_machine=from_machine,
-        )  # fmt: skip
+        )
 
     def ratios(self, design: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""

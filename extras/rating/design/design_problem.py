@@ -82,9 +82,19 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     machine = {} if file is None else _of_machine(larger, file, space, inputs)
     objectives = (PEAK, SETTLING, COPPER) if file is None else OBJECTIVES
     problem = Problem(
-        larger, values, inputs, op.boundaries, space, hot_spots(larger, rows, limits), first, electrics, sure=sure,
-        driven=drive, aimed=objectives, **machine,
-    )  # fmt: skip
+        larger,
+        values,
+        inputs,
+        op.boundaries,
+        space,
+        hot_spots(larger, rows, limits),
+        first,
+        electrics,
+        sure=sure,
+        driven=drive,
+        aimed=objectives,
+        **machine,
+    )
     _refuse_hot_at_no_load(problem, op.loads)
     if file is not None and any(v.conducts for v in space.variables):
         problem = replace(problem, corrections=Condensations(problem, progress).learn())
@@ -143,9 +153,12 @@ def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -
 
 
 def _variables(
-    network: Network, inputs: Mapping[str, float], file: MachineFile | None, vary: Mapping[str, Any],
+    network: Network,
+    inputs: Mapping[str, float],
+    file: MachineFile | None,
+    vary: Mapping[str, Any],
     drive: Driven | None,
-) -> list[Variable]:  # fmt: skip
+) -> list[Variable]:
     if not vary:
         usual = file.usual() if file is not None else [_input(n, inputs, None) for n in flows(network, inputs)]
         usual += [] if drive is None else [_gain(key, drive, None) for key in GAINS]
@@ -216,5 +229,6 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
             raise InputError(
                 f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
                 f"({performance.places[s.name]:.1f} degC)",
-                "--limit", "a higher limit, cooler surroundings or a lower speed",
-            )  # fmt: skip
+                "--limit",
+                "a higher limit, cooler surroundings or a lower speed",
+            )

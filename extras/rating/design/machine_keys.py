@@ -22,12 +22,19 @@ FLOWS = {"cooling.flow_L_per_min": FLOW, "fans.flow_m3_h": FAN}  # key -> the in
 # Key -> how far below and above its value a design goes where nothing else is said: halves and doubles of what moves
 # by itself, less of what has to be cast or milled.
 USUAL = {
-    "cooling.flow_L_per_min": (0.5, 2.0), "fans.flow_m3_h": (0.5, 2.0), "geometry.jacket.channels": (0.5, 1.5),
-    "geometry.jacket.turns": (0.5, 2.0), "geometry.jacket.height_mm": (0.6, 1.6), "geometry.jacket.rib_mm": (0.6, 1.6),
-    "geometry.housing.turns": (0.5, 2.0), "geometry.housing.channel_mm": (0.6, 1.6),
-    "geometry.housing.rib_mm": (0.6, 1.6), "geometry.housing.fins": (0.6, 1.5),
-    "geometry.housing.fin_height_mm": (0.5, 2.0), "geometry.housing.fin_thickness_mm": (0.5, 1.5),
-}  # fmt: skip
+    "cooling.flow_L_per_min": (0.5, 2.0),
+    "fans.flow_m3_h": (0.5, 2.0),
+    "geometry.jacket.channels": (0.5, 1.5),
+    "geometry.jacket.turns": (0.5, 2.0),
+    "geometry.jacket.height_mm": (0.6, 1.6),
+    "geometry.jacket.rib_mm": (0.6, 1.6),
+    "geometry.housing.turns": (0.5, 2.0),
+    "geometry.housing.channel_mm": (0.6, 1.6),
+    "geometry.housing.rib_mm": (0.6, 1.6),
+    "geometry.housing.fins": (0.6, 1.5),
+    "geometry.housing.fin_height_mm": (0.5, 2.0),
+    "geometry.housing.fin_thickness_mm": (0.5, 1.5),
+}
 
 
 @dataclass(frozen=True)

@@ -46,9 +46,14 @@ class Driven:
         gains = {GAINS[key]: design[key] for key in GAINS if key in design}
         R = np.full(self.time.size, self.warm * self.machine.R)
         course = drive_cycle(
-            self.machine, self.vehicle, replace(self.controller, **gains), self.time, self.target_mps, self.slope,
+            self.machine,
+            self.vehicle,
+            replace(self.controller, **gains),
+            self.time,
+            self.target_mps,
+            self.slope,
             resistance=R,
-        )  # fmt: skip
+        )
         step = np.diff(self.time, prepend=self.time[0]) / (self.time[-1] - self.time[0])
         mean = {name: float(step @ u) for name, u in course.inputs().items()}
         mean["current_A"] = float(step @ course.current_A**2) ** 0.5

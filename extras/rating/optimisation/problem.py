@@ -109,9 +109,11 @@ class Problem:
         hottest = max(list(places.values())[: self.peak])
         ambient = self.boundaries.get("ambient", 20.0)
         objectives = {
-            PEAK: hottest, SETTLING: slowest * self.corrections.ratio(SETTLING, share), COPPER: copper,
+            PEAK: hottest,
+            SETTLING: slowest * self.corrections.ratio(SETTLING, share),
+            COPPER: copper,
             AUXILIARY: 0.0 if machine is None else auxiliary_power(machine, inputs, ambient),
-        }  # fmt: skip
+        }
         excess = {f"{s.name} <= {s.limit:g} degC": places[s.name] / s.limit - 1.0 for s in self.spots}
         limits = self.electrics.excess(inputs, copper) if self.driven is None else lag
         return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)

@@ -91,11 +91,13 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     """K - dq/dT (n, n) W/K at temperatures z."""
     n, every = len(network.states), assembly(network)
     m, at = multipliers(network, values), {name: np.array([float(u)]) for name, u in inputs.items()}
-    strength = np.array([
-        m.get(p.name, 1.0)
-        * (coefficient(p.law, at, _T(p.hot, z), _T(p.cold, z)) if p.touches else float(np.mean(p.law.factor(at))))
-        for p in every.patterns
-    ])  # fmt: skip
+    strength = np.array(
+        [
+            m.get(p.name, 1.0)
+            * (coefficient(p.law, at, _T(p.hot, z), _T(p.cold, z)) if p.touches else float(np.mean(p.law.factor(at))))
+            for p in every.patterns
+        ]
+    )
     G = every.matrix(strength)[:, :n]
     for s, c in zip(network.sources, strength[len(network.links) :], strict=True):
         if slope_1_K := loss_slope(s.law.temperature, _T(s.probe, z)):

@@ -60,9 +60,12 @@ METHODS: dict[str, Method] = {"nsga2": nsga2, "unsga3": unsga3}
 
 
 def pareto_set(
-    problem: Problem, method: Method = nsga2, effort: Effort = Effort(), executor: Executor | None = None,
+    problem: Problem,
+    method: Method = nsga2,
+    effort: Effort = Effort(),
+    executor: Executor | None = None,
     progress: Progress = lambda message: None,
-) -> list[Design]:  # fmt: skip
+) -> list[Design]:
     """Designs that meet every limit and that no other beats in all objectives, by rising peak temperature.
 
     executor : where designs are judged, such as a Dask cluster's; None: here
@@ -95,9 +98,12 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
     class Judged(Posed):
         def __init__(self) -> None:
             super().__init__(
-                n_var=len(space.variables), n_obj=len(problem.aimed), n_ieq_constr=len(limits), xl=space.low,
+                n_var=len(space.variables),
+                n_obj=len(problem.aimed),
+                n_ieq_constr=len(limits),
+                xl=space.low,
                 xu=space.high,
-            )  # fmt: skip
+            )
 
         def _evaluate(self, X: Array, out: dict[str, Array], *args: Any, **others: Any) -> None:
             designs = judged(problem, X, executor)
@@ -140,6 +146,7 @@ def infeasible(designs: Sequence[Design]) -> InputError:
     excess = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
     worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(excess.items(), key=lambda p: -p[1]))
     return InputError(
-        f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}", "--limit",
+        f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}",
+        "--limit",
         "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)",
-    )  # fmt: skip
+    )

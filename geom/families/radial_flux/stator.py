@@ -57,8 +57,12 @@ def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:
     """The slot along +x between two radii (m), narrower by the lining (m) on either side."""
     a, b = at.half_angle(inner, lining), at.half_angle(outer, lining)
     far = shapes.bulge_of(2 * b)
-    return (shapes.polar(inner, -a), shapes.polar(outer, -b, far), shapes.polar(outer, b),
-            shapes.polar(inner, a, -shapes.bulge_of(2 * a)))  # fmt: skip
+    return (
+        shapes.polar(inner, -a),
+        shapes.polar(outer, -b, far),
+        shapes.polar(outer, b),
+        shapes.polar(inner, a, -shapes.bulge_of(2 * a)),
+    )
 
 
 def _bore(g: Geometry, at: Layout, angles: list[float]) -> Loop:

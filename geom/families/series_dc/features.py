@@ -13,9 +13,13 @@ def features(g: Geometry) -> Features:
     """Field coils around the poles, ways for air beside the gap, and where the losses are."""
     z = Axial(g)
     return Features(
-        air_gap=g.stator.air_gap, coils={"winding.field": _coils(g, z)}, shoes={"poles": g.stator.shoe},
-        fan_space="air.fan" if g.fan.depth else "", ducts=_ducts(g), series=_series(g),
-    )  # fmt: skip
+        air_gap=g.stator.air_gap,
+        coils={"winding.field": _coils(g, z)},
+        shoes={"poles": g.stator.shoe},
+        fan_space="air.fan" if g.fan.depth else "",
+        ducts=_ducts(g),
+        series=_series(g),
+    )
 
 
 def _coils(g: Geometry, z: Axial) -> PoleCoils:
@@ -44,6 +48,10 @@ def _between_poles(g: Geometry) -> Duct:
 
 def _series(g: Geometry) -> SeriesWound:
     return SeriesWound(
-        ("winding.armature", "winding.armature.left", "winding.armature.right"), "winding.field", "rotor.core", "poles",
-        ("commutator", "brushes") if g.brushes.arms else ("commutator",), ("bearing.left", "bearing.right"),
-    )  # fmt: skip
+        ("winding.armature", "winding.armature.left", "winding.armature.right"),
+        "winding.field",
+        "rotor.core",
+        "poles",
+        ("commutator", "brushes") if g.brushes.arms else ("commutator",),
+        ("bearing.left", "bearing.right"),
+    )

@@ -182,6 +182,5 @@ beside = scale("the inner side of a foot to the edge of the housing", lambda g: 
 stance = scale("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
 footing = scale("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)
 above = scale(
-    "the armature's radius over the commutator's",
-    lambda g: (g.rotor.outer_diameter - g.commutator.diameter) / 2,
+    "the armature's radius over the commutator's", lambda g: (g.rotor.outer_diameter - g.commutator.diameter) / 2
 )

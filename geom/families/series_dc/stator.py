@@ -50,14 +50,20 @@ def _pole(g: Geometry, r: Radii) -> Profile:
     leaves = math.atan2(r.body, r.shoe_back) + math.acos(min(tips / back, 1.0))  # where a tangent leaves the circle
     around = shapes.bulge_of(tip - leaves)
     rounded = leaves < tip and tips < back
-    return Profile((
-        shapes.polar(r.bore, -tip),
-        *((shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves)) if rounded else (shapes.polar(tips, -tip),)),
-        (r.shoe_back, -r.body, 0.0),
-        (root, -r.body, shapes.bulge_of(2 * math.asin(r.body / r.yoke0))),
-        (root, r.body, 0.0),
-        (r.shoe_back, r.body, 0.0),
-        *((shapes.polar(tips, leaves, around),) if rounded else ()),
-        shapes.polar(tips, tip),
-        shapes.polar(r.bore, tip, -shapes.bulge_of(2 * tip)),
-    ))  # fmt: skip
+    return Profile(
+        (
+            shapes.polar(r.bore, -tip),
+            *(
+                (shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves))
+                if rounded
+                else (shapes.polar(tips, -tip),)
+            ),
+            (r.shoe_back, -r.body, 0.0),
+            (root, -r.body, shapes.bulge_of(2 * math.asin(r.body / r.yoke0))),
+            (root, r.body, 0.0),
+            (r.shoe_back, r.body, 0.0),
+            *((shapes.polar(tips, leaves, around),) if rounded else ()),
+            shapes.polar(tips, tip),
+            shapes.polar(r.bore, tip, -shapes.bulge_of(2 * tip)),
+        )
+    )

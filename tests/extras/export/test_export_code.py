@@ -137,6 +137,12 @@ def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
 def test_the_header_says_what_a_user_must_know(tmp_path):
     assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], 2, str(tmp_path / "said.json")) == 0
     text = (tmp_path / "thermal_network_sizes.h").read_text()
-    for said in ("revision 0", "speed_rpm (rpm), 0 to", "coolant (degC)", "winding, limit 155 degC", "State: 88 bytes",
-                 "sensor rotor, against measurements 6.16 K rms (hold-out tests)"):  # fmt: skip
+    for said in (
+        "revision 0",
+        "speed_rpm (rpm), 0 to",
+        "coolant (degC)",
+        "winding, limit 155 degC",
+        "State: 88 bytes",
+        "sensor rotor, against measurements 6.16 K rms (hold-out tests)",
+    ):
         assert said in text

@@ -42,30 +42,51 @@ OVER = FilmOver("flow_l_min", film, 12.0)
 COUNTER = Exchanger(300.0, Flow(60.0, "flow_l_min"), Flow(0.2, "speed_rpm"))
 STREAM = streamed("flow_l_min", 4.0, lambda v, fluid: duct_film(v, 0.01, 1.0, fluid), water, 40.0, True, 0.1)
 EXACT = [
-    Fixed(3.0), InputPower(2.0, (("speed_rpm", 1000.0, 0.8), ("flow_l_min", 4.0, 0.5))), COPPER, MAP,
-    CopperLoss(0.01, ("id_A",)), PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),
+    Fixed(3.0),
+    InputPower(2.0, (("speed_rpm", 1000.0, 0.8), ("flow_l_min", 4.0, 0.5))),
+    COPPER,
+    MAP,
+    CopperLoss(0.01, ("id_A",)),
+    PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),
     IronLoss(3.0, 2.0, "speed_rpm", 1000.0, "id_A", 100.0, 1.7, excess=0.3, frequency_exponent=1.2),
-    IronLoss(3.0, 2.0, "speed_rpm", 1000.0), BrushLoss(2.0, "id_A"), BrushLoss(2.0, "id_A", 5.0, "speed_rpm", 900.0),
-    MeasuredLoss(((1.0, ("power_W",)), (-0.1, ("speed_rpm", "iq_A")))), Scaled(COPPER, -1.0), OVER,
-    Stirred(15.0, 0.4, 0.9, 0.01), STREAM, Rate(Flow(60.0, "flow_l_min")),
+    IronLoss(3.0, 2.0, "speed_rpm", 1000.0),
+    BrushLoss(2.0, "id_A"),
+    BrushLoss(2.0, "id_A", 5.0, "speed_rpm", 900.0),
+    MeasuredLoss(((1.0, ("power_W",)), (-0.1, ("speed_rpm", "iq_A")))),
+    Scaled(COPPER, -1.0),
+    OVER,
+    Stirred(15.0, 0.4, 0.9, 0.01),
+    STREAM,
+    Rate(Flow(60.0, "flow_l_min")),
     Share(OVER, (0.0, 5.0, 9.0), (1.0, 7.0, 8.0)),
-    Switched(Fixed(4.0), "on", True), Switched(COPPER, "on", False), Direction(InputPower(2.0, ()), "signed", -1),
+    Switched(Fixed(4.0), "on", True),
+    Switched(COPPER, "on", False),
+    Direction(InputPower(2.0, ()), "signed", -1),
     OneWay(InputPower(2.0, (("flow_l_min", 4.0, 0.8),)), "flow_l_min", "here", "that"),
-    WithTemperature(Fixed(2.0), exponent_derivative(Power(0.25))), WithTemperature(COPPER),
-]  # fmt: skip
+    WithTemperature(Fixed(2.0), exponent_derivative(Power(0.25))),
+    WithTemperature(COPPER),
+]
 TABLES = [
-    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1), PulseLoss("voltage_V", 600.0, 1e-3, 8e3, 0.1),
+    RippleLoss(300.0, "voltage_V", 1e-3, 8e3, 0.1),
+    PulseLoss("voltage_V", 600.0, 1e-3, 8e3, 0.1),
     InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0),
-    COUNTER, AtUsualTemperature(STREAM),
+    COUNTER,
+    AtUsualTemperature(STREAM),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
     Shaped(Fixed(2.0), Ripple("chopper_Hz"), CONSTANT, ("chopper_Hz",)),
-]  # fmt: skip
+]
 RANGES = {
-    "speed_rpm": (0.0, 3000.0), "flow_l_min": (0.0, 12.0), "id_A": (-200.0, 0.0), "iq_A": (-50.0, 50.0),
-    "power_W": (0.0, 9e3), "on": (0.0, 1.0), "signed": (-3.0, 3.0), "voltage_V": (-250.0, 250.0),
+    "speed_rpm": (0.0, 3000.0),
+    "flow_l_min": (0.0, 12.0),
+    "id_A": (-200.0, 0.0),
+    "iq_A": (-50.0, 50.0),
+    "power_W": (0.0, 9e3),
+    "on": (0.0, 1.0),
+    "signed": (-3.0, 3.0),
+    "voltage_V": (-250.0, 250.0),
     "chopper_Hz": (600.0, 9e3),
-}  # fmt: skip
+}
 
 
 def drawn(seed=1, n=400):

@@ -61,8 +61,9 @@ def test_fmpy_checks_and_runs_it(three, version, tmp_path):
     )
     starts = {f"start of {n}": float(x) for n, x in zip(model.states, x0, strict=True)}
     names = [o.name for o in model.outputs]
-    seen = fmpy.simulate_fmu(file, stop_time=given.time[-1], output_interval=0.1, input=table, start_values=starts,
-                             output=names)  # fmt: skip
+    seen = fmpy.simulate_fmu(
+        file, stop_time=given.time[-1], output_interval=0.1, input=table, start_values=starts, output=names
+    )
     own = np.column_stack([np.interp(given.time, seen["time"], seen[name]) for name in names])
     assert np.abs(own - y).max() < AGREES_K
 
@@ -76,8 +77,12 @@ class Slave:
         file = unpacked(model, 2, folder)
         said = fmpy.read_model_description(file)
         at = {v.name: v.valueReference for v in said.modelVariables}
-        self.unit = FMU2Slave(guid=said.guid, unzipDirectory=fmpy.extract(file, folder / "x"), instanceName="one",
-                              modelIdentifier=said.coSimulation.modelIdentifier)  # fmt: skip
+        self.unit = FMU2Slave(
+            guid=said.guid,
+            unzipDirectory=fmpy.extract(file, folder / "x"),
+            instanceName="one",
+            modelIdentifier=said.coSimulation.modelIdentifier,
+        )
         self.ins, self.outs = [at[s.name] for s in model.signals], [at[o.name] for o in model.outputs]
         self.unit.instantiate()
         self.unit.setupExperiment()

@@ -29,9 +29,21 @@ def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
     """Less current is cooler and gives less copper loss: of two variables one stays at its bound."""
     case, out = small_case(tmp_path), tmp_path / "designs"
     said = thermoscope(
-        "use", "optimise", case, "--limit", "winding=400", "--vary", "current_A=40:90", *EFFORT, "--out", out,
-        "--at", "ambient=20", "--json", "-",
-    )  # fmt: skip
+        "use",
+        "optimise",
+        case,
+        "--limit",
+        "winding=400",
+        "--vary",
+        "current_A=40:90",
+        *EFFORT,
+        "--out",
+        out,
+        "--at",
+        "ambient=20",
+        "--json",
+        "-",
+    )
     assert said.code == 0, said.err
     best = said.document["designs"][0]
     assert best["values"]["current_A"] < 50.0
@@ -52,18 +64,21 @@ def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
         ((), "no limit is given"),
         (("--limit", "winding=155"), "nothing that a design could change"),
         (("--limit", "winding=10", "--vary", "current_A"), "limit of 'winding', 10 degC, is exceeded without any load"),
-        (("--limit", "winding=30", "--vary", "current_A=80:90", *EFFORT),
-         "no design of 48 meets all limits: the nearest one exceeds 'winding <= 30 degC' by"),
+        (
+            ("--limit", "winding=30", "--vary", "current_A=80:90", *EFFORT),
+            "no design of 48 meets all limits: the nearest one exceeds 'winding <= 30 degC' by",
+        ),
         (("--limit", "winding=155", "--vary", "fins"), "'fins' is nothing that a design could change"),
         (("--limit", "winding=155", "--vary", "current_A=9:2"), "'current_A=9:2' is no range"),
         (("--limit", "winding=155", "--vary", "current_A", "--method", "ga"), "'ga' is no method"),
         (("--limit", "winding=155", "--vary", "current_A", "--torque", "5"), "nothing says what current"),
         pytest.param(
-            ("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"), "no Dask scheduler",
+            ("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"),
+            "no Dask scheduler",
             marks=pytest.mark.heavy,  # ten seconds, in which a scheduler may answer
         ),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_one_message(tmp_path, contents, arguments, message):
     case, out = small_case(tmp_path), tmp_path / "designs"
     before = contents(tmp_path)

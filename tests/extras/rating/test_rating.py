@@ -56,8 +56,17 @@ def test_a_limit_holds_at_the_hottest_point_and_that_of_a_mean_at_the_mean():
     """A coil whose one shape rises by P / k, all of it at its third point: P (1 / G + 1 / k) is the limit's rise."""
     k = 8.0
     net = replace(bare_network("coil", {"coil": C, "coil#1": 0.1 * C}, ("air",)), capacity_group=("coil", "coil"))
-    shape = Link("shape", "conduction", ("coil", "coil"), np.array([1]), np.array([1]), np.ones(1), Fixed(k),
-                 Row(np.array([1]), np.ones(1)), Row(np.array([1]), np.ones(1)))  # fmt: skip
+    shape = Link(
+        "shape",
+        "conduction",
+        ("coil", "coil"),
+        np.array([1]),
+        np.array([1]),
+        np.ones(1),
+        Fixed(k),
+        Row(np.array([1]), np.ones(1)),
+        Row(np.array([1]), np.ones(1)),
+    )
     loss = node_source(net, "loss:copper", "copper", {"coil": 1.0}, InputPower(R, (("current_A", 1.0, 2.0),)))
     loss = replace(loss, index=np.array([0, 1]), weights=np.ones(2))
     net = net.extended([node_link(net, "film", "film", "coil", "air", Fixed(G)), shape], [loss])
@@ -143,9 +152,13 @@ def test_a_model_that_no_heat_leaves_is_refused_as_such():
 
 @pytest.mark.parametrize(
     ("given", "message"),
-    [({"current_A": 5.0}, "nothing says how warm 'air' is"), ({"air": 20.0}, "nothing says what 'current_A' is"),
-     ({"current_A": 0.0, "air": 20.0}, "the load is zero"), ({"amps": 1.0}, "'amps' is no input or boundary")],
-)  # fmt: skip
+    [
+        ({"current_A": 5.0}, "nothing says how warm 'air' is"),
+        ({"air": 20.0}, "nothing says what 'current_A' is"),
+        ({"current_A": 0.0, "air": 20.0}, "the load is zero"),
+        ({"amps": 1.0}, "'amps' is no input or boundary"),
+    ],
+)
 def test_what_is_not_known_is_asked_for(given, message):
     with pytest.raises(InputError, match=message):
         operation(body(), {}, given)
@@ -156,8 +169,13 @@ def grid(torques=(0.0, 50.0, 100.0), speeds=(0.0, 2000.0), T=(20.0,)):
     rows = np.array([(m, n, t) for t in T for n in speeds for m in torques])
     m, n, t = rows.T
     copper = 0.02 * m**2 * (1.0 + 0.004 * (t - 20.0))
-    return {"torque_Nm": m, "speed_rpm": n, "temperature_degC": t, "copper_W": copper,
-            "input_W": m * n * np.pi / 30.0 + copper}  # fmt: skip
+    return {
+        "torque_Nm": m,
+        "speed_rpm": n,
+        "temperature_degC": t,
+        "copper_W": copper,
+        "input_W": m * n * np.pi / 30.0 + copper,
+    }
 
 
 def test_a_map_takes_the_place_of_the_losses():

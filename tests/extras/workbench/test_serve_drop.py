@@ -26,8 +26,15 @@ def recording(folder: Path, name: str = "bench.csv") -> Path:
     """As a recorder writes it: semicolons, decimal commas, a channel without a name that says anything."""
     rows = []
     for k in range(120):
-        now = [f"{10 * k},0", "80,0", "12,0", "20,5", f"{20 + 0.2 * k:.1f}".replace(".", ","),
-               f"{20 + 0.1 * k:.1f}".replace(".", ","), "ok"]  # fmt: skip
+        now = [
+            f"{10 * k},0",
+            "80,0",
+            "12,0",
+            "20,5",
+            f"{20 + 0.2 * k:.1f}".replace(".", ","),
+            f"{20 + 0.1 * k:.1f}".replace(".", ","),
+            "ok",
+        ]
         rows.append(";".join(now))
     file = folder / name
     file.write_text("\n".join([HEAD, *rows]), encoding="utf-8")
@@ -59,11 +66,17 @@ def test_a_channel_goes_where_it_is_dragged(dropped):
     assert goes(moved.moved("0:Kanal 7", "ambient"))["Raum"] == "", "one column gives a boundary"
 
 
-@pytest.mark.parametrize(("key", "to", "words"), [
-    ("0:I [A]", "winding", "is a current"), ("0:T Wicklung", "current_A", "is a temperature"),
-    ("0:Bemerkung", "flange", "words, not numbers"), ("0:I [A]", "nowhere", "no 'nowhere'"), 
-    ("7:I [A]", "winding", "no column"),    ("x", "winding", "no column"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("key", "to", "words"),
+    [
+        ("0:I [A]", "winding", "is a current"),
+        ("0:T Wicklung", "current_A", "is a temperature"),
+        ("0:Bemerkung", "flange", "words, not numbers"),
+        ("0:I [A]", "nowhere", "no 'nowhere'"),
+        ("7:I [A]", "winding", "no column"),
+        ("x", "winding", "no column"),
+    ],
+)
 def test_a_channel_cannot_go_where_it_makes_no_sense(dropped, key, to, words):
     with pytest.raises(InputError, match=words):
         dropped.moved(key, to)
@@ -99,9 +112,10 @@ def upload(case, files, token=TOKEN, **options):
 
     async def main():
         folder = load_case(case)
-        async with running(folder, AccessControl("127.0.0.1", TOKEN), **options) as address, ClientSession(
-            cookie_jar=CookieJar(unsafe=True)
-        ) as session:  # fmt: skip
+        async with (
+            running(folder, AccessControl("127.0.0.1", TOKEN), **options) as address,
+            ClientSession(cookie_jar=CookieJar(unsafe=True)) as session,
+        ):
             await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
             first = await session.get(address, allow_redirects=False)
             tab = first.headers["Location"].removesuffix("index.html").lstrip("/")
@@ -149,17 +163,20 @@ def test_a_zero_byte_in_a_name_stores_nothing(case, monkeypatch):
 
     async def main():
         folder = load_case(case)
-        async with running(folder, AccessControl("127.0.0.1", TOKEN)) as address, ClientSession(
-            cookie_jar=CookieJar(unsafe=True)
-        ) as session:  # fmt: skip
+        async with (
+            running(folder, AccessControl("127.0.0.1", TOKEN)) as address,
+            ClientSession(cookie_jar=CookieJar(unsafe=True)) as session,
+        ):
             await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
             first = await session.get(address, allow_redirects=False)
             tab = first.headers["Location"].removesuffix("index.html")
             cookies = "; ".join(f"{c.key}={c.value}" for c in session.cookie_jar)
             body = b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n'
-            head = (f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
-                    f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
-                    "Connection: close\r\n\r\n")  # fmt: skip
+            head = (
+                f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
+                f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
+                "Connection: close\r\n\r\n"
+            )
             reader, writer = await asyncio.open_connection("127.0.0.1", int(address.rpartition(":")[2]))
             writer.write(head.encode() + body)
             answer = await reader.read()

@@ -73,10 +73,25 @@ def test_rotor_surface_is_the_whole_cylinder(motor, motor_mesh):
 
 def test_names_of_the_motor(motor_mesh):
     assert set(motor_mesh.parts) == {
-        "shaft", "rotor.core", "slot.liner", "winding.armature", "winding.armature.left", "winding.armature.right",
-        "commutator", "yoke", "poles", "winding.field", "field.insulation", "housing", "flange.left", "flange.right",
-        "bearing.left", "bearing.right", "feet", "base",
-    }  # fmt: skip
+        "shaft",
+        "rotor.core",
+        "slot.liner",
+        "winding.armature",
+        "winding.armature.left",
+        "winding.armature.right",
+        "commutator",
+        "yoke",
+        "poles",
+        "winding.field",
+        "field.insulation",
+        "housing",
+        "flange.left",
+        "flange.right",
+        "bearing.left",
+        "bearing.right",
+        "feet",
+        "base",
+    }
     for name in ("flange.right.outer", "flange.right.air.right", "housing.fins", "poles.gap", "base.outer"):
         assert name in motor_mesh.patches
     for name, contact in motor_mesh.contacts.items():

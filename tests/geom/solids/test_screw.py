@@ -72,8 +72,9 @@ def test_a_port_opens_the_channel():
     assert len(opened.Shells()) == 1
     assert surface(opened, 0.05).is_watertight
     half, r2 = bore / 2, 1.2 * r1
-    lost, _ = quad(lambda y: 2 * math.sqrt(half**2 - y**2) * (math.sqrt(r2**2 - y**2) - math.sqrt(r1**2 - y**2)),
-                   -half, half)  # fmt: skip
+    lost, _ = quad(
+        lambda y: 2 * math.sqrt(half**2 - y**2) * (math.sqrt(r2**2 - y**2) - math.sqrt(r1**2 - y**2)), -half, half
+    )
     assert (
         lost > 1e-4 * closed.Volume() * 1e-9
     )  # a hundred times what is let pass: of bored faces OpenCASCADE integrates

@@ -51,16 +51,24 @@ def test_a_closed_void_is_a_second_shell_of_the_solid_around_it():
     """Two capsules, one inside the other's void."""
 
     def capsule(r, z0, z1, wall):
-        return [(shapes.disc(r), z0, z0 + wall), (shapes.ring(r - wall, r), z0 + wall, z1 - wall),
-                (shapes.disc(r), z1 - wall, z1)]  # fmt: skip
+        return [
+            (shapes.disc(r), z0, z0 + wall),
+            (shapes.ring(r - wall, r), z0 + wall, z1 - wall),
+            (shapes.disc(r), z1 - wall, z1),
+        ]
 
     large, small = sorted(checked(capsule(R, 0.0, 0.1, 0.002) + capsule(R / 2, 0.02, 0.08, 0.001)), key=cq.Solid.Volume)
     assert [len(solid.Shells()) for solid in (large, small)] == [2, 2]
 
 
 def test_prisms_that_touch_in_a_point_or_along_an_edge_stay_apart():
-    solids = checked([(shapes.rectangle(0, R, 0, R), 0.0, 0.01), (shapes.rectangle(R, 2 * R, R, 2 * R), 0.0, 0.01),
-                      (shapes.rectangle(-R, 0, 0, R), 0.01, 0.02)])  # fmt: skip
+    solids = checked(
+        [
+            (shapes.rectangle(0, R, 0, R), 0.0, 0.01),
+            (shapes.rectangle(R, 2 * R, R, 2 * R), 0.0, 0.01),
+            (shapes.rectangle(-R, 0, 0, R), 0.01, 0.02),
+        ]
+    )
     assert len(solids) == 3
 
 

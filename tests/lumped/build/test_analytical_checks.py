@@ -60,9 +60,12 @@ def test_two_thin_walls_in_series(hand, check):
 def test_tables_are_saved(tmp_path, check, hand):
     parts, links = ([vars(one) for one in own] for own in (check.parts, check.links))
     document = {
-        "operating_point": {}, "crosscheck": parts, "links": links,
-        "hand": [row.document() for row in hand.values()], "energy_balance": check.energy_balance,
-    }  # fmt: skip
+        "operating_point": {},
+        "crosscheck": parts,
+        "links": links,
+        "hand": [row.document() for row in hand.values()],
+        "energy_balance": check.energy_balance,
+    }
     save(document, tmp_path)
     rows = list(csv.DictReader((tmp_path / "crosscheck-hand.csv").open()))
     assert len(rows) == len(hand)

@@ -91,8 +91,10 @@ def test_a_declared_network_has_neither_mesh_nor_condensation(command, tmp_path,
     run = {"compare": lambda: compare(str(case), "-"), "simulate": lambda: simulate(str(case), None, None, "-")}
     run[command]()
     document = json.loads(capsys.readouterr().out)
-    runs = {"compare": lambda: document["error_budget"].values(),
-            "simulate": lambda: [r["error_budget"] for r in document["runs"]]}  # fmt: skip
+    runs = {
+        "compare": lambda: document["error_budget"].values(),
+        "simulate": lambda: [r["error_budget"] for r in document["runs"]],
+    }
     rows = [place for places in runs[command]() for place in places]
     assert rows
     for place in rows:

@@ -23,10 +23,12 @@ K = {"core": laminated(28.0, 3.0), "coil": wound(250.0, 1.2), "yoke": isotropic(
 def mesh():
     r = np.concatenate([np.linspace(0.02, 0.04, 3), np.linspace(0.04, 0.05, 2)[1:], np.linspace(0.05, 0.07, 3)[1:]])
     return ring(
-        r, 12, np.linspace(0.0, 0.12, 7),
+        r,
+        12,
+        np.linspace(0.0, 0.12, 7),
         lambda c: np.select([c[:, 0] < 0.04, c[:, 0] < 0.05], ["core", "coil"], "yoke").astype(object),
         lambda c: np.select([c[:, 0] > 0.067, c[:, 0] < 0.021], ["ambient", "bore"], "air").astype(object),
-    )  # fmt: skip
+    )
 
 
 def conducting(mesh, **changed):
@@ -45,8 +47,17 @@ def films(field):
 def reduction(field, cache=None, contacts=None, changed=None, **recipe):
     recipe = Recipe(**{"tolerance": 0.1, "shifts": (), "random_points": 0, **recipe})
     h = {**films(field), **(changed or {})}
-    return reduce(field, h, contacts or CONTACTS, {"bore": 50.0, "air": 30.0}, ("ambient",), recipe, "ring", cache,
-                  {"coil.left": LEFT})  # fmt: skip
+    return reduce(
+        field,
+        h,
+        contacts or CONTACTS,
+        {"bore": 50.0, "air": 30.0},
+        ("ambient",),
+        recipe,
+        "ring",
+        cache,
+        {"coil.left": LEFT},
+    )
 
 
 def cases(found):

@@ -188,10 +188,16 @@ def test_pieces_of_one_part_are_told_apart():
         return np.where(coil, "coil", "core").astype(object)
 
     field = assemble(
-        ring(np.linspace(0.02, 0.06, 9), 16, np.linspace(0.0, 0.12, 13), part,
-             lambda c: np.where(c[:, 0] > 0.055, "ambient", "").astype(object)),
-        {"core": isotropic(30.0), "coil": isotropic(2.0)}, {"core": 3.6e6, "coil": 2.5e6},
-    )  # fmt: skip
+        ring(
+            np.linspace(0.02, 0.06, 9),
+            16,
+            np.linspace(0.0, 0.12, 13),
+            part,
+            lambda c: np.where(c[:, 0] > 0.055, "ambient", "").astype(object),
+        ),
+        {"core": isotropic(30.0), "coil": isotropic(2.0)},
+        {"core": 3.6e6, "coil": 2.5e6},
+    )
     films, contacts = {"core.outer": 30.0}, {"coil|core": 300.0}
     left = Zone("coil", lambda c: (c[:, 2] < 0.06).astype(float))
     recipe = Recipe(tolerance=0.003, random_points=0)

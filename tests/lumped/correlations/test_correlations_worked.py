@@ -32,100 +32,149 @@ CYLINDER_NU = (0.60 + 0.387 * (GR1 * 1e-3 * 2 / 3) ** (1 / 6) / (1 + (0.559 * 1.
 RA_S = GR1 * 0.012**3 * 2 / 3
 RA_E = GR1 * 0.01**4 / 0.2 * 2 / 3
 TA_S = 300 * math.sqrt(0.1015 * 0.003**3) / 2e-5
-F_ANNULUS = 0.75 * (5 / 6) ** -0.17 * (1.8 * math.log10(
-    4e4 * ((1 + 25 / 36) * math.log(5 / 6) + 1 - 25 / 36) / (math.log(5 / 6) / 36)
-) - 1.5) ** -2  # fmt: skip
+F_ANNULUS = (
+    0.75
+    * (5 / 6) ** -0.17
+    * (1.8 * math.log10(4e4 * ((1 + 25 / 36) * math.log(5 / 6) + 1 - 25 / 36) / (math.log(5 / 6) / 36)) - 1.5) ** -2
+)
 F_TUBE = (0.79 * math.log(2e4) - 1.64) ** -2
 
 # name -> (what the function gives, worked value, relative tolerance, where the value comes from)
 WORKED = {
     "churchill_chu_cylinder": (
-        lambda: natural.churchill_chu_cylinder(0.1, 60.0, 20.0, still), CYLINDER_NU * 0.3, 1e-6, "by hand",
+        lambda: natural.churchill_chu_cylinder(0.1, 60.0, 20.0, still),
+        CYLINDER_NU * 0.3,
+        1e-6,
+        "by hand",
     ),
     "churchill_chu_plate": (
-        lambda: natural.churchill_chu_plate(0.71, 232.0, 23.0), 7.0, 0.02, "Incropera 2007, example 9.2",
+        lambda: natural.churchill_chu_plate(0.71, 232.0, 23.0),
+        7.0,
+        0.02,
+        "Incropera 2007, example 9.2",
     ),
     "popiel_cylinder": (
-        lambda: natural.popiel_cylinder(0.3, 0.02, 60.0, 20.0, still), PLATE_NU * (1 + POPIEL) * 0.1, 1e-6, "by hand",
+        lambda: natural.popiel_cylinder(0.3, 0.02, 60.0, 20.0, still),
+        PLATE_NU * (1 + POPIEL) * 0.1,
+        1e-6,
+        "by hand",
     ),
     "mcadams_plate": (
-        lambda: natural.mcadams_plate(0.1, 60.0, 20.0, True, still), 0.54 * (GR1 * 1e-3 * 2 / 3) ** 0.25 * 0.3, 1e-9,
+        lambda: natural.mcadams_plate(0.1, 60.0, 20.0, True, still),
+        0.54 * (GR1 * 1e-3 * 2 / 3) ** 0.25 * 0.3,
+        1e-9,
         "by hand",
     ),
     "van_de_pol_tierney": (
-        lambda: fins.van_de_pol_tierney(0.02, 0.012, 0.25, 70.0, 30.0), 4.4, 0.05, "published check, spacing 12 mm",
+        lambda: fins.van_de_pol_tierney(0.02, 0.012, 0.25, 70.0, 30.0),
+        4.4,
+        0.05,
+        "published check, spacing 12 mm",
     ),
     "jones_smith": (
         lambda: fins.jones_smith(0.012, 60.0, 20.0, still),
-        6.7e-4 * RA_S * (1 - math.exp(-((7460 / RA_S) ** 0.44))) ** 1.7 * 2.5, 1e-9, "by hand",
+        6.7e-4 * RA_S * (1 - math.exp(-((7460 / RA_S) ** 0.44))) ** 1.7 * 2.5,
+        1e-9,
+        "by hand",
     ),
     "elenbaas": (
-        lambda: fins.elenbaas(0.01, 0.2, 60.0, 20.0, still), RA_E / 24 * (1 - math.exp(-35 / RA_E)) ** 0.75 * 3.0, 1e-9,
+        lambda: fins.elenbaas(0.01, 0.2, 60.0, 20.0, still),
+        RA_E / 24 * (1 - math.exp(-35 / RA_E)) ** 0.75 * 3.0,
+        1e-9,
         "by hand",
     ),
     "heiles": (lambda: fins.heiles(10.0, 0.02, 0.25, 1.0), 45.0, 0.04, "published check, 10 m/s"),
     "heiles_decaying": (
-        lambda: fins.heiles_decaying(10.0, 0.02, 0.25, partial(fins.straight_decay, 1.0), 1.7), 1.7 * 45.0, 0.04,
+        lambda: fins.heiles_decaying(10.0, 0.02, 0.25, partial(fins.straight_decay, 1.0), 1.7),
+        1.7 * 45.0,
+        0.04,
         "published check, 10 m/s",
     ),
     "flat_plate": (lambda: forced.flat_plate(10.0, 0.5, INCROPERA_7_1), 4.18, 3e-3, "Incropera 2007, example 7.1"),
     "churchill_bernstein": (
-        lambda: forced.churchill_bernstein(10.0, 0.0127, air(77.0)), 96.0, 0.03, "Incropera 2007, example 7.4",
+        lambda: forced.churchill_bernstein(10.0, 0.0127, air(77.0)),
+        96.0,
+        0.03,
+        "Incropera 2007, example 7.4",
     ),
     "duct_film": (
         lambda: ducts.duct_film(20.0, 0.02, 1.0, ROUND),
-        (F_TUBE / 8) * 19000 * (2 / 3) / (1 + 12.7 * (F_TUBE / 8) ** 0.5 * ((2 / 3) ** (2 / 3) - 1)) * 1.5, 1e-9,
+        (F_TUBE / 8) * 19000 * (2 / 3) / (1 + 12.7 * (F_TUBE / 8) ** 0.5 * ((2 / 3) ** (2 / 3) - 1)) * 1.5,
+        1e-9,
         "by hand, Re 2e4",
     ),
     "gnielinski_annulus": (
         lambda: ducts.gnielinski_annulus(40.0, 0.1, 0.12, 0.5, ROUND),
-        F_ANNULUS / 8 * 4e4 * (2 / 3)
+        F_ANNULUS
+        / 8
+        * 4e4
+        * (2 / 3)
         / (1.07 + 0.0225 - 0.63 / (1 + 20 / 3) + 12.7 * (F_ANNULUS / 8) ** 0.5 * ((2 / 3) ** (2 / 3) - 1))
-        * (1 + 0.04 ** (2 / 3)) * 1.5,
-        1e-9, "by hand, Re 4e4",
+        * (1 + 0.04 ** (2 / 3))
+        * 1.5,
+        1e-9,
+        "by hand, Re 4e4",
     ),
     "schmidt_helical": (
         lambda: ducts.schmidt_helical(0.2, 0.01, 0.3, WATERY),
-        (3.66 + 0.08 * (1 + 0.8 / 30**0.9) * 2000 ** (0.5 + 0.2903 / 30**0.194) * (20 / 3) ** (1 / 3)) * 60, 1e-9,
+        (3.66 + 0.08 * (1 + 0.8 / 30**0.9) * 2000 ** (0.5 + 0.2903 / 30**0.194) * (20 / 3) ** (1 / 3)) * 60,
+        1e-9,
         "by hand, Re 2000",
     ),
     "taylor_film": (
         lambda: air_gap.taylor_film(300 * 2e-5 / (1e-4 * 0.1), 0.1, 0.001, ROUND),
-        0.386 * 300**0.5 * (2 / 3) ** 0.27 * 30, 1e-9, "by hand, Ta 300",
+        0.386 * 300**0.5 * (2 / 3) ** 0.27 * 30,
+        1e-9,
+        "by hand, Ta 300",
     ),
     "becker_kaye": (
-        lambda: air_gap.becker_kaye(300 * 2e-5 / math.sqrt(0.1005 * 1e-9), 0.1, 0.001, ROUND), 6.4 * 15, 0.02,
+        lambda: air_gap.becker_kaye(300 * 2e-5 / math.sqrt(0.1005 * 1e-9), 0.1, 0.001, ROUND),
+        6.4 * 15,
+        0.02,
         "published comparison at Ta 300",
     ),
     "romanazzi_howey": (
-        lambda: air_gap.romanazzi_howey(300.0, 0.1, 0.003, ROUND), 0.181 * TA_S**0.414 * 10, 1e-9, "by hand",
+        lambda: air_gap.romanazzi_howey(300.0, 0.1, 0.003, ROUND),
+        0.181 * TA_S**0.414 * 10,
+        1e-9,
+        "by hand",
     ),
     "kosterin_finatev": (
         lambda: air_gap.kosterin_finatev(300.0, 80.0, 0.1, 0.003, ROUND),
-        0.022 * (1 + (1.8 / (80 * math.pi)) ** 2) ** 0.8714 * 24000**0.8 * (2 / 3) ** 0.5 * 5, 1e-9, "by hand",
+        0.022 * (1 + (1.8 / (80 * math.pi)) ** 2) ** 0.8714 * 24000**0.8 * (2 / 3) ** 0.5 * 5,
+        1e-9,
+        "by hand",
     ),
     "gazley_slotting": (lambda: air_gap.gazley_slotting(0.01, 0.001, 4000.0), 1.1, 1e-9, "the stated tenth"),
     "rotating_disc": (lambda: rotating.rotating_disc(100.0, 0.1, ROUND), 0.36 * 5e4**0.5 * 0.3, 1e-9, "by hand"),
     "rotating_shaft": (
-        lambda: rotating.rotating_shaft(300.0, 0.05, ROUND), 0.133 * 18750 ** (2 / 3) * (2 / 3) ** (1 / 3) * 0.6, 1e-9,
+        lambda: rotating.rotating_shaft(300.0, 0.05, ROUND),
+        0.133 * 18750 ** (2 / 3) * (2 / 3) ** (1 / 3) * 0.6,
+        1e-9,
         "by hand",
     ),
     "saari_windage": (
         lambda: rotating.saari_windage(300.0, 0.1, 0.001, 0.2, 1.0, ROUND),
-        1.03 * 0.01**0.3 / 1500**0.5 * math.pi * 300**3 * 1e-4 * 0.2, 1e-9, "by hand, Re 1500",
+        1.03 * 0.01**0.3 / 1500**0.5 * math.pi * 300**3 * 1e-4 * 0.2,
+        1e-9,
+        "by hand, Re 1500",
     ),
     "disc_windage": (
-        lambda: rotating.disc_windage(300.0, 0.1, 0.0, ROUND), 0.146 / 1.5e5**0.2 * 300**3 * 1e-5 / 4, 1e-9,
+        lambda: rotating.disc_windage(300.0, 0.1, 0.0, ROUND),
+        0.146 / 1.5e5**0.2 * 300**3 * 1e-5 / 4,
+        1e-9,
         "by hand, Re 1.5e5",
     ),
     "end_space": (lambda: end_space.end_space(10.0, 20.0, 0.5, 1.0), 120.0, 1e-12, "by hand"),
     "cooper_mikic_yovanovich": (
         lambda: contacts.cooper_mikic_yovanovich(180.0, 0.1, 2e-6, 1e6, 1e9),
-        1.25 * 180 * 0.1 / 2e-6 * 1e-3**0.95 + 0.026 / (1.53 * 2e-6 * 1e-3**-0.097), 1e-9, "by hand",
+        1.25 * 180 * 0.1 / 2e-6 * 1e-3**0.95 + 0.026 / (1.53 * 2e-6 * 1e-3**-0.097),
+        1e-9,
+        "by hand",
     ),
     "radiation_film": (lambda: contacts.radiation_film(0.9, 80.0, 20.0), 6.9, 0.01, "published check"),
     "kylander_bearing": (lambda: bearings.kylander_bearing(0.06, 100.0), 0.45 * 0.06 * 27, 1e-12, "by hand"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", WORKED)
@@ -136,9 +185,15 @@ def test_it_gives_its_worked_value(name):
 
 @pytest.mark.parametrize(
     ("name", "h"),
-    [("Schubert", 15 * (1 + 0.4 * 10**0.9)), ("Mellor 1991", 60.45), ("Boglietti 2003", 103.6), ("Stokum", 47.974),
-     ("Di Gerlando", 80.0), ("Hamdi", 40.0)],
-)  # fmt: skip
+    [
+        ("Schubert", 15 * (1 + 0.4 * 10**0.9)),
+        ("Mellor 1991", 60.45),
+        ("Boglietti 2003", 103.6),
+        ("Stokum", 47.974),
+        ("Di Gerlando", 80.0),
+        ("Hamdi", 40.0),
+    ],
+)
 def test_published_end_spaces_at_10_m_s(name, h):
     assert end_space.end_space(10.0, *end_space.PUBLISHED[name])[0] == pytest.approx(h, rel=1e-12)
 

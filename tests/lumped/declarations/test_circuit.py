@@ -9,14 +9,7 @@ from numpy.testing import assert_allclose
 
 from geom.errors import InputError, MissingDependency
 from lumped.circuits.circuit import film_in
-from lumped.circuits.hydraulics import (
-    Duct,
-    friction,
-    helical_friction,
-    parallel_shares,
-    pressure_drop,
-    pumping_power,
-)
+from lumped.circuits.hydraulics import Duct, friction, helical_friction, parallel_shares, pressure_drop, pumping_power
 from lumped.declarations.circuit import read_circuits
 from lumped.declarations.network import read_network
 from lumped.integration.balance import balance
@@ -47,9 +40,13 @@ def network(circuit, closed=False, loss=LOSS_W):
 
 def circuit(**more):
     return {
-        "coolant": {"name": "ethylene glycol", "mass_percent": 50}, "at_degC": 60.0, "flow_l_min": 8,
-        "inlet": "inlet", "passes": [CHANNEL], **more,
-    }  # fmt: skip
+        "coolant": {"name": "ethylene glycol", "mass_percent": 50},
+        "at_degC": 60.0,
+        "flow_l_min": 8,
+        "inlet": "inlet",
+        "passes": [CHANNEL],
+        **more,
+    }
 
 
 def closed(**more):

@@ -59,13 +59,18 @@ def test_the_documented_circuit_warms_from_20_to_80_degC(root):
 def test_the_example_declares_what_its_comments_say(data):
     network = read_network(data)
     assert {p.name for p in network.parameters} == {
-        "capacity.stator", "link.winding-stator", "stream.water", "loss.copper", "iron and friction",
-    }  # fmt: skip
+        "capacity.stator",
+        "link.winding-stator",
+        "stream.water",
+        "loss.copper",
+        "iron and friction",
+    }
     assert network.C[0] == pytest.approx(9.6 * 385)
     assert network.place("flange.outer").area == 0.05
     assert {k.name for k in network.links if k.name.startswith("link:flange-air")} == {
-        "link:flange-air:natural", "link:flange-air:radiation",
-    }  # fmt: skip
+        "link:flange-air:natural",
+        "link:flange-air:radiation",
+    }
 
 
 def test_copper_loss_is_the_published_formula(data):
@@ -79,8 +84,9 @@ def test_copper_loss_is_the_published_formula(data):
     assert copper.law.temperature == Linear(0.0039, 20.0)
     assert eddy.law.temperature == Conductivity(0.0039, 20.0)
     assert [name for name, _ in next(p for p in read_network(data).parameters if p.name == "loss.copper").targets] == [
-        "loss:copper", "loss:copper:eddy",
-    ]  # fmt: skip
+        "loss:copper",
+        "loss:copper:eddy",
+    ]
 
 
 @pytest.mark.parametrize("ratio", [1.4, 3.0])
@@ -97,16 +103,23 @@ def test_eddy_currents_fall_with_resistivity(data, ratio):
 
 def test_measured_loss_less_copper_injects_the_measured_sum(data):
     data["losses"]["iron"] = {
-        "kind": "measured", "at": "stator", "less": ["copper"],
-        "electrical": {"product": ["electrical_W"]}, "mechanical": {"product": ["torque_Nm", "speed_rpm"]},
-    }  # fmt: skip
+        "kind": "measured",
+        "at": "stator",
+        "less": ["copper"],
+        "electrical": {"product": ["electrical_W"]},
+        "mechanical": {"product": ["torque_Nm", "speed_rpm"]},
+    }
     given = {**INPUTS, "electrical_W": 12000.0, "torque_Nm": 50.0}
     network = read_network(data)
     heat = balance(network, Record(TIME, given, AROUND), {"loss.copper": 1.3})
     losses = [name for name in heat.injected if name.startswith(("loss:copper", "loss:iron"))]
     assert losses == [
-        "loss:copper", "loss:copper:eddy", "loss:iron", "loss:iron:less:copper", "loss:iron:less:copper:eddy",
-    ]  # fmt: skip
+        "loss:copper",
+        "loss:copper:eddy",
+        "loss:iron",
+        "loss:iron:less:copper",
+        "loss:iron:less:copper:eddy",
+    ]
     total = sum(heat.injected[name] for name in losses)
     assert_allclose(total, (12000.0 - 50.0 * 2000.0 * np.pi / 30) * TIME, rtol=1e-9, atol=1e-3)
 

@@ -26,16 +26,14 @@ STILL = {
     "vertical plate": ({"size_m": 0.3}, lambda T: natural.churchill_chu_plate(0.3, T, 20.0)),
     "plate facing up": ({"size_m": 0.1}, lambda T: natural.mcadams_plate(0.1, T, 20.0)),
     "plate facing down": ({"size_m": 0.1}, lambda T: natural.mcadams_plate(0.1, T, 20.0, upward=False)),
-    "vertical cylinder": (
-        {"size_m": 0.3, "diameter_mm": 30.0}, lambda T: natural.popiel_cylinder(0.3, 0.03, T, 20.0),
-    ),
+    "vertical cylinder": ({"size_m": 0.3, "diameter_mm": 30.0}, lambda T: natural.popiel_cylinder(0.3, 0.03, T, 20.0)),
     "vertical fins": (
         {"size_m": 0.25, "depth_mm": 20.0, "spacing_mm": 10.0},
         lambda T: fins.van_de_pol_tierney(0.02, 0.01, 0.25, T, 20.0),
     ),
     "horizontal fins": ({"spacing_mm": 12.0}, lambda T: fins.jones_smith(0.012, T, 20.0)),
     "parallel plates": ({"size_m": 0.2, "spacing_mm": 10.0}, lambda T: fins.elenbaas(0.01, 0.2, T, 20.0)),
-}  # fmt: skip
+}
 MOVING = {
     "plate": ({"size_m": 0.5}, lambda v, fluid: forced.flat_plate(v, 0.5, fluid)),
     "cylinder": ({"size_m": 0.3}, lambda v, fluid: forced.churchill_bernstein(v, 0.3, fluid)),
@@ -45,18 +43,20 @@ MOVING = {
     ),
     "duct": ({"size_m": 0.3, "diameter_mm": 20.0}, lambda v, fluid: ducts.duct_film(v, 0.02, 0.3, fluid)),
     "helical pipe": (
-        {"diameter_mm": 9.0, "coil_diameter_mm": 200.0}, lambda v, fluid: ducts.schmidt_helical(v, 0.009, 0.2, fluid),
+        {"diameter_mm": 9.0, "coil_diameter_mm": 200.0},
+        lambda v, fluid: ducts.schmidt_helical(v, 0.009, 0.2, fluid),
     ),
     "end space": ({}, lambda v, fluid: end_space.end_space(v)),
-}  # fmt: skip
+}
 
 
 def document(mechanism, keys):
     return {
-        "network": {"name": "n", "boundaries": ["ambient"]}, "nodes": {"a": {"C_J_K": 900.0}},
+        "network": {"name": "n", "boundaries": ["ambient"]},
+        "nodes": {"a": {"C_J_K": 900.0}},
         "links": {"out": {"between": ["a", "ambient"], "area_m2": AREA, mechanism: keys}},
         "losses": {"heat": {"kind": "constant", "at": "a", "P_W": 100.0}},
-    }  # fmt: skip
+    }
 
 
 def declared(mechanism, keys):
@@ -256,11 +256,7 @@ def test_faster_than_the_table_warns_with_value_and_range():
         ("contact", {"joint": "glue"}, "'glue'.*known"),
         ("gap", {"gap_mm": 1.0}, "rotor_radius_mm"),
         ("rotating", {"surface": "drum", "diameter_mm": 100.0}, "'drum'.*disc, shaft"),
-        (
-            "mixed",
-            {"natural": {"surface": "vertical plate", "size_m": 0.2}},
-            "mixed forced.*'surface' is missing",
-        ),
+        ("mixed", {"natural": {"surface": "vertical plate", "size_m": 0.2}}, "mixed forced.*'surface' is missing"),
     ],
 )
 def test_slips_are_named(mechanism, keys, message):

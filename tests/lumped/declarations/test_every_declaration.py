@@ -28,27 +28,38 @@ pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarnin
 CLOSES = 1e-4  # of the heat: a hundredth of a kelvin of a rise of 100 K
 TIME = np.arange(0.0, 900.0, 10.0)
 INPUTS = {
-    "speed_rpm": 1500.0 + 1400.0 * np.sin(TIME / 250.0), "v": 6.0 + 5.0 * np.sin(TIME / 150.0),
-    "current_A": 10.0 + 4.0 * np.sin(TIME / 130.0), "torque_Nm": 2.0 + np.sin(TIME / 99.0),
-    "voltage_V": 20.0 + TIME / 90.0, "electrical_W": 900.0 + TIME / 9.0, "flow": 1.5 + np.cos(TIME / 170.0),
+    "speed_rpm": 1500.0 + 1400.0 * np.sin(TIME / 250.0),
+    "v": 6.0 + 5.0 * np.sin(TIME / 150.0),
+    "current_A": 10.0 + 4.0 * np.sin(TIME / 130.0),
+    "torque_Nm": 2.0 + np.sin(TIME / 99.0),
+    "voltage_V": 20.0 + TIME / 90.0,
+    "electrical_W": 900.0 + TIME / 9.0,
+    "flow": 1.5 + np.cos(TIME / 170.0),
     "turning": 8.0 * np.cos(TIME / 60.0),
-}  # fmt: skip
+}
 BOUNDARIES = {"ambient": 18.0 + 3.0 * np.sin(TIME / 200.0), "inlet": 25.0, "far": 40.0}
 RECORD = Record(TIME, INPUTS, BOUNDARIES, {"a": 70.0, "b": 45.0, "c": 30.0})
 LINKS = {
-    "G": {"G_W_K": 4.0}, "R": {"R_K_W": 0.2}, "h": {"h_W_m2K": 12.0},
+    "G": {"G_W_K": 4.0},
+    "R": {"R_K_W": 0.2},
+    "h": {"h_W_m2K": 12.0},
     "G of inputs": {"G_W_K": 4.0, "of": {"input": "speed_rpm", "at": 1000.0, "exponent": 0.8}},
     **{f"natural {name}": {"natural": {"surface": name, **keys}} for name, (keys, _) in STILL.items()},
-    **{f"natural {name} at 40 degC": {"natural": {"surface": name, "fluid_degC": 40.0, **keys}}
-       for name, (keys, _) in STILL.items()},
+    **{
+        f"natural {name} at 40 degC": {"natural": {"surface": name, "fluid_degC": 40.0, **keys}}
+        for name, (keys, _) in STILL.items()
+    },
     **{f"forced {name}": {"forced": {"surface": name, "speed": "v", **keys}} for name, (keys, _) in MOVING.items()},
-    **{f"forced {name} at 40 degC": {"forced": {"surface": name, "speed": "v", "fluid_degC": 40.0, **keys}}
-       for name, (keys, _) in MOVING.items()},
+    **{
+        f"forced {name} at 40 degC": {"forced": {"surface": name, "speed": "v", "fluid_degC": 40.0, **keys}}
+        for name, (keys, _) in MOVING.items()
+    },
     "forced water": {"forced": {"surface": "duct", "speed": "v", "coolant": "water", **MOVING["duct"][0]}},
     "forced of inputs": {"forced": {"h_W_m2K": 9.0, "of": {"input": "v", "at": 5.0, "exponent": 0.8}}},
     **{f"rotating {name}": {"rotating": {"surface": name, "diameter_mm": 200.0}} for name in ROTATING},
-    **{f"gap {law}": {"gap": {"rotor_radius_mm": 80.0, "gap_mm": 0.7, "law": law}}
-       for law in ("taylor", "becker-kaye")},
+    **{
+        f"gap {law}": {"gap": {"rotor_radius_mm": 80.0, "gap_mm": 0.7, "law": law}} for law in ("taylor", "becker-kaye")
+    },
     "radiation": {"radiation": {"emissivity": 0.9, "view_factor": 0.8}},
     **{f"contact {name}": {"contact": {"joint": name}} for name in GAPS},
     **{f"contact {name}": {"contact": {"pair": name}} for name in PRESSED},
@@ -56,48 +67,96 @@ LINKS = {
     "fan": {"fan": {"h_W_m2K": 40.0, "at_rpm": 1460.0}},
     "power": {"power": {"h_W_m2K": 3.0, "exponent": 0.33}},
     "table": {"table": {"difference_K": [0.0, 10.0, 60.0], "G_W_K": [1.0, 1.4, 2.0]}},
-    "mixed": {"mixed": {"natural": {"surface": "vertical plate", "size_m": 0.3},
-                        "forced": {"surface": "plate", "size_m": 0.3, "speed": "v", "up_to_m_s": 20.0}}},
-}  # fmt: skip
+    "mixed": {
+        "mixed": {
+            "natural": {"surface": "vertical plate", "size_m": 0.3},
+            "forced": {"surface": "plate", "size_m": 0.3, "speed": "v", "up_to_m_s": 20.0},
+        }
+    },
+}
 POWER = {"P_W": 30.0, "of": {"input": "speed_rpm", "at": 1000.0, "exponent": 1.5}}
 HEATS = {
-    "copper": {"R20_ohm": 0.2, "currents": ["current_A"],
-               "ac": {"input": "speed_rpm", "at": 1000.0, "coefficients": [1.0, 0.0, 0.1]}},
-    "iron": {"hysteresis_W": 10.0, "eddy_W": 4.0, "excess_W": 2.0, "speed_at": 1000.0, "excitation": "current_A",
-             "excitation_at": 10.0},
+    "copper": {
+        "R20_ohm": 0.2,
+        "currents": ["current_A"],
+        "ac": {"input": "speed_rpm", "at": 1000.0, "coefficients": [1.0, 0.0, 0.1]},
+    },
+    "iron": {
+        "hysteresis_W": 10.0,
+        "eddy_W": 4.0,
+        "excess_W": 2.0,
+        "speed_at": 1000.0,
+        "excitation": "current_A",
+        "excitation_at": 10.0,
+    },
     "brush": {"drop_V": 2.0, "friction_W": 9.0, "speed_at": 1000.0},
     "ripple": {"supply_V": 48.0, "L_H": 2e-3, "switching_Hz": 4000.0, "R20_ohm": 50.0},
-    "inverter": {"currents": ["current_A"], "factor": 3.0, "threshold_V": 1.0, "R_on_ohm": 0.05, "switching_Hz": 8e3,
-                 "switching_J": 1e-3, "reference_A": 10.0, "reference_V": 600.0, "supply_V": 560.0, "standby_W": 9.0},
+    "inverter": {
+        "currents": ["current_A"],
+        "factor": 3.0,
+        "threshold_V": 1.0,
+        "R_on_ohm": 0.05,
+        "switching_Hz": 8e3,
+        "switching_J": 1e-3,
+        "reference_A": 10.0,
+        "reference_V": 600.0,
+        "supply_V": 560.0,
+        "standby_W": 9.0,
+    },
     "pwm": {"supply_V": 98.0, "L_H": 2e-4, "switching_Hz": 4000.0, "R_pulse_ohm": 2.0},
-    "map": {"at_speed": [0, 4000], "at_torque": [0, 5], "P_W": [[1, 2], [30, 50]], "alpha_1_K": 0.002,
-            "reference_degC": 20.0},
-    "measured": {"electrical": [{"product": ["electrical_W"]}], "mechanical": [{"product": ["torque_Nm", "speed_rpm"]}],
-                 "less": ["heat"]},
+    "map": {
+        "at_speed": [0, 4000],
+        "at_torque": [0, 5],
+        "P_W": [[1, 2], [30, 50]],
+        "alpha_1_K": 0.002,
+        "reference_degC": 20.0,
+    },
+    "measured": {
+        "electrical": [{"product": ["electrical_W"]}],
+        "mechanical": [{"product": ["torque_Nm", "speed_rpm"]}],
+        "less": ["heat"],
+    },
     **dict.fromkeys(PLAIN, POWER),
-}  # fmt: skip
+}
 STREAMS = {
-    "mcp": {"mcp_W_K": 3.0}, "mcp of inputs": {"mcp_W_K": 3.0, "of": {"input": "flow", "at": 1.0, "exponent": 1.0}},
+    "mcp": {"mcp_W_K": 3.0},
+    "mcp of inputs": {"mcp_W_K": 3.0, "of": {"input": "flow", "at": 1.0, "exponent": 1.0}},
     "l_min": {"flow_l_min": 0.05, "density_kg_m3": 1000.0, "cp_J_kgK": 4000.0},
     **{key: {key: "flow", "density_kg_m3": 1.2, "cp_J_kgK": 1e5 if "l_min" in key else 3e3} for key in FLOW_INPUTS},
-    **{f"{key} backwards": {key: "turning", "density_kg_m3": 1.2, "cp_J_kgK": 2e4 if "l_min" in key else 600.0,
-                            "backwards_from": "far"} for key in FLOW_INPUTS},
-}  # fmt: skip
+    **{
+        f"{key} backwards": {
+            key: "turning",
+            "density_kg_m3": 1.2,
+            "cp_J_kgK": 2e4 if "l_min" in key else 600.0,
+            "backwards_from": "far",
+        }
+        for key in FLOW_INPUTS
+    },
+}
 VARIES = {"flow_l_min_input": "turning"}
 CIRCUITS = {
-    "open": circuit(), "open, films fixed": circuit(films="fixed"),
+    "open": circuit(),
+    "open, films fixed": circuit(films="fixed"),
     "open, either way": circuit(**VARIES, backwards_from="ambient"),
-    "coil": circuit(passes=[{"wall": "housing", "width_mm": 9, "height_mm": 9, "length_m": 1.2,
-                             "coil_diameter_mm": 200}]),
-    "two walls": circuit(passes=[{"wall": {"housing": 0.6, "flange": 0.4}, "width_mm": 20, "height_mm": 6,
-                                  "length_m": 1.2}]),
-    **{f"open, {name}": circuit(coolant=name if name in PURE else {"name": name, "volume_percent": 40.0})
-       for name in (*PURE, *MIXED)},
-    **{f"closed, {name}": closed() | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
-       for name in ARRANGEMENTS},
-    **{f"closed, either way, {name}": closed(**VARIES) | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
-       for name in ARRANGEMENTS},
-}  # fmt: skip
+    "coil": circuit(
+        passes=[{"wall": "housing", "width_mm": 9, "height_mm": 9, "length_m": 1.2, "coil_diameter_mm": 200}]
+    ),
+    "two walls": circuit(
+        passes=[{"wall": {"housing": 0.6, "flange": 0.4}, "width_mm": 20, "height_mm": 6, "length_m": 1.2}]
+    ),
+    **{
+        f"open, {name}": circuit(coolant=name if name in PURE else {"name": name, "volume_percent": 40.0})
+        for name in (*PURE, *MIXED)
+    },
+    **{
+        f"closed, {name}": closed() | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
+        for name in ARRANGEMENTS
+    },
+    **{
+        f"closed, either way, {name}": closed(**VARIES) | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
+        for name in ARRANGEMENTS
+    },
+}
 
 
 def document(**more):
@@ -105,11 +164,15 @@ def document(**more):
     return {
         "network": {"name": "n", "boundaries": ["ambient", "inlet", "far"]},
         "nodes": {"a": {"C_J_K": 300.0}, "b": {"C_J_K": 500.0}, "c": {"C_J_K": 80.0}},
-        "links": {"ab": {"between": ["a", "b"], "G_W_K": 3.0}, "out": {"between": ["b", "ambient"], "G_W_K": 4.0},
-                  "bc": {"between": ["b", "c"], "G_W_K": 2.0}, **more.get("links", {})},
+        "links": {
+            "ab": {"between": ["a", "b"], "G_W_K": 3.0},
+            "out": {"between": ["b", "ambient"], "G_W_K": 4.0},
+            "bc": {"between": ["b", "c"], "G_W_K": 2.0},
+            **more.get("links", {}),
+        },
         "losses": {"heat": {"kind": "constant", "at": "a", "P_W": 60.0}, **more.get("losses", {})},
         "streams": more.get("streams", {}),
-    }  # fmt: skip
+    }
 
 
 def linked(keys):

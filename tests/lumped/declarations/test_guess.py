@@ -23,23 +23,45 @@ def without_names(data):
 
 TRUE = {
     "tefc": {
-        "winding.slot": "winding", "winding.de": "winding", "winding.nde": "winding", "core": "iron", "rotor": "cage",
-        "housing": "housing", "flange.de": "end shield", "flange.nde": "end shield", "bearing.de": "bearing",
-        "bearing.nde": "bearing", "air.de": "inner air", "ambient": "ambient", "bench": "test bed",
+        "winding.slot": "winding",
+        "winding.de": "winding",
+        "winding.nde": "winding",
+        "core": "iron",
+        "rotor": "cage",
+        "housing": "housing",
+        "flange.de": "end shield",
+        "flange.nde": "end shield",
+        "bearing.de": "bearing",
+        "bearing.nde": "bearing",
+        "air.de": "inner air",
+        "ambient": "ambient",
+        "bench": "test bed",
     },
     "jacket": {
-        "winding.slot": "winding", "winding.de": "winding", "stator": "iron", "magnets": "magnet", "rotor": "rotor",
-        "housing": "housing", "shield.de": "end shield", "water": "coolant", "coolant": "coolant",
-        "ambient": "ambient", "bench": "test bed",
+        "winding.slot": "winding",
+        "winding.de": "winding",
+        "stator": "iron",
+        "magnets": "magnet",
+        "rotor": "rotor",
+        "housing": "housing",
+        "shield.de": "end shield",
+        "water": "coolant",
+        "coolant": "coolant",
+        "ambient": "ambient",
+        "bench": "test bed",
     },
     "brushed": {
-        "winding.armature": "winding", "rotor": "rotor", "commutator": "commutator", "poles": "iron",
-        "winding.field": "winding", "flange.de": "end shield", "ambient": "ambient", "bench": "test bed",
+        "winding.armature": "winding",
+        "rotor": "rotor",
+        "commutator": "commutator",
+        "poles": "iron",
+        "winding.field": "winding",
+        "flange.de": "end shield",
+        "ambient": "ambient",
+        "bench": "test bed",
     },
-}  # fmt: skip
-TURN = {
-    "tefc": {"rotor"}, "jacket": {"rotor", "magnets"}, "brushed": {"winding.armature", "rotor", "commutator"},
-}  # fmt: skip
+}
+TURN = {"tefc": {"rotor"}, "jacket": {"rotor", "magnets"}, "brushed": {"winding.armature", "rotor", "commutator"}}
 
 
 @pytest.mark.parametrize("kind", TRUE)
@@ -73,13 +95,25 @@ def test_a_shaft_in_two_pieces_turns_with_the_rotor_between_them():
         "network": {"name": "two stubs", "boundaries": ["a"]},
         "nodes": {n: {"C_J_K": 100.0} for n in ("s1", "s2", "b1", "b2", "e1", "e2", "r", "t", "h")},
         "links": {
-            **{f"{a}{b}": {"between": [a, b], "G_W_K": G} for a, b, G in (
-                ("s1", "r", 1.0), ("s2", "r", 1.0), ("r", "t", 4.0), ("t", "h", 30.0), ("e1", "h", 5.0),
-                ("e2", "h", 5.0), ("b1", "e1", 2.0), ("b2", "e2", 2.0), ("b1", "s1", 1.0), ("b2", "s2", 1.0))},
+            **{
+                f"{a}{b}": {"between": [a, b], "G_W_K": G}
+                for a, b, G in (
+                    ("s1", "r", 1.0),
+                    ("s2", "r", 1.0),
+                    ("r", "t", 4.0),
+                    ("t", "h", 30.0),
+                    ("e1", "h", 5.0),
+                    ("e2", "h", 5.0),
+                    ("b1", "e1", 2.0),
+                    ("b2", "e2", 2.0),
+                    ("b1", "s1", 1.0),
+                    ("b2", "s2", 1.0),
+                )
+            },
             **{f"{n}a": {"between": [n, "a"], "power": {"G_W_K": 1.0, "exponent": 0.25}} for n in ("h", "e1", "e2")},
         },
         "losses": {n: {"kind": "friction", "at": n, "P_W": 5.0} for n in ("b1", "b2")},
-    }  # fmt: skip
+    }
     found = read_network(data).identities
     assert {n for n, i in found.items() if i.turns} == {"s1", "s2", "r"}
     assert {n for n, i in found.items() if i.role is Role.BEARING} == {"b1", "b2"}
@@ -87,9 +121,12 @@ def test_a_shaft_in_two_pieces_turns_with_the_rotor_between_them():
 
 @pytest.mark.parametrize(
     ("table", "key", "value", "right"),
-    [("nodes", "role", "windng", "did you mean 'winding'.*known: air gap"), ("nodes", "turns", 1, "true or false"),
-     ("boundaries", "role", "sink", "known: air gap")],
-)  # fmt: skip
+    [
+        ("nodes", "role", "windng", "did you mean 'winding'.*known: air gap"),
+        ("nodes", "turns", 1, "true or false"),
+        ("boundaries", "role", "sink", "known: air gap"),
+    ],
+)
 def test_an_unknown_role_is_one_message_that_lists_the_known(root, table, key, value, right):
     data = document(root, "tefc")
     name = "core" if table == "nodes" else "ambient"

@@ -21,12 +21,14 @@ TWO = {"passes": [CHANNEL, {**CHANNEL, "wall": "flange"}]}
 
 def pipe(path=("inlet", "a", "b", "c"), **more):
     """Three cells of which the middle one is heated by 100 W, and a stream of 5 W/K per l/min."""
-    return read_network({
-        "network": {"name": "pipe", "boundaries": ["inlet", "far"]},
-        "nodes": {n: {"C_J_K": 50.0, "kind": "fluid"} for n in "abc"},
-        "losses": {"heat": {"kind": "constant", "at": "b", "P_W": 100.0}},
-        "streams": {"water": {"path": list(path), "density_kg_m3": 1000.0, "cp_J_kgK": 300.0, **FLOW, **more}},
-    })  # fmt: skip
+    return read_network(
+        {
+            "network": {"name": "pipe", "boundaries": ["inlet", "far"]},
+            "nodes": {n: {"C_J_K": 50.0, "kind": "fluid"} for n in "abc"},
+            "losses": {"heat": {"kind": "constant", "at": "b", "P_W": 100.0}},
+            "streams": {"water": {"path": list(path), "density_kg_m3": 1000.0, "cp_J_kgK": 300.0, **FLOW, **more}},
+        }
+    )
 
 
 def test_heat_is_carried_downstream_whichever_way_that_is():

@@ -18,9 +18,11 @@ ROOT = Path(__file__).resolve().parents[3]
 PATTERNS = {
     "network": ["cases/**/network.toml", "examples/**/network.toml", "benchmarks/hidden/machines/*.toml"],
     "case": ["cases/**/case.toml"],
-    "sheet": ["cases/**/tests/*.toml"], "cycle": ["cases/**/cycles/*.toml"], "model": ["cases/**/model.toml"],
+    "sheet": ["cases/**/tests/*.toml"],
+    "cycle": ["cases/**/cycles/*.toml"],
+    "model": ["cases/**/model.toml"],
     "machine": ["geom/machines/*.toml", "cases/**/machine.toml"],
-}  # fmt: skip
+}
 SHIPPED = [
     (kind, path) for kind, patterns in PATTERNS.items() for pattern in patterns for path in sorted(ROOT.glob(pattern))
 ]

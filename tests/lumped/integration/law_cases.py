@@ -52,10 +52,14 @@ def inputs(time):
     return {
         "speed_rpm": 1500.0 + 1400.0 * np.sin(time / 250.0) * (time < 900),
         "current_A": 10.0 + 4.0 * np.sin(time / 130.0),
-        "flow": 1.5 + np.cos(time / 170.0), "to_and_fro": np.sin(time / 200.0), "switch": 1.0 * (time > 400.0),
-        "electrical_W": 900.0 + time / 9.0, "torque_Nm": 2.0 + np.sin(time / 99.0), "voltage_V": 20.0 + time / 90.0,
+        "flow": 1.5 + np.cos(time / 170.0),
+        "to_and_fro": np.sin(time / 200.0),
+        "switch": 1.0 * (time > 400.0),
+        "electrical_W": 900.0 + time / 9.0,
+        "torque_Nm": 2.0 + np.sin(time / 99.0),
+        "voltage_V": 20.0 + time / 90.0,
         CLOCK: time,
-    }  # fmt: skip
+    }
 
 
 TIME = np.arange(0.0, 1300.0, 10.0)
@@ -80,34 +84,55 @@ def streams(stretch=0.0, still=None):
 
 STREAM = Streamed(0.9, streams(), 9.0, "three regimes")
 LAWS = [
-    Fixed(0.8), FORCED, Stirred(0.3, 0.1, 0.9, 0.01), STREAM, AtUsualTemperature(STREAM),
-    Switched(FORCED, "switch", True), Switched(FORCED, "switch", False),
+    Fixed(0.8),
+    FORCED,
+    Stirred(0.3, 0.1, 0.9, 0.01),
+    STREAM,
+    AtUsualTemperature(STREAM),
+    Switched(FORCED, "switch", True),
+    Switched(FORCED, "switch", False),
     FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
     Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
-    Scaled(Fixed(0.4), -1.0), MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
-    MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))), CopperLoss(0.02, ("current_A",)),
+    Scaled(Fixed(0.4), -1.0),
+    MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
+    MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))),
+    CopperLoss(0.02, ("current_A",)),
     EddyLoss(CopperLoss(0.02, ("current_A",)), (1.0, 0.0, 0.4), "speed_rpm", 2000.0),
-    PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)), IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
-    BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0), RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
+    PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)),
+    IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
+    BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0),
+    RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
     InverterLoss(("current_A",), 3.0, 0.1, 0.01, 8e3, 1e-6, 10.0, 600.0, 560.0, 1.0),
     PulseLoss("voltage_V", 96.0, 1e-3, 1e4, 0.5),
-    Rate(BY_FLOW), Exchanger(1.0, BY_FLOW, Flow(3.0)),
-    OneWay(FORCED, "flow", "here", "so"), Direction(FORCED, "to_and_fro", 1), Direction(FORCED, "to_and_fro", -1),
+    Rate(BY_FLOW),
+    Exchanger(1.0, BY_FLOW, Flow(3.0)),
+    OneWay(FORCED, "flow", "here", "so"),
+    Direction(FORCED, "to_and_fro", 1),
+    Direction(FORCED, "to_and_fro", -1),
     Shaped(FORCED, lambda u: np.asarray(u["current_A"]) / 20.0, CONSTANT, ("current_A",)),
     WithTemperature(FORCED, Power(0.25)),
-    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}), 
+    ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentRatio(ExponentError(FORCED, "speed_rpm", {"speed_rpm": 1500.0})),
-    Slope(FORCED, "speed_rpm"), Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
-]  # fmt: skip
+    Slope(FORCED, "speed_rpm"),
+    Shift(IronLoss(1.0, 0.5, "speed_rpm", 1000.0), "speed_rpm"),
+]
 TEMPERATURES = [
-    CONSTANT, Power(0.25), Radiation(), Linear(0.004, 20.0), Conductivity(0.004, 20.0),
+    CONSTANT,
+    Power(0.25),
+    Radiation(),
+    Linear(0.004, 20.0),
+    Conductivity(0.004, 20.0),
     Table((0.0, 10.0, 80.0), (1.0, 1.3, 1.8)),
     FilmTable((0.0, 5.0, 80.0), grid((1.0, 1.4, 2.0))),
-    streams(), streams(2.0), streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5)))),
-]  # fmt: skip
+    streams(),
+    streams(2.0),
+    streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5)))),
+]
 LAWS += [Fixed(0.5, law) if type(law) is not StreamTable else Streamed(0.5, law, 9.0, "") for law in TEMPERATURES]
-NAMES = [f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
-         for i, law in enumerate(LAWS)]  # fmt: skip
+NAMES = [
+    f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
+    for i, law in enumerate(LAWS)
+]
 LOSSES = [law for law in LAWS if isinstance(law.temperature, Constant | Linear | Conductivity)]
 
 
@@ -139,31 +164,36 @@ STEEP = ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 1.0),)), "speed_rpm
 LIMITS = {
     Fixed: [(Fixed(0.8), {}, 0.8)],
     InputPower: [
-        (FORCED, {"speed_rpm": 0.0}, 0.0), (FORCED, {"speed_rpm": -1000.0}, 0.6),
+        (FORCED, {"speed_rpm": 0.0}, 0.0),
+        (FORCED, {"speed_rpm": -1000.0}, 0.6),
         (InputPower(0.7, ()), {}, 0.7),
     ],
-    Stirred: [(Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": 0.0}, 4.0),
-              (Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": -1e4}, 204.0)],
+    Stirred: [
+        (Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": 0.0}, 4.0),
+        (Stirred(4.0, 0.5, 1.0, 0.01), {"speed_rpm": -1e4}, 204.0),
+    ],
     Streamed: [(STREAM, {"flow": 2.0}, 0.9)],
     AtUsualTemperature: [
-        (AtUsualTemperature(STREAM), {"flow": 1.0}, 0.9 * 0.4 * 1.16), (AtUsualTemperature(Fixed(0.8)), {}, 0.8)],
+        (AtUsualTemperature(STREAM), {"flow": 1.0}, 0.9 * 0.4 * 1.16),
+        (AtUsualTemperature(Fixed(0.8)), {}, 0.8),
+    ],
     Switched: [
-        (Switched(Fixed(2.0), "on", True), {"on": 1.0}, 2.0), (Switched(Fixed(2.0), "on", True), {"on": 0.0}, 0.0),
-        (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0), (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
+        (Switched(Fixed(2.0), "on", True), {"on": 1.0}, 2.0),
+        (Switched(Fixed(2.0), "on", True), {"on": 0.0}, 0.0),
+        (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0),
+        (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
     ],
     FilmOver: [(FilmOver("v", _film, 4.0), {"v": 0.0}, 0.3), (FilmOver("v", _film, 4.0), {"v": -4.0}, 0.32)],
     Share: [(Share(FilmOver("v", _film, 4.0), (0.0, 4.0), (0.3, 0.7)), {"v": -9.0}, 0.7)],
     Scaled: [(Scaled(Fixed(0.4), -1.0), {}, -0.4), (Scaled(Fixed(0.4), 0.0), {}, 0.0)],
     MeasuredLoss: [  # what goes in leaves at the shaft
-        (MeasuredLoss(((1.0, ("P",)), (-np.pi / 30.0, ("M", "n")))), {"P": 100.0 * np.pi, "M": 2.0, "n": 1500.0}, 0.0),
+        (MeasuredLoss(((1.0, ("P",)), (-np.pi / 30.0, ("M", "n")))), {"P": 100.0 * np.pi, "M": 2.0, "n": 1500.0}, 0.0)
     ],
     MapLoss: [
         (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 10.0, "torque_Nm": -1.0}, 5.0),
         (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 0.0, "torque_Nm": 0.0}, 1.0),
     ],
-    CopperLoss: [
-        (CopperLoss(0.02, ("I",)), {"I": 0.0}, 0.0), (CopperLoss(0.02, ("I",), 3.0), {"I": -10.0}, 6.0),
-    ],
+    CopperLoss: [(CopperLoss(0.02, ("I",)), {"I": 0.0}, 0.0), (CopperLoss(0.02, ("I",), 3.0), {"I": -10.0}, 6.0)],
     EddyLoss: [  # none at rest, the copper's once more where the resistance has doubled
         (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": 0.0}, 0.0),
         (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": -50.0}, 2.0),
@@ -193,21 +223,24 @@ LIMITS = {
     ],
     OneWay: [(OneWay(FORCED, "flow", "here", "so"), {"speed_rpm": 1000.0, "flow": 0.0}, 0.6)],
     Direction: [
-        (Direction(Fixed(3.0), "q", 1), {"q": -1.0}, 0.0), (Direction(Fixed(3.0), "q", -1), {"q": -1.0}, 3.0),
-        (Direction(Fixed(3.0), "q", 1), {"q": 0.0}, 0.0), (Direction(Fixed(3.0), "q", -1), {"q": 0.0}, 0.0),
+        (Direction(Fixed(3.0), "q", 1), {"q": -1.0}, 0.0),
+        (Direction(Fixed(3.0), "q", -1), {"q": -1.0}, 3.0),
+        (Direction(Fixed(3.0), "q", 1), {"q": 0.0}, 0.0),
+        (Direction(Fixed(3.0), "q", -1), {"q": 0.0}, 0.0),
     ],
     Shaped: [(Shaped(Fixed(3.0), lambda u: u["x"]), {"x": 0.0}, 0.0)],
     WithTemperature: [(WithTemperature(Fixed(3.0), Power(0.25)), {}, 3.0)],
     ExponentError: [(STEEP, {"speed_rpm": 1000.0}, 0.0), (STEEP, {"speed_rpm": 2000.0}, 4.0 * np.log(2.0))],
     ExponentRatio: [
-        (ExponentRatio(STEEP), {"speed_rpm": 1000.0}, 0.0), (ExponentRatio(STEEP), {"speed_rpm": 2000.0}, np.log(2.0)),
+        (ExponentRatio(STEEP), {"speed_rpm": 1000.0}, 0.0),
+        (ExponentRatio(STEEP), {"speed_rpm": 2000.0}, np.log(2.0)),
     ],
     Slope: [
         (Slope(FORCED, "speed_rpm"), {"speed_rpm": 0.0}, 0.0),
         (Slope(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2.0),
     ],
     Shift: [(Shift(STEEP.base, "speed_rpm"), {"speed_rpm": 1000.0}, 2e-3)],
-}  # fmt: skip
+}
 FILM = next(law for law in TEMPERATURES if isinstance(law, FilmTable))
 STILL = FILM.at(0.0, 80.0)
 # temperature law -> [(law, hot, cold, its value)] in degC
@@ -218,19 +251,19 @@ TEMPERATURE_LIMITS = {
         (Radiation(), 20.0, 20.0, 4 * 5.670374419e-8 * 293.15**3),
         (Radiation(), 20.0, -273.15, 5.670374419e-8 * 293.15**3),
     ],
-    Conductivity: [
-        (Conductivity(0.004, 20.0), 20.0, 99.0, 1.0), (Conductivity(0.004, 20.0), 270.0, 99.0, 0.5),
-    ],
+    Conductivity: [(Conductivity(0.004, 20.0), 20.0, 99.0, 1.0), (Conductivity(0.004, 20.0), 270.0, 99.0, 0.5)],
     Linear: [(Linear(0.004, 20.0), 20.0, 99.0, 1.0), (Linear(0.004, 20.0), 270.0, 99.0, 2.0)],
     Table: [
-        (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 20.0, 1.0), (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 3.0),
+        (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 20.0, 1.0),
+        (Table((0.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 3.0),
         (Table((-5.0, 10.0), (1.0, 3.0)), 20.0, 99.0, 1.0),
     ],
     StreamTable: [  # at 80 degC, at its usual input of 1.5; beside still air; N beyond all use, N of next to nothing
         (streams(), 40.0, 40.0, 1.16 * (0.4 + 0.5 * np.log(1.5) / 0.6)),
-        (streams(1e9), 40.0, 40.0, streams().at(1.5, 80.0)), (streams(1e-14), 40.0, 40.0, streams().at(1.5, 80.0)),
+        (streams(1e9), 40.0, 40.0, streams().at(1.5, 80.0)),
+        (streams(1e-14), 40.0, 40.0, streams().at(1.5, 80.0)),
         (streams(2.0), 40.0, 40.0, 0.75 * np.expm1(streams().at(1.5, 80.0) / 0.75)),
         (streams(still=FILM), 40.0, 40.0, np.cbrt(streams().at(1.5, 80.0) ** 3 + STILL**3) - STILL),
     ],
     FilmTable: [(FILM, -300.0, -300.0, 1.0), (FILM, 500.0, 500.0, 1.2), (FILM, 590.0, 410.0, 2.4)],
-}  # fmt: skip
+}

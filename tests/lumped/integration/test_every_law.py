@@ -5,18 +5,7 @@ Each is tried in a link, as a source and along a stream. A law without a case fa
 
 import numpy as np
 import pytest
-from law_cases import (
-    LAWS,
-    LIMITS,
-    LOSSES,
-    NAMES,
-    RECORD,
-    TEMPERATURE_LIMITS,
-    TEMPERATURES,
-    TIME,
-    every,
-    inputs,
-)
+from law_cases import LAWS, LIMITS, LOSSES, NAMES, RECORD, TEMPERATURE_LIMITS, TEMPERATURES, TIME, every, inputs
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lumped.integration.balance import balance
@@ -46,7 +35,7 @@ def around(*links, sources=(), parameters=()):
         node_link(net, "out", "link", "b", "ambient", Fixed(4.0)),
         node_link(net, "to cell 1", "link", "a", "cell1", Fixed(2.0)),
         node_link(net, "to cell 2", "link", "b", "cell2", Fixed(1.0)),
-    ]  # fmt: skip
+    ]
     heat = node_source(net, "heat", "iron", {"a": 1.0}, Fixed(60.0))
     return net.extended([*built, *(make(net) for make in links)], [heat, *(make(net) for make in sources)], parameters)
 
@@ -64,8 +53,11 @@ def streaming(law):
 
 
 PARTS = {"link": (linked, LAWS), "source": (injected, LOSSES), "stream": (streaming, FLOWS)}
-EACH = [pytest.param(put(law), id=f"{part} {name}")
-        for part, (put, laws) in PARTS.items() for law, name in zip(laws, kinds(laws), strict=True)]  # fmt: skip
+EACH = [
+    pytest.param(put(law), id=f"{part} {name}")
+    for part, (put, laws) in PARTS.items()
+    for law, name in zip(laws, kinds(laws), strict=True)
+]
 
 
 def built(parts, parameters=()):
@@ -166,18 +158,23 @@ def test_the_tangent_is_the_difference(parts):
     assert_allclose(dy, (8 * (up - down) - far + near) / (12 * h), atol=1e-6 * np.abs(dy).max())
 
 
-@pytest.mark.parametrize(("law", "at", "value"), [
-    pytest.param(*case, id=f"{kind.__name__} {i}") for kind, cases in LIMITS.items() for i, case in enumerate(cases)
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("law", "at", "value"),
+    [pytest.param(*case, id=f"{kind.__name__} {i}") for kind, cases in LIMITS.items() for i, case in enumerate(cases)],
+)
 def test_a_law_has_its_limits(law, at, value):
     samples = {n: np.full(3, u) for n, u in at.items()}
     assert_allclose(np.broadcast_to(law.factor(samples), 3), value, rtol=1e-6, atol=1e-12)
 
 
-@pytest.mark.parametrize(("law", "hot", "cold", "value"), [
-    pytest.param(*case, id=f"{kind.__name__} {i}")
-    for kind, cases in TEMPERATURE_LIMITS.items() for i, case in enumerate(cases)
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("law", "hot", "cold", "value"),
+    [
+        pytest.param(*case, id=f"{kind.__name__} {i}")
+        for kind, cases in TEMPERATURE_LIMITS.items()
+        for i, case in enumerate(cases)
+    ],
+)
 def test_a_temperature_law_has_its_limits(law, hot, cold, value):
     assert temperature_value(law, hot, cold) == pytest.approx(value, rel=1e-12)
 

@@ -148,14 +148,25 @@ def test_what_a_network_declares_in_toml_is_what_it_injects():
         "nodes": {"w": {"C_J_K": 500.0}, "s": {"C_J_K": 900.0}},
         "links": {"ws": {"between": ["w", "s"], "G_W_K": 10.0}, "sa": {"between": ["s", "ambient"], "G_W_K": 5.0}},
         "losses": {
-            "map": {"kind": "map", "at": "s", "at_speed": [0, 2000], "at_torque": [0, 50],
-                    "P_W": [[0, 10], [40, 80]]},
-            "ripple": {"kind": "ripple", "at": "w", "supply_V": 300, "L_H": 2e-3, "switching_Hz": 4000,
-                       "R20_ohm": 0.05},
-            "teeth": {"kind": "iron", "at": "s", "hysteresis_W": 10, "excess_W": 5, "speed_at": 1000,
-                      "frequency_exponent": 1.2},
+            "map": {"kind": "map", "at": "s", "at_speed": [0, 2000], "at_torque": [0, 50], "P_W": [[0, 10], [40, 80]]},
+            "ripple": {
+                "kind": "ripple",
+                "at": "w",
+                "supply_V": 300,
+                "L_H": 2e-3,
+                "switching_Hz": 4000,
+                "R20_ohm": 0.05,
+            },
+            "teeth": {
+                "kind": "iron",
+                "at": "s",
+                "hysteresis_W": 10,
+                "excess_W": 5,
+                "speed_at": 1000,
+                "frequency_exponent": 1.2,
+            },
         },
-    }  # fmt: skip
+    }
     given = {"speed_rpm": 1000.0, "torque_Nm": 25.0, "voltage_V": 150.0}
     found = audit(read_network(data), Record(np.linspace(0, 100, 101), given, {"ambient": 20.0}))
     assert found.declared_J["loss:map"] == pytest.approx(32.5 * 100)
@@ -164,10 +175,14 @@ def test_what_a_network_declares_in_toml_is_what_it_injects():
 
 
 def heated(**loss):
-    return read_network({
-        "network": {"name": "n", "boundaries": ["ambient"]}, "nodes": {"a": {"C_J_K": 900.0}},
-        "links": {"out": {"between": ["a", "ambient"], "G_W_K": 1.0}}, "losses": {"heat": {"at": "a", **loss}},
-    })  # fmt: skip
+    return read_network(
+        {
+            "network": {"name": "n", "boundaries": ["ambient"]},
+            "nodes": {"a": {"C_J_K": 900.0}},
+            "links": {"out": {"between": ["a", "ambient"], "G_W_K": 1.0}},
+            "losses": {"heat": {"at": "a", **loss}},
+        }
+    )
 
 
 CONSTANT = {"kind": "constant", "P_W": 100.0, "reference_degC": 20.0}

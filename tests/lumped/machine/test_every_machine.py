@@ -13,9 +13,11 @@ from lumped.integration.simulate import Record, simulate
 pytestmark = pytest.mark.heavy
 TIME = np.arange(0.0, 3600.0, 30.0)
 INPUTS = {  # a stop, a start, a flow that varies
-    "current_A": 30.0 + 10.0 * np.sin(TIME / 300.0), "speed_rpm": 1500.0 * np.clip(np.sin(TIME / 400.0), 0.0, 1.0),
-    "fan_flow_m3h": 138.0 * (1.0 + np.cos(TIME / 500.0)), "flow_l_min": 8.0 + 6.0 * np.sin(TIME / 200.0),
-}  # fmt: skip
+    "current_A": 30.0 + 10.0 * np.sin(TIME / 300.0),
+    "speed_rpm": 1500.0 * np.clip(np.sin(TIME / 400.0), 0.0, 1.0),
+    "fan_flow_m3h": 138.0 * (1.0 + np.cos(TIME / 500.0)),
+    "flow_l_min": 8.0 + 6.0 * np.sin(TIME / 200.0),
+}
 AROUND = {"ambient": 20.0 + 5.0 * np.sin(TIME / 900.0), "coolant": 40.0}
 
 
@@ -60,8 +62,10 @@ def test_tangents_are_differences_along_any_direction(network, record):
 
     def moved(step):
         logs = [p.mapping == "log" for p in network.parameters]
-        values = [p.value * np.exp(step * w) if log else p.value + step * w
-                  for p, w, log in zip(network.parameters, way, logs, strict=True)]  # fmt: skip
+        values = [
+            p.value * np.exp(step * w) if log else p.value + step * w
+            for p, w, log in zip(network.parameters, way, logs, strict=True)
+        ]
         named = {p.name: v for p, v in zip(network.parameters, values, strict=True)}
         return simulate(network, record, named, rows, steps=run.steps).y
 

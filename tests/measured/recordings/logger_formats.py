@@ -20,13 +20,32 @@ def signals(step_s: float, rows: int = ROWS) -> dict[str, np.ndarray]:
     k = np.arange(float(rows))
     on = (k >= 20).astype(float)
     rise = 1.0 - np.exp(-np.maximum(k - 20.0, 0.0) / 30.0)
-    return {"t": step_s * k, "I": 9.0 * on, "n": 1500.0 * on, "M": 1.5 * on, "P": 120.0 * on, "U": 48.0 - on,
-            "q": 6.0 + 0.0 * k, "W": 24.0 + 60.0 * rise, "H": 23.5 + 30.0 * rise, "B": 23.0 + 20.0 * rise,
-            "A": 22.0 + 0.1 * np.sin(k / 9.0)}  # fmt: skip
+    return {
+        "t": step_s * k,
+        "I": 9.0 * on,
+        "n": 1500.0 * on,
+        "M": 1.5 * on,
+        "P": 120.0 * on,
+        "U": 48.0 - on,
+        "q": 6.0 + 0.0 * k,
+        "W": 24.0 + 60.0 * rise,
+        "H": 23.5 + 30.0 * rise,
+        "B": 23.0 + 20.0 * rise,
+        "A": 22.0 + 0.1 * np.sin(k / 9.0),
+    }
 
 
-NAMES = {"I": "Current [A]", "n": "Speed [rpm]", "W": "T_winding [°C]", "H": "T_housing [°C]", "B": "T_bearing [°C]",
-         "A": "T_ambient [°C]", "P": "P_loss [W]", "M": "Torque [Nm]", "t": "Time [s]"}  # fmt: skip
+NAMES = {
+    "I": "Current [A]",
+    "n": "Speed [rpm]",
+    "W": "T_winding [°C]",
+    "H": "T_housing [°C]",
+    "B": "T_bearing [°C]",
+    "A": "T_ambient [°C]",
+    "P": "P_loss [W]",
+    "M": "Torque [Nm]",
+    "t": "Time [s]",
+}
 
 
 @dataclass(frozen=True)

@@ -72,9 +72,13 @@ def test_all_cells_in_quotation_marks(tmp_path):
 
 @pytest.mark.parametrize(
     ("rows", "words"),
-    [("1,2\n3\n", "line 3: 1 values under 2 names"), ("1,2\n3,4,5\n", "line 3: 3 values under 2 names"),
-     ('"1",2\n3,4,5\n', "3 values under 2 names"), ('"1,2\n3,4\n', "quotation marks in pairs")],
-)  # fmt: skip
+    [
+        ("1,2\n3\n", "line 3: 1 values under 2 names"),
+        ("1,2\n3,4,5\n", "line 3: 3 values under 2 names"),
+        ('"1",2\n3,4,5\n', "3 values under 2 names"),
+        ('"1,2\n3,4\n', "quotation marks in pairs"),
+    ],
+)
 def test_rows_that_are_no_rows_are_refused(tmp_path, rows, words):
     (tmp_path / "a.csv").write_text(f"a,b\n{rows}")
     with pytest.raises(InputError, match=words):
@@ -121,7 +125,10 @@ def test_dates_are_those_of_pandas(tmp_path, date):
 def test_a_second_recorder_that_repeats_a_time_is_named(tmp_path):
     (tmp_path / "a.csv").write_text("time_s,T\n0,20\n1,21\n2,22\n")
     (tmp_path / "b.csv").write_text("t,I\n0,1\n1,2\n1,3\n")
-    data = {"test": {"time": "time_s"}, "recorders": {"power": {"file": "b.csv", "time": "t"}},
-            "columns": {"T": {"quantity": "temperature", "unit": "degC", "place": "winding"}}}  # fmt: skip
+    data = {
+        "test": {"time": "time_s"},
+        "recorders": {"power": {"file": "b.csv", "time": "t"}},
+        "columns": {"T": {"quantity": "temperature", "unit": "degC", "place": "winding"}},
+    }
     with pytest.raises(InputError, match=r"b\.csv column 't' line 4: time 1 is given twice"):
         load_table(tmp_path / "a.csv", read_sheet(data, "sheet.toml", tmp_path))

@@ -109,9 +109,9 @@ def test_switch_off_readings_stand_at_the_end(tmp_path):
         ("[0.392, 0.393]", "[0.392, 0.393, 0.394]", "one number, or"),
         ("[0.4, 4.0]", "[4.0, 0.4]", "lowest, highest"),
         ("percent = 0.25,", "precent = 0.25,", "did you mean 'percent'"),
-        ('meter = {', 'after = { file = "no.csv", ambient_degC = 20 }\nmeter = {', "no such file"),
+        ("meter = {", 'after = { file = "no.csv", ambient_degC = 20 }\nmeter = {', "no such file"),
     ],
-)  # fmt: skip
+)
 def test_wrong_sheets(tmp_path, old, new, words):
     assert old in COLUMN
     with pytest.raises(InputError, match=words):

@@ -12,10 +12,16 @@ from thermoscope.commands.test.new import first_model
 
 # Names that the reader makes itself: of these formats columns are told by their order.
 RENAMED = {
-    "no header", "Arduino", "a serial monitor", "a second name over each", "groups over names",
-    "an object on every line", "names for statistics programs", "a comment sign before the names",
+    "no header",
+    "Arduino",
+    "a serial monitor",
+    "a second name over each",
+    "groups over names",
+    "an object on every line",
+    "names for statistics programs",
+    "a comment sign before the names",
     "what channels are in a row of remarks",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", FORMATS)

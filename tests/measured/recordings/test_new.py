@@ -96,8 +96,15 @@ def as_parquet(path):
     TABLE.rename(columns={"T_yoke": "T_yoke [K]", "wind": "wind [km/h]"}).to_parquet(path)
 
 
-WRITERS = {"german.csv": as_german, "zoned.tsv": as_zoned, "split.csv": as_split_clock, "a.xlsx": as_xlsx,
-           "a.tdms": as_tdms, "a.mf4": as_mf4, "a.parquet": as_parquet}  # fmt: skip
+WRITERS = {
+    "german.csv": as_german,
+    "zoned.tsv": as_zoned,
+    "split.csv": as_split_clock,
+    "a.xlsx": as_xlsx,
+    "a.tdms": as_tdms,
+    "a.mf4": as_mf4,
+    "a.parquet": as_parquet,
+}
 
 
 @pytest.fixture
@@ -199,10 +206,17 @@ def test_clocks(tmp_path, times, seconds):
 
 @pytest.mark.parametrize(
     ("header", "name", "unit"),
-    [("T1 [°C]", "T1", "degC"), ("Speed (1/min)", "Speed", "1/min"), ("T_yoke / °C", "T_yoke", "degC"),
-     ("t in s", "t", "s"), ("speed_rpm", "speed", "rpm"), ("P (kW)", "P", "kW"), ("coil A1", "coil A1", ""),
-     ("Flow rate, l/min", "Flow rate", "l/min")],
-)  # fmt: skip
+    [
+        ("T1 [°C]", "T1", "degC"),
+        ("Speed (1/min)", "Speed", "1/min"),
+        ("T_yoke / °C", "T_yoke", "degC"),
+        ("t in s", "t", "s"),
+        ("speed_rpm", "speed", "rpm"),
+        ("P (kW)", "P", "kW"),
+        ("coil A1", "coil A1", ""),
+        ("Flow rate, l/min", "Flow rate", "l/min"),
+    ],
+)
 def test_units_in_headers(header, name, unit):
     assert split_unit(header) == (name, unit)
 
@@ -215,9 +229,20 @@ def test_the_columns_of_a_published_test_bench(root):
     assert clock.columns == ()
     assert "rows 1 s apart are assumed" in clock.doubt
     found = {g.column: g.place or g.feeds for g in guesses(source, (), target)}
-    hand = {"water_outlet": "coolant", "ambient": "ambient", "rotor": "rotor", "activewind_1": "winding",
-            "activewind_2": "winding", "outer_yoke": "stator", "IdFbk": "id_A", "IqFbk": "iq_A",
-            "speed": "speed_rpm", "Torque": "torque_Nm", "IdRef": "", "IqRef": ""}  # fmt: skip
+    hand = {
+        "water_outlet": "coolant",
+        "ambient": "ambient",
+        "rotor": "rotor",
+        "activewind_1": "winding",
+        "activewind_2": "winding",
+        "outer_yoke": "stator",
+        "IdFbk": "id_A",
+        "IqFbk": "iq_A",
+        "speed": "speed_rpm",
+        "Torque": "torque_Nm",
+        "IdRef": "",
+        "IqRef": "",
+    }
     assert {c: found[c] for c in hand} == hand
 
 
@@ -227,8 +252,9 @@ def test_a_published_board_and_its_case(root, tmp_path, capsys):
     case = made(tmp_path, *files, network=root / "cases/tclab/network.toml", constants=settings(["ambient=20.4"]))
     assert [t.role for t in case.tests] == ["calibrate", "validate", "hold-out"]
     assert {c.name: c.place for t in case.tests[:1] for c in t.channels} == {
-        "Temperature 1 (degC)": "heater1", "Temperature 2 (degC)": "heater2",
-    }  # fmt: skip
+        "Temperature 1 (degC)": "heater1",
+        "Temperature 2 (degC)": "heater2",
+    }
     by_hand = load_case(root / "cases/tclab").case
     assert case.tests[0].inputs["heater1_percent"].max() == by_hand.tests[0].inputs["heater1_percent"].max() > 0
 
@@ -248,7 +274,8 @@ BAD = {
     "one column": ({"a.csv": "T_winding\n" + "\n".join(str(20 + i) for i in range(30))}, {}, "one column only"),
     "clocks apart": (
         {"a.csv": lines(dated(LATER[0])), "b.csv": lines(dated(LATER[1])).replace("T_winding", "current_A")},
-        {}, "never overlaps",
+        {},
+        "never overlaps",
     ),
     "both": ({"a.csv": GOOD}, {"machine": "series-dc-100kw"}, "both given"),
     "clock runs back": ({"a.csv": GOOD.replace("\n300,", "\n100,")}, {}, "runs back"),
@@ -256,7 +283,7 @@ BAD = {
     "no temperature": ({"a.csv": GOOD.replace("T_winding", "P_loss")}, {}, "no column is a temperature"),
     "unknown constant": ({"a.csv": GOOD}, {"constants": {"ambeint": 20.0}}, "did you mean 'ambient'"),
     "not there": ({}, {}, "no such file"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", BAD)
@@ -338,9 +365,18 @@ def test_what_many_tests_lack_is_said_once(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("cell", "value"),
-    [("1.234,5", 1234.5), ("1,234.5", 1234.5), ("1 234,5", 1234.5), ("1'234'567", 1234567.0), ("1.234.567", 1234567.0),
-     ("-12.345,25", -12345.25), ("1.5", 1.5), ("1,5", 1.5), ("1,500", 1.5)],
-)  # fmt: skip
+    [
+        ("1.234,5", 1234.5),
+        ("1,234.5", 1234.5),
+        ("1 234,5", 1234.5),
+        ("1'234'567", 1234567.0),
+        ("1.234.567", 1234567.0),
+        ("-12.345,25", -12345.25),
+        ("1.5", 1.5),
+        ("1,5", 1.5),
+        ("1,500", 1.5),
+    ],
+)
 def test_digits_in_threes(cell, value):
     assert number(cell) == value
 
@@ -349,8 +385,12 @@ def test_a_point_among_decimal_commas_stands_between_thousands(tmp_path):
     """1.500 rpm is fifteen hundred where temperatures have decimal commas, and 1.5 where they have points."""
     rows = "\n".join(f"{i};1.{500 + i};{20 + i / 10:.1f}" for i in range(50))
     german = text(tmp_path, "t;speed [rpm];T_winding\n" + rows.replace("0.", "0,"), "german.csv")
-    german.write_text("\n".join(";".join([a, b, c.replace(".", ",")]) for a, b, c in
-                                (row.split(";") for row in german.read_text().splitlines())))  # fmt: skip
+    german.write_text(
+        "\n".join(
+            ";".join([a, b, c.replace(".", ",")])
+            for a, b, c in (row.split(";") for row in german.read_text().splitlines())
+        )
+    )
     assert read_source(german).numbers("speed [rpm]")[0] == 1500.0
     assert any("thousands" in note for note in read_source(german).notes)
     english = text(tmp_path, "t;speed [rpm];T_winding\n" + rows, "english.csv")
@@ -376,8 +416,10 @@ def test_a_sensors_type_is_no_part_of_its_place_and_a_letter_is_a_place(tmp_path
     rows = "\n".join(f"{i},10,{20 + i / 10},{20 + i / 20},{20 + i / 30}" for i in range(100))
     case = made(tmp_path, text(tmp_path, f"time_s,I [A],T,PT100 housing [degC],T 2\n{rows}\n"))
     assert {c.name: c.place for c in case.tests[0].channels} == {
-        "T": "part", "PT100 housing [degC]": "housing", "T 2": "part-2",
-    }  # fmt: skip
+        "T": "part",
+        "PT100 housing [degC]": "housing",
+        "T 2": "part-2",
+    }
 
 
 def record(rows, header="time_s,T_winding [degC],I [A]", form="{0},{1:.2f},{2}"):

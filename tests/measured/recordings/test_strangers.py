@@ -64,11 +64,13 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
 
 @pytest.mark.parametrize(
     ("header", "columns", "words"),
-    [("t [s],T_winding [°C],room [°C]", "tWA", "No column says what heats it."),
-     ("t [s],Heat flow [kJ],T_winding [°C],room [°C]", "tPWA", "The only heat was left out: 'Heat flow"),
-     ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
-     ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone.")],
-)  # fmt: skip
+    [
+        ("t [s],T_winding [°C],room [°C]", "tWA", "No column says what heats it."),
+        ("t [s],Heat flow [kJ],T_winding [°C],room [°C]", "tPWA", "The only heat was left out: 'Heat flow"),
+        ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
+        ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone."),
+    ],
+)
 def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, words, capsys):
     written(tmp_path, table(header, *(S[c] for c in columns)))
     assert " ".join(capsys.readouterr().out.split()).startswith(words)
@@ -89,8 +91,12 @@ def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_p
 
 def test_the_table_of_guesses_keeps_its_doubts_whole_at_80_columns(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)  # a long folder is no part of the table
-    written(Path(), table("t [s],I [A],T_winding [°C],a long name of some angle [rad],c state", S["t"], S["I"], S["W"],
-                            S["A"], "3"))  # fmt: skip
+    written(
+        Path(),
+        table(
+            "t [s],I [A],T_winding [°C],a long name of some angle [rad],c state", S["t"], S["I"], S["W"], S["A"], "3"
+        ),
+    )
     out = capsys.readouterr().out
     assert max(map(len, out.splitlines())) <= 80
     assert "…" not in out
@@ -136,16 +142,25 @@ def test_all_temperatures_in_another_unit_are_seen_by_the_doctor(tmp_path, facto
     found = lambda: [f.what for f in examined([patient_of(folder.settings.tests[0])], network)]  # noqa: E731
     assert not any(unit in what for what in found())
     file = tmp_path / "made" / "tests" / "a.csv"
-    file.write_text(table("time_s,I [A],T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"] * factor + offset,
-                          S["A"] * factor + offset))  # fmt: skip
+    file.write_text(
+        table(
+            "time_s,I [A],T_winding [°C],T_room [°C]",
+            S["t"],
+            S["I"],
+            S["W"] * factor + offset,
+            S["A"] * factor + offset,
+        )
+    )
     assert any(unit in what for what in found())
 
 
 def test_two_doubts_of_one_file_are_both_said(tmp_path, capsys):
     """An unclosed quotation mark, and rows that share their minute."""
     stamps = [f"12:{i // 12:02d}" for i in range(len(S["t"]))]
-    rows = "\n".join(f"{s},{i:.1f},{w:.2f},{'x' if k != 30 else chr(34) + 'fan'}" for k, (s, i, w) in
-                     enumerate(zip(stamps, S["I"], S["W"])))  # fmt: skip
+    rows = "\n".join(
+        f"{s},{i:.1f},{w:.2f},{'x' if k != 30 else chr(34) + 'fan'}"
+        for k, (s, i, w) in enumerate(zip(stamps, S["I"], S["W"]))
+    )
     written(tmp_path, f"Time,I [A],T_winding [°C],note\n{rows}\n")
     out = " ".join(capsys.readouterr().out.split())
     assert "a quotation mark in line 32 has no partner" in out

@@ -47,16 +47,22 @@ def flipped(file):
 
 
 BYTES = {
-    "empty": lambda file: file.write_bytes(b""), "truncated": cut, "a few bytes others": flipped,
+    "empty": lambda file: file.write_bytes(b""),
+    "truncated": cut,
+    "a few bytes others": flipped,
     "random": lambda file: file.write_bytes(np.random.default_rng(0).bytes(4096)),
     "zeros": lambda file: file.write_bytes(bytes(4096)),
-    "a number": lambda file: file.write_text("3"), "a list": lambda file: file.write_text("[]"),
+    "a number": lambda file: file.write_text("3"),
+    "a list": lambda file: file.write_text("[]"),
     "another document": lambda file: file.write_text('{"fingerprint": 3, "values": [1]}'),
     "nested": lambda file: file.write_text("[" * 100000),
-}  # fmt: skip
+}
 PLACES = {"folder": folder, "loop": loop, "pipe": pipe}
-READERS = [("diagnosis.json", "answer {case} yes"), ("diagnosis.json", "add {case} event@1"),
-           ("calibration.json", "calibrate {case} --anyway")]  # fmt: skip
+READERS = [
+    ("diagnosis.json", "answer {case} yes"),
+    ("diagnosis.json", "add {case} event@1"),
+    ("calibration.json", "calibrate {case} --anyway"),
+]
 SLOW = ("diagnosis.json", "report {case}")
 
 
@@ -74,8 +80,7 @@ def original(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("name", "words", "damage"),
-    [*((*reader, damage) for reader in READERS for damage in BYTES.values()), (*SLOW, cut)],
+    ("name", "words", "damage"), [*((*reader, damage) for reader in READERS for damage in BYTES.values()), (*SLOW, cut)]
 )
 def test_damaged_bytes_are_said_and_not_used(original, tmp_path, name, words, damage):
     case = shutil.copytree(original, tmp_path / "case")
@@ -88,10 +93,7 @@ def test_damaged_bytes_are_said_and_not_used(original, tmp_path, name, words, da
 
 
 @pytest.mark.parametrize("damage", PLACES.values(), ids=PLACES)
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [*READERS, SLOW, ("diagnosis.json", "diagnose {case}")],
-)
+@pytest.mark.parametrize(("name", "words"), [*READERS, SLOW, ("diagnosis.json", "diagnose {case}")])
 def test_what_is_no_file_is_named_with_its_cure(original, tmp_path, name, words, damage):
     case = shutil.copytree(original, tmp_path / "case")
     damage(case / "out" / name)
@@ -104,9 +106,13 @@ def test_what_is_no_file_is_named_with_its_cure(original, tmp_path, name, words,
 
 
 WRITTEN = {
-    "simulate {case}": "simulate-stand.csv", "export {case}": "case.xlsx", "export {case} --as csv": "errors.csv",
-    "report {case}": "report.html", "render {case}": "error.png", "export {case} --as c": "c/thermal_network.c",
-}  # fmt: skip
+    "simulate {case}": "simulate-stand.csv",
+    "export {case}": "case.xlsx",
+    "export {case} --as csv": "errors.csv",
+    "report {case}": "report.html",
+    "render {case}": "error.png",
+    "export {case} --as c": "c/thermal_network.c",
+}
 
 
 @pytest.mark.parametrize("words", WRITTEN)
@@ -205,8 +211,12 @@ with folder_whole(Path("made")) as partial:
 def test_a_killed_new_leaves_nothing(tmp_path, number):
     work, cache = tmp_path / "work", tmp_path / "cache"
     work.mkdir()
-    done = subprocess.run([sys.executable, "-c", KILLED, number], cwd=work, check=False,
-                          env={**os.environ, "THERMOSCOPE_CACHE": str(cache)})  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, number],
+        cwd=work,
+        check=False,
+        env={**os.environ, "THERMOSCOPE_CACHE": str(cache)},
+    )
     assert done.returncode != 0
     assert list(work.iterdir()) == []
     assert number == "SIGKILL" or list(cache.iterdir()) == []

@@ -14,9 +14,15 @@ from thermoscope.case_folder.history import History, Revision, checked_values, l
 
 FIRST = Revision(0, "calibrate", values={"link.a": 1.25}, intervals={"link.a": (1.0, 1.5)}, rmse_K={"t": (3.0, 2.0)})
 SECOND = Revision(
-    0, "add", ("convection@flange",), "convection@flange", {"link.a": 1.1, "convection@flange": 12.5},
-    rmse_K={"t": (2.0, 0.5)}, why="error on tests not fitted 2 -> 0.5 K", evidence={"score": 8.1},
-)  # fmt: skip
+    0,
+    "add",
+    ("convection@flange",),
+    "convection@flange",
+    {"link.a": 1.1, "convection@flange": 12.5},
+    rmse_K={"t": (2.0, 0.5)},
+    why="error on tests not fitted 2 -> 0.5 K",
+    evidence={"score": 8.1},
+)
 
 
 def test_round_trip(tmp_path):

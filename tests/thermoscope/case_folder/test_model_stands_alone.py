@@ -71,10 +71,12 @@ unit = "A"
 input = "current_A"
 """
 TESTS = {  # role, slowest and fastest speed (rpm), current (A), ambient (degC)
-    "slow": ("calibrate", (800, 1600), 20, 22), "mid": ("calibrate", (1200, 2400), 40, 22),
-    "check": ("validate", (900, 1900), 30, 25), "fast": ("hold-out", (3000, 6000), 60, 15),
+    "slow": ("calibrate", (800, 1600), 20, 22),
+    "mid": ("calibrate", (1200, 2400), 40, 22),
+    "check": ("validate", (900, 1900), 30, 25),
+    "fast": ("hold-out", (3000, 6000), 60, 15),
     "rest": ("hold-out", (100, 300), 10, 35),
-}  # fmt: skip
+}
 FITTED = ("slow", "mid", "check", "fast")
 
 
@@ -187,8 +189,10 @@ def test_the_reference_is_of_the_tests_that_a_fit_may_use(fitted):
     revision, *_ = tomllib.loads(fitted)["revision"]
     speed = revision["reference"]["signals"]["speed_rpm"]
     assert speed["high"] == 2400.0
-    used = [np.loadtxt(driven([*TESTS].index(n), *TESTS[n][1:]).splitlines()[1:], delimiter=",")[:, 3]
-            for n in ("slow", "mid", "check")]  # fmt: skip
+    used = [
+        np.loadtxt(driven([*TESTS].index(n), *TESTS[n][1:]).splitlines()[1:], delimiter=",")[:, 3]
+        for n in ("slow", "mid", "check")
+    ]
     assert speed["level"] == pytest.approx(np.sqrt(np.mean(np.concatenate(used) ** 2)), rel=1e-8)
 
 

@@ -13,9 +13,11 @@ NETWORK = {
     "network": {"name": "n", "boundaries": ["room"]},
     "nodes": {"a": {"C_J_K": 100.0}},
     "links": {"l": {"between": ["a", "room"], "G_W_K": 1.0, "of": {"input": "blower", "at": 1000}}},
-    "losses": {"c": {"kind": "copper", "at": "a", "R20_ohm": 0.1, "currents": ["d", "q"]},
-               "f": {"kind": "friction", "at": "a", "P_W": 1.0, "of": {"input": "spin", "at": 1000}}},
-}  # fmt: skip
+    "losses": {
+        "c": {"kind": "copper", "at": "a", "R20_ohm": 0.1, "currents": ["d", "q"]},
+        "f": {"kind": "friction", "at": "a", "P_W": 1.0, "of": {"input": "spin", "at": 1000}},
+    },
+}
 COLUMNS = {"d": ("current", "A"), "q": ("current", "A"), "spin": ("speed", "rpm"), "blower": ("speed", "rpm")}
 
 
@@ -31,8 +33,15 @@ def logged(order):
 
 
 def test_a_blower_is_not_the_machine_and_a_component_not_its_current():
-    network = read_network({**NETWORK, "losses": {**NETWORK["losses"], "i": {
-        "kind": "stray", "at": "a", "P_W": 1.0, "of": {"input": "whole", "at": 5}}}})  # fmt: skip
+    network = read_network(
+        {
+            **NETWORK,
+            "losses": {
+                **NETWORK["losses"],
+                "i": {"kind": "stray", "at": "a", "P_W": 1.0, "of": {"input": "whole", "at": 5}},
+            },
+        }
+    )
     for order in (("d", "q", "whole", "spin", "blower"), ("blower", "whole", "spin", "q", "d")):
         found = with_quantities(network, [sheet()], logged(order))
         assert (found.signal("current"), found.signal("speed")) == ("whole", "spin")
@@ -47,8 +56,14 @@ def test_what_the_network_file_says_stands():
 
 def test_a_measured_loss_asks_which_input_is_the_speed():
     """Torque times speed in 1/min needs pi/30; of inputs nobody knows that is not guessed from a name."""
-    loss = {"m": {"kind": "measured", "at": "a", "electrical": {"product": ["P"]},
-                  "mechanical": {"product": ["M", "shaft_rpm"]}}}  # fmt: skip
+    loss = {
+        "m": {
+            "kind": "measured",
+            "at": "a",
+            "electrical": {"product": ["P"]},
+            "mechanical": {"product": ["M", "shaft_rpm"]},
+        }
+    }
     with pytest.raises(InputError, match="quantity"):
         read_network({**NETWORK, "losses": loss})
     said = read_network({**NETWORK, "losses": loss, "inputs": {"shaft_rpm": {"quantity": "speed"}}})

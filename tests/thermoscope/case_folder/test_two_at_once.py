@@ -34,10 +34,14 @@ main()
 def test_the_second_of_two_calibrations_is_refused(case, tmp_path):
     doors = [tmp_path / "a", tmp_path / "b"]
     both = [
-        subprocess.Popen([sys.executable, "-c", MEETING, *map(str, order), "model", "calibrate", str(case), "--anyway"],
-                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        subprocess.Popen(
+            [sys.executable, "-c", MEETING, *map(str, order), "model", "calibrate", str(case), "--anyway"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         for order in (doors, doors[::-1])
-    ]  # fmt: skip
+    ]
     told = [process.communicate(timeout=500) for process in both]
     codes = sorted(process.returncode for process in both)
     assert codes == [0, 2]

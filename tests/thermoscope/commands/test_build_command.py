@@ -20,7 +20,7 @@ FEW = {
     "series-dc-100kw": {"rotor": {"slots": 12}, "housing": {"fins": 8}},
     "pmsm-m1": {"stator": {"slots": 9, "liner_gap_mm": 0.5}, "rotor": {"poles": 6}},
     "tefc-industrial": {"stator": {"slots": 9, "tooth_mm": 20.0}, "rotor": {"bars": 9}, "housing": {"fins": 6}},
-}  # fmt: skip
+}
 
 
 def small(name: str) -> Machine:
@@ -28,8 +28,15 @@ def small(name: str) -> Machine:
     machine = load_machine(name)
     few = machine_from({"machine": {"family": machine.family}, "geometry": FEW[name]}, name)
     contacts = {"default": {"gap_mm": 0.02}}
-    return replace(few, name="small", sections={**machine.sections, "contacts": contacts, "ratings": {
-        **machine.sections["ratings"], "current_A": 5.0}})  # fmt: skip
+    return replace(
+        few,
+        name="small",
+        sections={
+            **machine.sections,
+            "contacts": contacts,
+            "ratings": {**machine.sections["ratings"], "current_A": 5.0},
+        },
+    )
 
 
 @pytest.fixture(scope="module")

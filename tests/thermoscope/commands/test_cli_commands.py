@@ -58,14 +58,21 @@ FIELDS = {
 ROWS = {
     ("wrong", "tests"): {"name", "role", "rmse_K", "channels"},
     ("diagnose", "candidates"): {
-        "effect", "score", "threshold", "amplitude", "explained", "rmse_K", "holdout_rmse_K", "confused_with",
+        "effect",
+        "score",
+        "threshold",
+        "amplitude",
+        "explained",
+        "rmse_K",
+        "holdout_rmse_K",
+        "confused_with",
         "decision",
     },
     ("diagnose", "cannot_see"): {"effect", "smallest_detectable", "unit"},
     ("diagnose", "where"): {"place", "evidence_nats"},
     ("add", "tests"): {"name", "role", "rmse_K"},
     ("add", "parameters"): {"name", "value", "unit", "ci95", "prior", "identified"},
-}  # fmt: skip
+}
 CHANNEL = {"channel", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"}
 
 
@@ -162,9 +169,29 @@ def test_help_loads_nothing_slow():
 @pytest.mark.heavy
 def test_compare_loads_what_runs_a_network_alone(case):
     """Most of what a comparison of few nodes takes is loading packages: NumPy and Numba are needed, these are not."""
-    slow = ["pandas", "scipy.special", "scipy.sparse", "scipy.optimize", "scipy.stats", "scipy.interpolate", "tkinter",
-            "matplotlib", "plotly", "pint", "CoolProp", "ht", "fluids", "openpyxl", "ruptures", "uncertainties",
-            "jsonschema", "geom.solids", "fem", "viz", "validation.inference.posterior"]  # fmt: skip
+    slow = [
+        "pandas",
+        "scipy.special",
+        "scipy.sparse",
+        "scipy.optimize",
+        "scipy.stats",
+        "scipy.interpolate",
+        "tkinter",
+        "matplotlib",
+        "plotly",
+        "pint",
+        "CoolProp",
+        "ht",
+        "fluids",
+        "openpyxl",
+        "ruptures",
+        "uncertainties",
+        "jsonschema",
+        "geom.solids",
+        "fem",
+        "viz",
+        "validation.inference.posterior",
+    ]
     end = f"atexit.register(lambda: print(*[m for m in {slow} if m in sys.modules], file=sys.stderr))"
     command = [sys.executable, "-c", f"import atexit, sys; {end}; {RUN}", "test", "compare", str(case)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=500)

@@ -8,11 +8,17 @@ from thermoscope.console.answer import LINES, Answer, lay_out
 
 def candidate(effect, unit, probability=0.99, decision="named", limit=14.14):
     return {
-        "effect": effect, "probability": probability, "decision": decision, "smallest_detectable": limit,
-        "amplitude": {"value": -0.00956, "unit": unit, "ci95": [-0.0172, -0.00196]}, "rmse_K": None,
-        "holdout_rmse_K": {"before": 1.16, "after": 0.93}, "isolating_test": "shield it", "confused_with": [],
+        "effect": effect,
+        "probability": probability,
+        "decision": decision,
+        "smallest_detectable": limit,
+        "amplitude": {"value": -0.00956, "unit": unit, "ci95": [-0.0172, -0.00196]},
+        "rmse_K": None,
+        "holdout_rmse_K": {"before": 1.16, "after": 0.93},
+        "isolating_test": "shield it",
+        "confused_with": [],
         "tests": [],
-    }  # fmt: skip
+    }
 
 
 @pytest.mark.parametrize("unit", ["1", "W", "W/m2/K at 10 m/s"])

@@ -66,11 +66,14 @@ def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
 
 @pytest.mark.parametrize(
     ("name", "says"),
-    [("event@9", "no event '9'"), ("loss.constant@flange in noon", "unknown test or event"),
-     ("loss.constant@flange in road:900-5000s", "outside the record"),
-     ("loss.constant@flange in road:900-700s", "ends at"),
-     ("loss.constant@flange in road:500-900,700-1000s", "overlaps itself")],
-)  # fmt: skip
+    [
+        ("event@9", "no event '9'"),
+        ("loss.constant@flange in noon", "unknown test or event"),
+        ("loss.constant@flange in road:900-5000s", "outside the record"),
+        ("loss.constant@flange in road:900-700s", "ends at"),
+        ("loss.constant@flange in road:500-900,700-1000s", "overlaps itself"),
+    ],
+)
 def test_an_event_that_cannot_be_is_refused(opened_lid, name, says):
     with pytest.raises(InputError, match=says):
         revise.add(str(opened_lid[0]), name, False, None)
@@ -97,9 +100,12 @@ def test_an_answer_is_kept_and_taken_back(opened_lid, capsys):
 
 @pytest.mark.parametrize(
     ("word", "about", "says"),
-    [("perhaps", "road", "is no answer"), ("yes", "noon", "is no test, event or fault"),
-     ("yes", "road:0-9000s", "outside the record")],
-)  # fmt: skip
+    [
+        ("perhaps", "road", "is no answer"),
+        ("yes", "noon", "is no test, event or fault"),
+        ("yes", "road:0-9000s", "outside the record"),
+    ],
+)
 def test_an_answer_to_nothing_is_refused(opened_lid, word, about, says):
     with pytest.raises(InputError, match=says):
         answer(str(opened_lid[0]), word, about, None)

@@ -274,7 +274,9 @@ def test_the_hottest_point_is_that_of_the_hottest_instant():
 def test_a_part_that_is_heated_by_a_share_of_another_ones_loss_has_a_hottest_point_too():
     net = bare_network("coil", {"coil": 100.0, "yoke": 50.0, "shaft": 9.0}, ("air",))
     net = net.extended(sources=[node_source(net, "heat", "copper", {"coil": 0.6, "yoke": 0.4}, Fixed(1.0))])
-    one = {name: PartShape(np.array([k]), None, np.ones((1, 1)), np.ones(1), np.array([k]))
-           for k, name in enumerate(("coil", "yoke", "shaft"))}  # fmt: skip
+    one = {
+        name: PartShape(np.array([k]), None, np.ones((1, 1)), np.ones(1), np.array([k]))
+        for k, name in enumerate(("coil", "yoke", "shaft"))
+    }
     found = hot_spots(replace(net, recovery=Shapes(one)), np.full((2, 4), 20.0))
     assert list(found) == ["hottest point of coil", "hottest point of yoke"]

@@ -75,9 +75,21 @@ def test_commands_print_through_answers_alone(root):
                 assert any(k.arg == "file" for k in node.keywords), f"{file.name} line {node.lineno}"
 
 
-CHEAP = ["test compare CASE", "test doctor CASE", "explain effects CASE", "explain effects", "test quantities",
-         "model machines", "use simulate CASE", "use export CASE", "model calibrate CASE", "model undo CASE",
-         "bench protocol", "check", "compare CASE --all"]  # fmt: skip
+CHEAP = [
+    "test compare CASE",
+    "test doctor CASE",
+    "explain effects CASE",
+    "explain effects",
+    "test quantities",
+    "model machines",
+    "use simulate CASE",
+    "use export CASE",
+    "model calibrate CASE",
+    "model undo CASE",
+    "bench protocol",
+    "check",
+    "compare CASE --all",
+]
 
 
 @pytest.fixture(scope="module")

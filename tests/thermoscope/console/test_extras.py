@@ -10,9 +10,16 @@ import pytest
 
 from thermoscope.parts import EXTRAS
 
-PYPI = {"skfem": "scikit-fem", "PIL": "pillow",
-        "imageio_ffmpeg": "imageio-ffmpeg", "rerun": "rerun-sdk", "nptdms": "npTDMS", "OCP": "cadquery",
-        "vtk": "pyvista", "vtkmodules": "pyvista"}  # fmt: skip
+PYPI = {
+    "skfem": "scikit-fem",
+    "PIL": "pillow",
+    "imageio_ffmpeg": "imageio-ffmpeg",
+    "rerun": "rerun-sdk",
+    "nptdms": "npTDMS",
+    "OCP": "cadquery",
+    "vtk": "pyvista",
+    "vtkmodules": "pyvista",
+}
 HEAVY = sorted({p for e in EXTRAS.values() for p in e.packages})
 RUN = f"""
 import sys
@@ -38,8 +45,9 @@ for words in sys.argv[1:]:
 def said(case, commands):
     """(exit code, stderr) of each command, in one process where no extra is installed; CASE is the case."""
     asked = [words.replace("CASE", str(case)) for words in commands]
-    done = subprocess.run([sys.executable, "-c", RUN, *asked], capture_output=True, text=True, timeout=500,
-                          cwd=case.parent)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, *asked], capture_output=True, text=True, timeout=500, cwd=case.parent
+    )
     assert done.returncode == 0, done.stderr
     parts = re.findall(r"^# .*?\n(.*?)^exit (\d+)$", done.stderr, re.M | re.S)
     assert len(parts) == len(commands), done.stderr
@@ -47,12 +55,27 @@ def said(case, commands):
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("commands", [
-    ("test compare CASE --why", "model calibrate CASE", "explain diagnose CASE", "model add CASE convection@flange"),
-    ("test doctor CASE", "explain effects CASE", "use simulate CASE", "use export CASE --as json",
-     "use export CASE --as xlsx", "use export CASE --as csv", "test quantities",
-     "test new three/tests/stand.csv --yes --network three/network.toml --out again"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "commands",
+    [
+        (
+            "test compare CASE --why",
+            "model calibrate CASE",
+            "explain diagnose CASE",
+            "model add CASE convection@flange",
+        ),
+        (
+            "test doctor CASE",
+            "explain effects CASE",
+            "use simulate CASE",
+            "use export CASE --as json",
+            "use export CASE --as xlsx",
+            "use export CASE --as csv",
+            "test quantities",
+            "test new three/tests/stand.csv --yes --network three/network.toml --out again",
+        ),
+    ],
+)
 def test_declared_networks_need_the_core_alone(case, commands):
     for words, (code, text) in zip(commands, said(case, commands), strict=True):
         assert code in (0, 1), f"{words}: {text}"
@@ -60,8 +83,12 @@ def test_declared_networks_need_the_core_alone(case, commands):
 
 
 def test_a_missing_part_is_one_message(case):
-    needs = {"model build tefc-industrial": "cad", "show report CASE": "view", "show serve CASE": "view",
-             "show picture CASE curves": "view"}  # fmt: skip
+    needs = {
+        "model build tefc-industrial": "cad",
+        "show report CASE": "view",
+        "show serve CASE": "view",
+        "show picture CASE curves": "view",
+    }
     for extra, (code, text) in zip(needs.values(), said(case, list(needs)), strict=True):
         assert code == 2
         assert f"pip install 'thermoscope[{extra}]'" in text
@@ -82,10 +109,14 @@ def test_the_extras_are_those_of_the_project(root):
 def test_a_missing_part_is_said_before_any_work_and_is_the_right_one(case):
     """A declared network has no geometry, whatever is installed; an optimisation lacks its method first."""
     asked = {
-        "show viewer CASE": "no geometry", "show film CASE": "no geometry", "show viewer road-test": "[view]",
-        "use optimise road-test --limit winding=155": "[optimise]", "show report road-test": "[view]",
-        "model build tefc-industrial": "[cad]", "use optimise CASE --help": "Usage",
-    }  # fmt: skip
+        "show viewer CASE": "no geometry",
+        "show film CASE": "no geometry",
+        "show viewer road-test": "[view]",
+        "use optimise road-test --limit winding=155": "[optimise]",
+        "show report road-test": "[view]",
+        "model build tefc-industrial": "[cad]",
+        "use optimise CASE --help": "Usage",
+    }
     for (words, right), (code, text) in zip(asked.items(), said(case, list(asked)), strict=True):
         if right == "Usage":
             assert code == 0

@@ -29,14 +29,18 @@ def machine():
     feet, plates = dict.fromkeys(("foot", "foot.plate"), Role.FOOT), dict.fromkeys(AREA, Role.BASE)
     said = {name: identity(role) for name, role in (feet | plates).items()}
     net = replace(bare_network("small", NODES, ["ambient"]), declared=said)
-    links = [node_link(net, "slot", "link", "winding", "stator.core", Fixed(9.0)),
-             node_link(net, "film:stator.core", "film", "stator.core", "ambient", Fixed(2.2))]  # fmt: skip
+    links = [
+        node_link(net, "slot", "link", "winding", "stator.core", Fixed(9.0)),
+        node_link(net, "film:stator.core", "film", "stator.core", "ambient", Fixed(2.2)),
+    ]
     for name, (foot, base, h) in {"bench": ("foot", "base", 1.0), "plate": ("foot.plate", "base.plate", 2.5)}.items():
         law = Switched(Fixed(5.0), f"on_{name}", True)
-        links += [node_link(net, f"joint:{name}", "contact", "stator.core", foot, law),
-                  node_link(net, f"seat:{name}", "contact", foot, base, Fixed(8.0)),
-                  node_link(net, f"film:{base}:natural", "film", base, "ambient", Fixed(h)),
-                  node_link(net, f"film:{base}:radiation", "film", base, "ambient", SHINES, AREA[base])]  # fmt: skip
+        links += [
+            node_link(net, f"joint:{name}", "contact", "stator.core", foot, law),
+            node_link(net, f"seat:{name}", "contact", foot, base, Fixed(8.0)),
+            node_link(net, f"film:{base}:natural", "film", base, "ambient", Fixed(h)),
+            node_link(net, f"film:{base}:radiation", "film", base, "ambient", SHINES, AREA[base]),
+        ]
     heat = node_source(net, "loss:copper", "copper", {"winding": 1.0}, Fixed(220.0))
     names = ("slot", "film:stator.core", "joint:bench", "joint:plate", "film:base:natural", "film:base.plate:natural")
     own = [Parameter(f"h.{n}", ((n, 1.0),), prior_sd=0.2, low=0.05, high=20.0) for n in names]

@@ -17,8 +17,9 @@ from validation.parameters.unknowns import Unknowns
 from validation.revision.acceptance import checks, predicted_without
 from validation.revision.revise import staged_fit, start
 
-BIAS = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
-                 neutral=0.0)  # fmt: skip
+BIAS = Parameter(
+    "bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset", neutral=0.0
+)
 RIGHT = "convection@flange.right"
 
 

@@ -66,8 +66,12 @@ def test_an_input_of_two_values_has_no_exponent(case, kind, counts):
     t = case.tests[0]
     n = np.arange(t.time.size)
     on = (n // 40) % 2
-    u = {"still": np.full(n.size, 100.0), "switched": 100.0 * on, "stepped": 50.0 * ((n // 40) % 3),
-         "ramped": np.linspace(0.0, 100.0, n.size)}[kind]  # fmt: skip
+    u = {
+        "still": np.full(n.size, 100.0),
+        "switched": 100.0 * on,
+        "stepped": 50.0 * ((n // 40) % 3),
+        "ramped": np.linspace(0.0, 100.0, n.size),
+    }[kind]
     if kind == "switched":
         u[np.flatnonzero(np.diff(on))[:1]] = 30.0
     tests = [replace(t, inputs={**t.inputs, "fan_flow_m3h": u})]

@@ -25,8 +25,9 @@ def fitted(*parameters, tests=None):
 
 def test_of_a_linear_model_the_profile_is_the_covariance():
     """Readings are linear in the loss and in a bias: the posterior is Gaussian, both intervals are 1.96 sd."""
-    bias = Parameter("bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset",
-                     neutral=0.0)  # fmt: skip
+    bias = Parameter(
+        "bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset", neutral=0.0
+    )
     fit, tests = fitted(LOSS, bias)
     found = profiles(fit, tests, {}, ["loss"])["loss"]
     (row, _) = estimates(fit)

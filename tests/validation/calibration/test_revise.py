@@ -96,9 +96,7 @@ def test_calibration_leaves_less_than_the_sensors_are_sure_of():
     assert rmse(segments(network, tests, first.model.values)) < 0.2
 
 
-@pytest.mark.parametrize(
-    ("act", "name"), [(remove, EFFECT), (add, "convection@mars"), (add, "phlogiston@yoke")]
-)  # fmt: skip
+@pytest.mark.parametrize(("act", "name"), [(remove, EFFECT), (add, "convection@mars"), (add, "phlogiston@yoke")])
 def test_errors_name_what_would_be_right(act, name):
     with pytest.raises(InputError):
         act(stand()[0], name)

@@ -24,8 +24,10 @@ TIME = np.arange(0.0, 3600.0 * HOURS, 300.0)
 def chain():
     """shell - air (G), core - shell (2 G), heat P in the core."""
     net = bare_network("chain", {"core": C, "shell": C}, ("air",))
-    links = [node_link(net, "film", "film", "shell", "air", Fixed(G)),
-             node_link(net, "joint", "link", "core", "shell", Fixed(2.0 * G))]  # fmt: skip
+    links = [
+        node_link(net, "film", "film", "shell", "air", Fixed(G)),
+        node_link(net, "joint", "link", "core", "shell", Fixed(2.0 * G)),
+    ]
     heat = [node_source(net, "heat", "copper", {"core": 1.0}, Fixed(P))]
     own = [("film", 0.3), ("joint", 0.4), ("heat", 0.1)]
     parameters = tuple(Parameter(f"p.{n}", ((n, 1.0),), prior_sd=sd) for n, sd in own)
@@ -44,8 +46,11 @@ def measured(seen=("shell",), seed=0, factors=(1.0, 1.0, 1.0)):
     rest = -np.linalg.solve(A, np.array([p / C, 0.0]))
     T = 20.0 + rest - (vectors * np.exp(np.outer(TIME, values))[:, None, :]) @ np.linalg.solve(vectors, rest)
     rng = np.random.default_rng(seed)
-    channels = [Channel(n, n, Row(np.array([i]), np.ones(1)), T[:, i] + 0.05 * rng.standard_normal(TIME.size), 0.3)
-                for i, n in enumerate(("core", "shell")) if n in seen]  # fmt: skip
+    channels = [
+        Channel(n, n, Row(np.array([i]), np.ones(1)), T[:, i] + 0.05 * rng.standard_normal(TIME.size), 0.3)
+        for i, n in enumerate(("core", "shell"))
+        if n in seen
+    ]
     air = np.full(TIME.size, 20.0)
     return Test("stand", "calibrate", TIME, {}, {"air": air}, tuple(channels), 20.0), T
 

@@ -73,8 +73,12 @@ def test_the_arithmetics_own_error_covers_what_it_is(every):
     """Against the exact solution, at steps of 100 to 1000 s."""
     test, keep = measured(), slice(None, None, every)
     time = test.time[keep]
-    test = replace(test, time=time, boundaries={"ambient": np.full_like(time, 20.0)},
-                   channels=(replace(test.channels[0], y=test.channels[0].y[keep]),))  # fmt: skip
+    test = replace(
+        test,
+        time=time,
+        boundaries={"ambient": np.full_like(time, 20.0)},
+        channels=(replace(test.channels[0], y=test.channels[0].y[keep]),),
+    )
     (row,) = uncertainties(one_node(LOSS), test, {})
     assert 0.0 < row.error_K <= row.numeric_K < 0.1
 

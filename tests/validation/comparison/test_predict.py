@@ -72,8 +72,17 @@ def predict_without_lag(net, test):
     return predict(net, replace(test, channels=channels), {}).y[:, 3]
 
 
-HEADS = ("bias:yoke", "gain:yoke", "stem:housing", "drift:yoke", "lag:yoke", "boundary:ambient", "initial:warm",
-         "delay:warm", "swap:yoke|housing")  # fmt: skip
+HEADS = (
+    "bias:yoke",
+    "gain:yoke",
+    "stem:housing",
+    "drift:yoke",
+    "lag:yoke",
+    "boundary:ambient",
+    "initial:warm",
+    "delay:warm",
+    "swap:yoke|housing",
+)
 
 
 @pytest.mark.parametrize("stop", [50, 7])

@@ -50,8 +50,12 @@ def test_a_wider_doubt_of_the_case_is_a_wider_limit():
 
 def test_an_input_no_law_reads_moves_nothing():
     one = case()
-    more = replace(one, tests=(replace(one.tests[0], inputs={**one.tests[0].inputs, "vehicle_speed_mps": np.ones(
-        one.tests[0].time.size)}),))  # fmt: skip
+    more = replace(
+        one,
+        tests=(
+            replace(one.tests[0], inputs={**one.tests[0].inputs, "vehicle_speed_mps": np.ones(one.tests[0].time.size)}),
+        ),
+    )
     assert row(more).limit_K == row(one).limit_K
 
 

@@ -10,8 +10,18 @@ from measured.case import Case, Channel, Model, Test
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "parameters", "boundaries", "inputs")
 SHARES = ("of", "at", "wall", "acts_on")  # tables whose keys are names
-INPUTS = ("input", "currents", "current", "speed", "torque", "voltage", "excitation", "product",
-          "flow_m3_h_input", "flow_l_min_input")  # fmt: skip
+INPUTS = (
+    "input",
+    "currents",
+    "current",
+    "speed",
+    "torque",
+    "voltage",
+    "excitation",
+    "product",
+    "flow_m3_h_input",
+    "flow_l_min_input",
+)
 KEPT = ("kind", "surface", "law", "mapping", "coolant", "arrangement", "unit", "source", "role", "quantity", "name")
 
 
@@ -47,8 +57,10 @@ def renamed(data, words):
 def _walk(node, words, key, top=False):
     if isinstance(node, dict):
         own = key in SECTIONS or key in SHARES
-        return {_word(k, words) if own else k: _walk(v, words, "" if own and key in SECTIONS else k)
-                for k, v in node.items()}  # fmt: skip
+        return {
+            _word(k, words) if own else k: _walk(v, words, "" if own and key in SECTIONS else k)
+            for k, v in node.items()
+        }
     if isinstance(node, list):
         return [_walk(v, words, key) for v in node]
     return _word(node, words) if isinstance(node, str) and key not in KEPT else node

@@ -165,8 +165,9 @@ def test_pulses_are_the_steps_of_a_curve():
 
 def test_neighbours_of_one_sign_are_one_pulse():
     assert joined([((0.0, 10.0), 1.0), ((10.0, 20.0), 3.0), ((20.0, 30.0), -1.0)]) == [
-        ((0.0, 20.0), pytest.approx(2.0)), ((20.0, 30.0), -1.0)
-    ]  # fmt: skip
+        ((0.0, 20.0), pytest.approx(2.0)),
+        ((20.0, 30.0), -1.0),
+    ]
 
 
 def test_all_stretches_by_cumulated_sums_are_those_weighed_one_by_one():
@@ -254,8 +255,13 @@ def test_masses_and_joints_cannot_differ_between_tests():
 
     net = two_bodies()
     able = {p.name: can_differ(net, p) for p in net.parameters}
-    assert able == {"capacity.body": False, "capacity.core": False, "link.joint": False, "link.film": True,
-                    "loss.heat": True}  # fmt: skip
+    assert able == {
+        "capacity.body": False,
+        "capacity.core": False,
+        "link.joint": False,
+        "link.film": True,
+        "loss.heat": True,
+    }
 
 
 @pytest.mark.heavy

@@ -24,10 +24,19 @@ KINDS = kinds()
 SHARED = {
     f"validation.effects.{name}"
     for name in (
-        "above", "base", "build", "during", "time_window", "registry", "sites", "losses.added_loss",
-        "films.ambient_film", "sensors.reading_fault", "sensors.input_fault",
+        "above",
+        "base",
+        "build",
+        "during",
+        "time_window",
+        "registry",
+        "sites",
+        "losses.added_loss",
+        "films.ambient_film",
+        "sensors.reading_fault",
+        "sensors.input_fault",
     )
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +58,11 @@ def first(kind, net):
     return KINDS[kind]("flange.right" if "flange.right" in places else places[0])
 
 
-LASTING = [k for k, cls in KINDS.items() if k == "mass" or (cls.__module__.startswith("validation.effects.sensors.")
-           and not issubclass(cls, InputFault))]  # fmt: skip
+LASTING = [
+    k
+    for k, cls in KINDS.items()
+    if k == "mass" or (cls.__module__.startswith("validation.effects.sensors.") and not issubclass(cls, InputFault))
+]
 
 
 def every_effect():
@@ -207,8 +219,13 @@ def test_a_warmer_winding_loses_more(net):
     assert late.min() > -1e-6 * late.max()
 
 
-INPUT = {"rpm": ("speed_rpm", 1.0), "A": ("current_A", 1.0), "m/s": ("vehicle_speed_mps", 1.0),
-         "kHz": ("switching_Hz", 1000.0), "degC": ("of the place", 1.0)}  # fmt: skip
+INPUT = {
+    "rpm": ("speed_rpm", 1.0),
+    "A": ("current_A", 1.0),
+    "m/s": ("vehicle_speed_mps", 1.0),
+    "kHz": ("switching_Hz", 1000.0),
+    "degC": ("of the place", 1.0),
+}
 
 
 def condition(at):

@@ -171,8 +171,12 @@ def test_other_words_give_the_same_catalogue_in_the_same_order(root, seed):
         assert [back(n, new) for n in names] == found(data), where
 
 
-MEASURED = {"current_A": "current", "speed_rpm": "speed", "vehicle_speed_mps": "vehicle_speed",
-            "switching_Hz": "frequency"}  # fmt: skip
+MEASURED = {
+    "current_A": "current",
+    "speed_rpm": "speed",
+    "vehicle_speed_mps": "vehicle_speed",
+    "switching_Hz": "frequency",
+}
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -119,8 +119,10 @@ def test_odds_sum_to_one_and_lead_to_the_verdict():
 def test_held_out_tests_have_no_say():
     """Other held-out readings, the same answer but for the error on them."""
     case = TRUTHS["wind"]().case()
-    spoilt = [replace(t, channels=tuple(replace(c, y=c.y + 30.0) for c in t.channels)) if t.role == "hold-out" else t
-              for t in case.tests]  # fmt: skip
+    spoilt = [
+        replace(t, channels=tuple(replace(c, y=c.y + 30.0) for c in t.channels)) if t.role == "hold-out" else t
+        for t in case.tests
+    ]
     other = diagnose(replace(case, tests=tuple(spoilt)), plan=False)
     assert other.odds == answer("wind", plan=True).odds
     assert other.candidates[0].holdout_rmse_K != answer("wind", plan=True).candidates[0].holdout_rmse_K
@@ -142,8 +144,17 @@ def test_document_has_the_agreed_fields():
     out = answer("wind", plan=True).document()
     assert {"verdict", "candidates", "cannot_see", "where", "next_tests"} <= set(out)
     row = out["candidates"][0]
-    assert {"effect", "score", "threshold", "amplitude", "explained", "rmse_K", "holdout_rmse_K", "confused_with",
-            "decision"} <= set(row)  # fmt: skip
+    assert {
+        "effect",
+        "score",
+        "threshold",
+        "amplitude",
+        "explained",
+        "rmse_K",
+        "holdout_rmse_K",
+        "confused_with",
+        "decision",
+    } <= set(row)
     assert {"value", "unit", "ci95"} == set(row["amplitude"])
 
 

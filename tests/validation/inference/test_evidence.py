@@ -47,6 +47,7 @@ def test_nothing_is_fitted_to_its_end_under_another_noise(evidence):
     end = converged(other).fit
     assert end.objective <= other.fit.objective
     held = {p.name: p.value for p in end.network.parameters} | end.values
-    finer = minimise(end.network, evidence.tests, end.unknowns, end.theta, end.noise, held, 30, worth=0.005,
-                     error=end.error)  # fmt: skip
+    finer = minimise(
+        end.network, evidence.tests, end.unknowns, end.theta, end.noise, held, 30, worth=0.005, error=end.error
+    )
     assert finer.objective == pytest.approx(end.objective, abs=0.2)

@@ -26,8 +26,16 @@ def test_what_is_not_there_has_no_scatter():
 
 @pytest.mark.parametrize(
     ("kind", "empirical"),
-    [("convection", True), ("windage", True), ("iron", True), ("conduction.bench", False), ("contact", False),
-     ("copper.feedback", False), ("sensor.gain", False), ("loss.factor", False)],
-)  # fmt: skip
+    [
+        ("convection", True),
+        ("windage", True),
+        ("iron", True),
+        ("conduction.bench", False),
+        ("contact", False),
+        ("copper.feedback", False),
+        ("sensor.gain", False),
+        ("loss.factor", False),
+    ],
+)
 def test_films_and_losses_follow_correlations_and_conduction_does_not(kind, empirical):
     assert kinds()[kind].empirical is empirical

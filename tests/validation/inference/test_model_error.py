@@ -60,9 +60,13 @@ def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():
     links += [node_link(net, f"film {n}", "film", n, "air", Fixed(1.0)) for n in ("left", "right")]
     heat = [node_source(net, f"friction {n}", "friction", {n: 1.0}, Fixed(5.0)) for n in ("left", "right")]
     heat += [node_source(net, f"iron {n}", "iron", {n: 1.0}, Fixed(5.0)) for n in ("rotor", "shell")]
-    shared = {"seats": ("left-shell", "right-shell"), "gap": ("rotor-shell", "blown"),
-              "films": ("film left", "film right"), "friction": ("friction left", "friction right"),
-              "iron": ("iron rotor", "iron shell")}  # fmt: skip
+    shared = {
+        "seats": ("left-shell", "right-shell"),
+        "gap": ("rotor-shell", "blown"),
+        "films": ("film left", "film right"),
+        "friction": ("friction left", "friction right"),
+        "iron": ("iron rotor", "iron shell"),
+    }
     parameters = tuple(Parameter(n, tuple((t, 1.0) for t in of)) for n, of in shared.items())
     net = net.extended(links, heat, parameters)
     assert joints(net) == {"left-shell", "right-shell"}

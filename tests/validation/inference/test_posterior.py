@@ -28,8 +28,13 @@ from validation.inference.posterior import (
 from validation.inference.refits import laplace, promised, with_smaller_shortfall
 from validation.inference.score import one_size
 
-NAMES = ("convection@flange.right", "convection.constant@flange.right", "brush.drop@commutator", "sensor.bias@yoke",
-         "mass@shaft")  # fmt: skip
+NAMES = (
+    "convection@flange.right",
+    "convection.constant@flange.right",
+    "brush.drop@commutator",
+    "sensor.bias@yoke",
+    "mass@shaft",
+)
 
 
 @cache
@@ -57,8 +62,14 @@ def test_two_effects_that_share_nothing_are_worth_what_each_is():
     sd = np.array([p.prior_sd for p in e.parameters])
     each = [one_size(e.score.u[k], V[k, k], 1.0 * sd[k], e.score.sign[k]) for k in (0, 2)]
     one = replace(apart, parameters=tuple(replace(p) for p in e.parameters))
-    sizes = [np.log(np.mean([np.exp(one_size(e.score.u[k], V[k, k], f * sd[k], e.score.sign[k]) - each[i])
-                             for f in (0.3, 1.0, 3.0)])) for i, k in enumerate((0, 2))]  # fmt: skip
+    sizes = [
+        np.log(
+            np.mean(
+                [np.exp(one_size(e.score.u[k], V[k, k], f * sd[k], e.score.sign[k]) - each[i]) for f in (0.3, 1.0, 3.0)]
+            )
+        )
+        for i, k in enumerate((0, 2))
+    ]
     most = float(
         sum(each) + sum(sizes) + np.log(3.0)
     )  # the sizes of both are the same one: at most three times as likely
@@ -127,8 +138,10 @@ def test_inclusion_adds_up_over_hypotheses():
 )
 def test_the_cheapest_statement_is_made(nothing, first, second, verdict):
     hypotheses = [
-        Hypothesis(log_prior=np.log(nothing)), Hypothesis((0,), "", np.log(first)), Hypothesis((1,), "", np.log(second))
-    ]  # fmt: skip
+        Hypothesis(log_prior=np.log(nothing)),
+        Hypothesis((0,), "", np.log(first)),
+        Hypothesis((1,), "", np.log(second)),
+    ]
     assert decide(evidence(), hypotheses).verdict == verdict
 
 
@@ -167,7 +180,12 @@ def test_pairs_that_were_not_refitted_know_what_the_refits_of_either_say():
     pair, other, done = Hypothesis((0, 2), log_bayes=72.0), Hypothesis((1, 2), log_bayes=6.0), Hypothesis((0, 1))
     fit = evidence().fit
     before = [short, more, pair, other, done]
-    after = [replace(short, log_bayes=40.0, fit=fit), replace(more, log_bayes=9.0, fit=fit), pair, other,
-             replace(done, log_bayes=41.0, fit=fit)]  # fmt: skip
+    after = [
+        replace(short, log_bayes=40.0, fit=fit),
+        replace(more, log_bayes=9.0, fit=fit),
+        pair,
+        other,
+        replace(done, log_bayes=41.0, fit=fit),
+    ]
     assert [h.log_bayes for h in promised(before, after)] == [40.0, 9.0, 72.0, 10.0, 41.0]
     assert [h.log_bayes for h in with_smaller_shortfall(before, after)] == [40.0, 9.0, 42.0, 6.0, 41.0]

@@ -58,11 +58,14 @@ def instants(p):
     return p.evidence.fit.parts[0].time.size
 
 
-@pytest.mark.parametrize(("on_half", "groups"), [
-    (Decision("adequate", (), 0.4), ((0,),)),
-    (Decision("named", ((1,),), 0.9), ((0, 1),)),
-    (Decision("group", ((0, 2),), 0.9), ((0, 2),)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("on_half", "groups"),
+    [
+        (Decision("adequate", (), 0.4), ((0,),)),
+        (Decision("named", ((1,),), 0.9), ((0, 1),)),
+        (Decision("group", ((0, 2),), 0.9), ((0, 2),)),
+    ],
+)
 def test_a_name_that_half_of_the_instants_do_not_give_is_withheld(on_half, groups):
     whole = Decision("named", ((0,),), 0.95)
     choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)

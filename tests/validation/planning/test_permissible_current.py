@@ -99,10 +99,14 @@ def test_names_of_parts_do_not_matter():
         return replace(item, **new)
 
     other = replace(
-        MODEL, states=tuple(map(called, MODEL.states)), links=tuple(map(renamed, MODEL.links)),
-        sources=tuple(map(renamed, MODEL.sources)), capacity_group=tuple(map(called, MODEL.capacity_group)),
-        places={called(n): replace(p, name=called(n), part=called(n)) for n, p in MODEL.places.items()}, parameters=(),
-    )  # fmt: skip
+        MODEL,
+        states=tuple(map(called, MODEL.states)),
+        links=tuple(map(renamed, MODEL.links)),
+        sources=tuple(map(renamed, MODEL.sources)),
+        capacity_group=tuple(map(called, MODEL.capacity_group)),
+        places={called(n): replace(p, name=called(n), part=called(n)) for n, p in MODEL.places.items()},
+        parameters=(),
+    )
     ours, theirs = ({n: e.current_factor for n, (e, _) in planned(driven(), m).items()} for m in (MODEL, other))
     assert ours == theirs
 

@@ -26,9 +26,11 @@ def rubbing(T, u, t):
 
 def one_speed(time, rng):
     return {
-        "current_A": steps(time, rng, 150.0, 250.0, 900.0), "vehicle_speed_mps": np.zeros_like(time),
-        "speed_rpm": np.full_like(time, 900.0), "fan_flow_m3h": np.full_like(time, 138.0),
-    }  # fmt: skip
+        "current_A": steps(time, rng, 150.0, 250.0, 900.0),
+        "vehicle_speed_mps": np.zeros_like(time),
+        "speed_rpm": np.full_like(time, 900.0),
+        "fan_flow_m3h": np.full_like(time, 138.0),
+    }
 
 
 def planned(name, test):

@@ -39,8 +39,10 @@ def test_a_free_network_finds_the_links_and_losses_of_a_linear_machine(measure):
 
 def test_no_other_link_is_needed(measure):
     assert {(t.place, t.other) for t in measure.terms if t.kind == "link"} == {
-        ("core", "body"), ("body", "core"), ("body", "ambient"),
-    }  # fmt: skip
+        ("core", "body"),
+        ("body", "core"),
+        ("body", "ambient"),
+    }
 
 
 def test_a_free_network_predicts_a_linear_machine_to_the_noise_of_its_sensors(measure):
@@ -72,10 +74,12 @@ def test_the_order_of_tests_and_sensors_changes_nothing(sound, measure):
 
 def thinned(test: Test) -> Test:
     return replace(
-        test, time=test.time[::2], inputs={n: u[::2] for n, u in test.inputs.items()},
+        test,
+        time=test.time[::2],
+        inputs={n: u[::2] for n, u in test.inputs.items()},
         boundaries={n: u[::2] for n, u in test.boundaries.items()},
         channels=tuple(replace(c, y=c.y[::2]) for c in test.channels),
-    )  # fmt: skip
+    )
 
 
 def test_half_the_rows_say_the_same(sound, measure):

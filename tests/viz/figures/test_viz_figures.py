@@ -18,11 +18,19 @@ from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor
 
 EFFECTS = {
-    "margin": 1.0, "simultaneous": 1.8,
-    "effects": [{"effect": e, "words": w, "value": v, "active": abs(v) > 1.8} for e, w, v in
-                (("A", "convection", -19.2), ("B", "emissivity", -17.4), ("AB", "convection x emissivity", 4.6),
-                 ("E", "end-winding impregnation", 0.2), ("F", "speed", 0.4))],
-}  # fmt: skip
+    "margin": 1.0,
+    "simultaneous": 1.8,
+    "effects": [
+        {"effect": e, "words": w, "value": v, "active": abs(v) > 1.8}
+        for e, w, v in (
+            ("A", "convection", -19.2),
+            ("B", "emissivity", -17.4),
+            ("AB", "convection x emissivity", 4.6),
+            ("E", "end-winding impregnation", 0.2),
+            ("F", "speed", 0.4),
+        )
+    ],
+}
 RANKED = [{"factor": "base", "measure": 0.44, "conf95": 0.16}, {"factor": "speed", "measure": 0.01, "conf95": 0.01}]
 ODDS = [
     {"hypothesis": "convection@flange.right", "effects": ["convection@flange.right"], "probability": 0.93},
@@ -32,8 +40,10 @@ ODDS = [
 ]
 HOUR = np.linspace(0.0, 3600.0, 61)
 WARM = 20.0 + 60.0 * (1.0 - np.exp(-HOUR / 1200.0))
-PLACES = [uncertain.Predicted("sensor T_yoke_degC", WARM, 0.03 * (WARM - 20.0), WARM + 1.0),
-          uncertain.Predicted("armature", WARM + 20.0, 0.2 * (WARM - 20.0))]  # fmt: skip
+PLACES = [
+    uncertain.Predicted("sensor T_yoke_degC", WARM, 0.03 * (WARM - 20.0), WARM + 1.0),
+    uncertain.Predicted("armature", WARM + 20.0, 0.2 * (WARM - 20.0)),
+]
 DRAW = {
     "predicted": lambda png: uncertain.predicted(HOUR, PLACES, title="road-1", png=png),
     "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
@@ -131,11 +141,30 @@ def test_empty_history_is_refused():
 
 def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
     row = {"test": "run4", "unit": "1", "nats": 9.0}
-    found = {"limit": 3.0, "differences": [
-        {**row, "parameter": "capacity.stator", "others": 1.0, "here": 2.7, "sd": 6.0, "possible": False,
-         "relative": True},
-        {**row, "parameter": "bias of T", "others": 0.1, "here": -0.9, "sd": -4.0, "possible": True, "relative": False,
-         "unit": "K"}]}  # fmt: skip
+    found = {
+        "limit": 3.0,
+        "differences": [
+            {
+                **row,
+                "parameter": "capacity.stator",
+                "others": 1.0,
+                "here": 2.7,
+                "sd": 6.0,
+                "possible": False,
+                "relative": True,
+            },
+            {
+                **row,
+                "parameter": "bias of T",
+                "others": 0.1,
+                "here": -0.9,
+                "sd": -4.0,
+                "possible": True,
+                "relative": False,
+                "unit": "K",
+            },
+        ],
+    }
     figure = scores.differences(found, png=tmp_path / "differences.png")
     (ax,) = figure.axes
     assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]

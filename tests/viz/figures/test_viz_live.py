@@ -10,7 +10,7 @@ from fictional import comparison
 from PIL import Image
 
 import viz.live
-from extras.rating.designs import objective_space, parallel_coordinates  # fmt: skip
+from extras.rating.designs import objective_space, parallel_coordinates
 from geom.errors import InputError, MissingDependency
 from viz.colours import DARK
 from viz.live import against_input, confusion, parity, residuals, save, sensor
@@ -83,10 +83,13 @@ def test_parity_puts_a_right_model_on_the_line():
     assert np.abs(np.subtract(trace["x"], trace["y"])).max() < 1.5  # readings scatter by 0.3 K
 
 
-@pytest.mark.parametrize(("draw", "words"), [
-    (lambda: sensor(comparison(), "nowhere"), "known: flange.left"),
-    (lambda: against_input(comparison(), "yoke", "wind"), "known: current_A, ambient"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (lambda: sensor(comparison(), "nowhere"), "known: flange.left"),
+        (lambda: against_input(comparison(), "yoke", "wind"), "known: current_A, ambient"),
+    ],
+)
 def test_wrong_names_list_the_right_ones(draw, words):
     with pytest.raises(InputError, match=words):
         draw()

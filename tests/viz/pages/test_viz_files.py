@@ -65,9 +65,15 @@ def recording(tmp_path_factory):
     ends = np.stack([np.full(NODES.size, T) for T in (30.0, 95.0, 60.0)])
     off = [{"flange.right": -6.0}, {"flange.right": -6.0}, {"flange.right": 0.1}]
     return write_recording(
-        tmp_path_factory.mktemp("rrd") / "a.rrd", NODES, comparison(), (np.array([0.0, 1800.0, 3600.0]), FIELDS),
-        POSITIONS, history=HISTORY, revision_fields=ends, revision_residuals=off,
-    )  # fmt: skip
+        tmp_path_factory.mktemp("rrd") / "a.rrd",
+        NODES,
+        comparison(),
+        (np.array([0.0, 1800.0, 3600.0]), FIELDS),
+        POSITIONS,
+        history=HISTORY,
+        revision_fields=ends,
+        revision_residuals=off,
+    )
 
 
 def test_every_revision_has_a_field_sensors_and_errors(recording):

@@ -29,9 +29,14 @@ def recording(tmp_path_factory):
     fields = 20.0 + 50.0 * (times / 3600.0)[:, None] * np.linspace(0.2, 1.0, NODES.size)
     path = tmp_path_factory.mktemp("rrd") / "road.rrd"
     return write_recording(
-        path, NODES, replace(comparison(), events=((600.0, 1200.0),)), (times, fields), POSITIONS, history=HISTORY,
+        path,
+        NODES,
+        replace(comparison(), events=((600.0, 1200.0),)),
+        (times, fields),
+        POSITIONS,
+        history=HISTORY,
         revision_fields=np.stack([fields[-1] + k for k in (4.0, 2.0, 0.0)]),
-    )  # fmt: skip
+    )
 
 
 def chunks(path):

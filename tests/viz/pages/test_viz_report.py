@@ -30,10 +30,18 @@ def page(tmp_path_factory):
         "identified": False,
     }
     report = Report(
-        "road <test>", "A fictional motor.", compare, diagnose, HISTORY, [value], [comparison()],
-        {"Field after an hour": folder / "field.png"}, ["Losses as rated."],
-        ["thermoscope show report CASE"], "today",
-    )  # fmt: skip
+        "road <test>",
+        "A fictional motor.",
+        compare,
+        diagnose,
+        HISTORY,
+        [value],
+        [comparison()],
+        {"Field after an hour": folder / "field.png"},
+        ["Losses as rated."],
+        ["thermoscope show report CASE"],
+        "today",
+    )
     return write_report(report, folder / "report.html").read_text(encoding="utf-8")
 
 
@@ -131,9 +139,15 @@ def test_pictures_travel_inside(page):
 
 @pytest.mark.parametrize(
     ("code", "word"),
-    [("adequate", "agrees"), ("group", "one of"), ("several", "and"), ("outside", "near flange.right"),
-     ("absorbed", "hides"), ("data", "sensors")],
-)  # fmt: skip
+    [
+        ("adequate", "agrees"),
+        ("group", "one of"),
+        ("several", "and"),
+        ("outside", "near flange.right"),
+        ("absorbed", "hides"),
+        ("data", "sensors"),
+    ],
+)
 def test_every_verdict_has_its_words(code, word):
     compare, diagnose = documents()
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]

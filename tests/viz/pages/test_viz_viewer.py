@@ -50,10 +50,15 @@ def shipped(meshed):
     times = np.linspace(0.0, 3600.0, 61)
     readings = recorded().comparison.model
     tests = [
-        replace(recorded(), times=times, fields=paced(nodes, times, rng), before=paced(nodes, times, rng),
-                earlier=(Earlier(paced(nodes, times, rng), readings),))
+        replace(
+            recorded(),
+            times=times,
+            fields=paced(nodes, times, rng),
+            before=paced(nodes, times, rng),
+            earlier=(Earlier(paced(nodes, times, rng), readings),),
+        )
         for _ in range(5)
-    ]  # fmt: skip
+    ]
     return render(document("motor", nodes, tests, PLACE, revisions=["2", "1", "0"], machine=machine))
 
 
@@ -90,8 +95,10 @@ def test_what_follows_the_first_picture_leaves_what_was_chosen(browser, meshed, 
         page.evaluate("(rest) => viewer.more(rest)", {"looks": packed_looks(machine, nodes), **every})
         page.wait_for_function("!viewer.dirty && viewer.smooth")
         assert page.evaluate("[viewer.test.test, $('axis').value, $('test').value]") == [
-            "later", "2" if moved else "3", "1"
-        ]  # fmt: skip
+            "later",
+            "2" if moved else "3",
+            "1",
+        ]
         assert page.evaluate("viewer.turn < TURN") == moved
         assert page.evaluate("viewer.test.sensors.find((s) => s.channel === 'T_shaft').limit") == 0.5
         assert page.evaluate("[viewer.range[0], viewer.range[1]]") == [every["marks"][0], every["marks"][-1]]
@@ -220,9 +227,15 @@ def test_keys_alone_turn_step_play_and_choose(browser, tmp_path):
 POSE = "({ turn: viewer.turn, tilt: viewer.tilt, zoom: viewer.zoom, time: viewer.time })"
 DOTS = "viewer.sensors.map((s) => [s.channel, ...viewer.pixel(s).map((v) => v * $('gl').clientWidth / $('gl').width)])"
 KEYS = (
-    ("ArrowLeft", "turn", -1), ("ArrowRight", "turn", 1), ("ArrowUp", "tilt", 1), ("ArrowDown", "tilt", -1),
-    ("+", "zoom", 1), ("-", "zoom", -1), (",", "time", -1), (".", "time", 1),
-)  # fmt: skip
+    ("ArrowLeft", "turn", -1),
+    ("ArrowRight", "turn", 1),
+    ("ArrowUp", "tilt", 1),
+    ("ArrowDown", "tilt", -1),
+    ("+", "zoom", 1),
+    ("-", "zoom", -1),
+    (",", "time", -1),
+    (".", "time", 1),
+)
 
 
 def test_parts_are_ghosted_and_hidden_and_the_cut_is_the_true_section(browser, tmp_path):

@@ -13,8 +13,12 @@ from viz.rendering.visibility import SLACK, obstacle
 
 NODES = split(motor(24))
 VIEWS = {"default": View(), "from the right": View((1.0, 0.4, 0.6)), "from below": View((-1.0, -0.5, -0.4))}
-INSIDE = {"winding.armature": (0.105, 0.01, 0.3), "shaft": (0.01, 0.0, 0.3), "housing": (0.15, -0.145, 0.3),
-          "yoke": (-0.13, 0.12, 0.3)}  # fmt: skip
+INSIDE = {
+    "winding.armature": (0.105, 0.01, 0.3),
+    "shaft": (0.01, 0.0, 0.3),
+    "housing": (0.15, -0.145, 0.3),
+    "yoke": (-0.13, 0.12, 0.3),
+}
 
 
 def eye_of(points: np.ndarray, view: View) -> np.ndarray:

@@ -16,8 +16,14 @@ from viz.rendering.ghost import RADIUS
 from viz.rendering.scene import View
 from viz.rendering.visibility import SLACK
 
-VIEWS = {"default": View(), "other side": View((1.0, 0.42, 0.62)), "aside": ASIDE, "below": View((-1.0, -0.5, -0.4)),
-         "portrait": VIEW, "viewer": View((-0.79, 0.34, 0.51))}  # fmt: skip
+VIEWS = {
+    "default": View(),
+    "other side": View((1.0, 0.42, 0.62)),
+    "aside": ASIDE,
+    "below": View((-1.0, -0.5, -0.4)),
+    "portrait": VIEW,
+    "viewer": View((-0.79, 0.34, 0.51)),
+}
 WIDE = 0.25  # of a whole window: half of it even between two neighbours, and more than its sensor's dot covers
 
 

@@ -40,8 +40,11 @@ def open_question(folder: Folder) -> str:
     """What the last diagnosis asked about."""
     question = (last_diagnosis(folder) or {}).get("question")
     if not question:
-        raise InputError("the last diagnosis asked nothing", f"case '{folder.case.name}'",
-                         "thermoscope explain diagnose first, or --about a test, an event or a fault")  # fmt: skip
+        raise InputError(
+            "the last diagnosis asked nothing",
+            f"case '{folder.case.name}'",
+            "thermoscope explain diagnose first, or --about a test, an event or a fault",
+        )
     return str(question["about"])
 
 

@@ -10,8 +10,18 @@ from thermoscope.console.answer import Grid
 
 def hypotheses_table(hypotheses: Sequence[Mapping[str, Any]]) -> Grid:
     """Each with its deviance over the best, all tests calibrated together for each."""
-    headers = ["test", "base", "said", "deviance", "verdict", "conduction (W)", "convection (W)", "radiation (W)",
-               "W/K", "body W/K"]  # fmt: skip
+    headers = [
+        "test",
+        "base",
+        "said",
+        "deviance",
+        "verdict",
+        "conduction (W)",
+        "convection (W)",
+        "radiation (W)",
+        "W/K",
+        "body W/K",
+    ]
     rows = []
     for h in hypotheses:
         heat, verdict = h["heat_W"], "excluded" if h["excluded"] else "possible"

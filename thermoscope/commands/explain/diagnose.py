@@ -63,9 +63,19 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
     candidates = document["candidates"]
-    parts = [_odds(document), _candidates(candidates), *_leader(candidates), *_lost(candidates, effects), remaining,
-             *events(document), *contradiction(document.get("contradiction")), *next_tests(document),
-             in_short(document.get("error_budget", {}), steps), hidden_words, question(document, case)]  # fmt: skip
+    parts = [
+        _odds(document),
+        _candidates(candidates),
+        *_leader(candidates),
+        *_lost(candidates, effects),
+        remaining,
+        *events(document),
+        *contradiction(document.get("contradiction")),
+        *next_tests(document),
+        in_short(document.get("error_budget", {}), steps),
+        hidden_words,
+        question(document, case),
+    ]
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
     return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
 
@@ -115,8 +125,11 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
     """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
     if not effects:
         return []
-    refitted = [f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}." for c in candidates[1:ROWS]
-                if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in effects]  # fmt: skip
+    refitted = [
+        f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}."
+        for c in candidates[1:ROWS]
+        if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in effects
+    ]
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
     lead = next(c["score"] for c in candidates if c["effect"] == effects[0])
@@ -140,10 +153,17 @@ def bought(candidate: Mapping[str, Any]) -> str:
 def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
     """When something may have been different, or the improbable stretches that were tried as well."""
     rows = [
-        [f"event@{i}", e["words"], f"{100 * e['probability']:.1f}", e["effect"].split(" in ")[0], e["value"],
-         "" if e["unit"] == "1" else e["unit"]] for i, e in enumerate(document.get("events", []), 1)
+        [
+            f"event@{i}",
+            e["words"],
+            f"{100 * e['probability']:.1f}",
+            e["effect"].split(" in ")[0],
+            e["value"],
+            "" if e["unit"] == "1" else e["unit"],
+        ]
+        for i, e in enumerate(document.get("events", []), 1)
         if likely == (e["probability"] > LEAST_PROBABILITY)
-    ]  # fmt: skip
+    ]
     headers = ["to add", "when", "%", "most likely", "size", "unit"]
     title = "What may have differed for a while" if likely else "Stretches in which hardly anything differed"
     return [Grid(title, headers, rows)] if rows else []
@@ -152,9 +172,15 @@ def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
 def _row(c: Mapping[str, Any]) -> list[Any]:
     size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
     return [
-        c["effect"], share, value_with_interval(size["value"], *size["ci95"]), cell(c["smallest_detectable"]),
-        "" if size["unit"] == "1" else size["unit"], _arrow(c["rmse_K"]), _arrow(c["holdout_rmse_K"]), c["decision"],
-    ]  # fmt: skip
+        c["effect"],
+        share,
+        value_with_interval(size["value"], *size["ci95"]),
+        cell(c["smallest_detectable"]),
+        "" if size["unit"] == "1" else size["unit"],
+        _arrow(c["rmse_K"]),
+        _arrow(c["holdout_rmse_K"]),
+        c["decision"],
+    ]
 
 
 def _arrow(pair: Mapping[str, float] | None) -> str:

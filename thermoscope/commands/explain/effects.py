@@ -34,10 +34,16 @@ def effects(case: str | None, target: str | None) -> int:
 
 def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
     about = {
-        "effect": kind.kind, "title": kind.title, "sits": kind.sits, "needs": list(kind.needs), "unit": kind.unit,
-        "typical": list(kind.typical), "fault": kind.fault, "isolating_test": kind.isolating_test,
+        "effect": kind.kind,
+        "title": kind.title,
+        "sits": kind.sits,
+        "needs": list(kind.needs),
+        "unit": kind.unit,
+        "typical": list(kind.typical),
+        "fault": kind.fault,
+        "isolating_test": kind.isolating_test,
         "source": kind.source,
-    }  # fmt: skip
+    }
     if scene is None:
         return about
     inputs = [q for q in kind.needs if q not in scene.recorded]
@@ -58,12 +64,16 @@ def answer(document: Mapping[str, Any]) -> Answer:
     able = [e for e in rows if e["places"]]
     unable = [e for e in rows if not e["places"]]
     places = sum(len(e["places"]) for e in able)
-    sentence = (f"{len(able)} of {len(rows)} effects can sit in {Path(document['case']).name}, at {places} places; "
-                f"{len(unable)} lack an input or a role.")  # fmt: skip
+    sentence = (
+        f"{len(able)} of {len(rows)} effects can sit in {Path(document['case']).name}, at {places} places; "
+        f"{len(unable)} lack an input or a role."
+    )
     lacking = [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable]
     sitting = [[e["effect"], named(e["places"]), e["title"]] for e in able]
-    parts = [Grid("Cannot sit here", ["effect", "missing", "what"], lacking, keep=["missing"]),
-             Grid("Can sit here", ["effect", "places", "what"], sitting, keep=["places"])]  # fmt: skip
+    parts = [
+        Grid("Cannot sit here", ["effect", "missing", "what"], lacking, keep=["missing"]),
+        Grid("Can sit here", ["effect", "places", "what"], sitting, keep=["places"]),
+    ]
     return Answer(sentence, parts[::-1], "--json FILE with tests that isolate them")
 
 
@@ -75,8 +85,10 @@ def named(places: list[str]) -> str:
 
 def quantities(target: str | None) -> int:
     """What a column may measure, its units, and what memory holds."""
-    rows = [{"quantity": name, "units": list(q.units), "held_as": MEMORY_UNIT[name], "input": q.feeds}
-            for name, q in QUANTITIES.items()]  # fmt: skip
+    rows = [
+        {"quantity": name, "units": list(q.units), "held_as": MEMORY_UNIT[name], "input": q.feeds}
+        for name, q in QUANTITIES.items()
+    ]
     document = {"quantities": rows}
     give(document, target, lambda: show_quantities(rows))
     return 0
@@ -86,5 +98,6 @@ def show_quantities(rows: list[dict[str, Any]]) -> Answer:
     """A row per quantity."""
     body = [[r["quantity"], ", ".join(r["units"]), r["held_as"], r["input"]] for r in rows]
     sentence = f"A column measures one of {len(rows)} quantities; other units of the same dimension are read as well."
-    return Answer(sentence, [Grid("", ["quantity", "units", "held as", "input it drives"], body)],
-                  "docs/reference/quantities.md")  # fmt: skip
+    return Answer(
+        sentence, [Grid("", ["quantity", "units", "held as", "input it drives"], body)], "docs/reference/quantities.md"
+    )

@@ -93,13 +93,18 @@ def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
     rows = {row.name: row for row in part_table(built.machine)}
     parts = [
         {
-            "name": s.part, "material": built.machine.part(s.part).material, "volume_m3": s.volume,
-            "mesh_volume_m3": meshed[s.part], "solid_volume_m3": s.solid_volume, "watertight": s.watertight,
-            "mass_kg": rows[s.part].mass, "faces_m2": dict(rows[s.part].faces),
+            "name": s.part,
+            "material": built.machine.part(s.part).material,
+            "volume_m3": s.volume,
+            "mesh_volume_m3": meshed[s.part],
+            "solid_volume_m3": s.solid_volume,
+            "watertight": s.watertight,
+            "mass_kg": rows[s.part].mass,
+            "faces_m2": dict(rows[s.part].faces),
             "contacts_m2": dict(rows[s.part].contacts),
         }
         for s in solids
-    ]  # fmt: skip
+    ]
     return {
         "machine": built.machine.name,
         "parts": parts,
@@ -118,10 +123,20 @@ def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
 def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     """How well the network agrees with the field, part by part, and where the files are."""
     mesh, network = document["mesh"], document["network"]
-    sentence = (f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
-                f"of the rise it has {crosscheck.agreement(document)}.")  # fmt: skip
-    headers = ["part", "material", "volume (l)", "in the mesh (l)", "mass (kg)", "to fluids (m2)", "to parts (m2)",
-               "watertight"]  # fmt: skip
+    sentence = (
+        f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
+        f"of the rise it has {crosscheck.agreement(document)}."
+    )
+    headers = [
+        "part",
+        "material",
+        "volume (l)",
+        "in the mesh (l)",
+        "mass (kg)",
+        "to fluids (m2)",
+        "to parts (m2)",
+        "watertight",
+    ]
     parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
     sizes = _sizes(document["sizes"]) if "sizes" in document else []
     tables = [*sizes, crosscheck.parts(document), parts]

@@ -108,8 +108,10 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     """Parts, the links that differ most, and the hand formulas furthest off."""
-    sentence = (f"Steady at the rated point the network has {agreement(document)}; the field's energy balance "
-                f"{document['energy_balance']:.1e}.")  # fmt: skip
+    sentence = (
+        f"Steady at the rated point the network has {agreement(document)}; the field's energy balance "
+        f"{document['energy_balance']:.1e}."
+    )
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
     tables = [parts(document), links(document), analytical_table(document)]
     return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
@@ -119,8 +121,11 @@ def agreement(document: Mapping[str, Any]) -> str:
     """How far means, and hottest points of heated and of other parts, are off; and the part that is furthest."""
     rows: Sequence[Mapping[str, Any]] = document["crosscheck"]
     hot = {heats: [row for row in rows if row["heated"] is heats] for heats in (True, False)}
-    kinds = [("means", "mean_percent", rows), ("hottest points of heated parts", "hot_percent", hot[True]),
-             ("of others", "hot_percent", hot[False])]  # fmt: skip
+    kinds = [
+        ("means", "mean_percent", rows),
+        ("hottest points of heated parts", "hot_percent", hot[True]),
+        ("of others", "hot_percent", hot[False]),
+    ]
     return ", ".join(f"{kind} within {_furthest(some, key)}" for kind, key, some in kinds if some)
 
 
@@ -131,8 +136,18 @@ def _furthest(rows: Sequence[Mapping[str, Any]], key: str) -> str:
 
 def parts(document: Mapping[str, Any]) -> Grid:
     """Temperatures by field and network, the largest difference first."""
-    headers = ["part", "field mean", "network mean", "field max", "network max", "mean off (%)", "max off (%)",
-               "heated", "field max, laws local", "link that differs most"]  # fmt: skip
+    headers = [
+        "part",
+        "field mean",
+        "network mean",
+        "field max",
+        "network max",
+        "mean off (%)",
+        "max off (%)",
+        "heated",
+        "field max, laws local",
+        "link that differs most",
+    ]
     rows = sorted(document["crosscheck"], key=lambda part: -max(part["mean_percent"], part["hot_percent"]))
     title, keep = "Temperatures (degC), 20 degC around; % of the rise", ["mean off (%)", "max off (%)", "field max"]
     body = [["yes" if key == "heated" and x else "no" if key == "heated" else x for key, x in r.items()] for r in rows]

@@ -28,8 +28,11 @@ def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
     if not rows:
         return _sampled(steps)
     cells = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
-    return [Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, cells, keep=["sum (K)"]),
-            words(rows), *_sampled(steps)]  # fmt: skip
+    return [
+        Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, cells, keep=["sum (K)"]),
+        words(rows),
+        *_sampled(steps),
+    ]
 
 
 def _sampled(steps: Steps) -> list[Grid | str]:

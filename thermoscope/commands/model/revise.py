@@ -108,19 +108,27 @@ def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
     heated = set(network.heated)
     names = [n for n in mean_rows(network) if n in heated - read and network.places[n].kind in ("part", "node")]
     before, after = (ends(case, test, names) for case in (folder.case, replace(folder.case, model=result.model)))
-    out = [{"place": n, "test": test.name, "before_C": a, "after_C": b}
-           for n, a, b in zip(names, before, after, strict=True)]  # fmt: skip
+    out = [
+        {"place": n, "test": test.name, "before_C": a, "after_C": b}
+        for n, a, b in zip(names, before, after, strict=True)
+    ]
     return sorted(out, key=lambda p: -abs(p["after_C"] - p["before_C"]))
 
 
 def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Revision:
     """A step as model.toml keeps it."""
     return Revision(
-        0, result.action, tuple(e.name for e in result.model.effects), result.effect or "",
-        dict(result.model.values), {p.name: p.ci95 for p in result.parameters},
-        {t.name: (t.before, t.after) for t in result.tests if isfinite(t.before)}, result.why, dict(evidence),
+        0,
+        result.action,
+        tuple(e.name for e in result.model.effects),
+        result.effect or "",
+        dict(result.model.values),
+        {p.name: p.ci95 for p in result.parameters},
+        {t.name: (t.before, t.after) for t in result.tests if isfinite(t.before)},
+        result.why,
+        dict(evidence),
         reference=result.model.reference,
-    )  # fmt: skip
+    )
 
 
 def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
@@ -159,17 +167,23 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
     outcome = where if document["written"] else "nothing written (--anyway writes it)"
-    rows = [[t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"], t["fitted_rmse_K"]["after"]]
-            for t in document["tests"]]  # fmt: skip
+    rows = [
+        [t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"], t["fitted_rmse_K"]["after"]]
+        for t in document["tests"]
+    ]
     headers = ["test", "role", "error before (K)", "after (K)", "sensors as fitted (K)"]
     errors = Grid("", headers, rows, ["hold-out"], keep=headers[2:])
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Grid | str] = [
-        errors, *failed, _unmeasured_words(document["unmeasured"]), *passed, _fixed(document["parameters"]),
+        errors,
+        *failed,
+        _unmeasured_words(document["unmeasured"]),
+        *passed,
+        _fixed(document["parameters"]),
         _blind(document["parameters"]),
-    ]  # fmt: skip
+    ]
     return Answer(
         f"{name}: {verdict}; {document['why']}; {outcome}.",
         parts,

@@ -49,9 +49,16 @@ def film(case: str, out: Path | None, target: str | None) -> int:
         when = [(t, w) for w, (times, _) in played.items() for t in times]
         titles = [title(test, t, w, row) for (t, w), row in zip(when, sensors, strict=True)]
         T = np.concatenate([values for _, values in played.values()])
-        animate(nodes, [t for times, _ in played.values() for t in times], T, file, titles=titles,
-                sensors=sensors, limits=temperature_range(folder, nodes),
-                tell=lambda k: tell(f"drawing picture {k}/{len(T)}"))  # fmt: skip
+        animate(
+            nodes,
+            [t for times, _ in played.values() for t in times],
+            T,
+            file,
+            titles=titles,
+            sensors=sensors,
+            limits=temperature_range(folder, nodes),
+            tell=lambda k: tell(f"drawing picture {k}/{len(T)}"),
+        )
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Answer(f"{file}"))
     return 0
 

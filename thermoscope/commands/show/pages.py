@@ -76,10 +76,21 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     tell("drawing")
     viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
-        folder.case.name, folder.settings.description, compared, diagnosis, steps(folder),
-        parameters(folder), curves, _pictures(folder, into, None if earlier else diagnosis), assumptions(folder),
-        commands(folder, case), provenance(), earlier, documents(folder.budgets), viewed,
-    )  # fmt: skip
+        folder.case.name,
+        folder.settings.description,
+        compared,
+        diagnosis,
+        steps(folder),
+        parameters(folder),
+        curves,
+        _pictures(folder, into, None if earlier else diagnosis),
+        assumptions(folder),
+        commands(folder, case),
+        provenance(),
+        earlier,
+        documents(folder.budgets),
+        viewed,
+    )
     return write_report(page, into / "report.html")
 
 
@@ -195,10 +206,16 @@ def _recording(folder: Folder, into: Path) -> Path:
     path = into / f"{file_stem(test.name)}.rrd"
     ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
     return write_recording(
-        path, nodes, comparison_of(folder, test), frames, folder.positions, history=steps(folder), revision_fields=ends,
+        path,
+        nodes,
+        comparison_of(folder, test),
+        frames,
+        folder.positions,
+        history=steps(folder),
+        revision_fields=ends,
         revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
         limits=temperature_range(folder, nodes),
-    )  # fmt: skip
+    )
 
 
 def every_revision(folder: Folder) -> list[Case]:

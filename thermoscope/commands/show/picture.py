@@ -237,9 +237,21 @@ def _errors(s: Subject, png: Path) -> None:
 
 
 FLAT: dict[str, Callable[[Subject, Path], None]] = {
-    "curves": _curves, "bands": _bands, "residuals": _residuals, "errors": _errors, "losses": _losses,
-}  # fmt: skip
+    "curves": _curves,
+    "bands": _bands,
+    "residuals": _residuals,
+    "errors": _errors,
+    "losses": _losses,
+}
 PICTURES: dict[str, Callable[[Subject, Path], None]] = {
-    "field": _field, "difference": _difference, "misses": _misses, "uncertainty": _uncertainty,
-    "exploded": _exploded, "parts": _parts, "mesh": _mesh, "flux": _flux, "network": _network, **FLAT,
-}  # fmt: skip
+    "field": _field,
+    "difference": _difference,
+    "misses": _misses,
+    "uncertainty": _uncertainty,
+    "exploded": _exploded,
+    "parts": _parts,
+    "mesh": _mesh,
+    "flux": _flux,
+    "network": _network,
+    **FLAT,
+}

@@ -35,17 +35,21 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         file = out or Path("out") / f"{file_stem(folder.case.name)}-plan.html"
         last = folder.case.tests[-1]
         write_bench_page(
-            BenchPage(
-                folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)
-            ), file
-        )  # fmt: skip
+            BenchPage(folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)),
+            file,
+        )
     levels = [c.document() for c in curves.currents]
     document = {
-        "case": folder.case.name, "test": curves.experiment.name, "hours": curves.experiment.hours,
-        "currents": levels, "current_factor": curves.experiment.current_factor,
-        "hypotheses": list(curves.curves), "closest_sigma": curves.closest(), "page": str(file),
+        "case": folder.case.name,
+        "test": curves.experiment.name,
+        "hours": curves.experiment.hours,
+        "currents": levels,
+        "current_factor": curves.experiment.current_factor,
+        "hypotheses": list(curves.curves),
+        "closest_sigma": curves.closest(),
+        "page": str(file),
         "sensors": [{"channel": c.name, "apart_K": curves.spread_K(c.name)} for c in curves.test.channels],
-    }  # fmt: skip
+    }
     what = f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"
     give(document, target, lambda: Answer("; ".join(filter(None, [what, currents(levels)]))))
     return 0

@@ -48,8 +48,12 @@ def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
 
     document = {**so_far.document(), "error_budget": documents(folder.budgets), **sampling(folder)}
     give(document, None, lambda: answer(document, called))
-    notes([f"stopped: {len(so_far.tests)} of {len(folder.case.tests)} tests were compared, and the table holds these; "
-           "nothing was written"])  # fmt: skip
+    notes(
+        [
+            f"stopped: {len(so_far.tests)} of {len(folder.case.tests)} tests were compared, and the table holds these; "
+            "nothing was written"
+        ]
+    )
     return STOPPED
 
 
@@ -69,9 +73,13 @@ def compared(
     more = {**uncertainty(result), **_discrepancies(folder, tell)} if why else {}
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     return result, {
-        **result.document(), **more, "error_budget": documents(budgets), **sampling(folder), **bands,
+        **result.document(),
+        **more,
+        "error_budget": documents(budgets),
+        **sampling(folder),
+        **bands,
         **yardstick_document(folder.yardstick, result),
-    }  # fmt: skip
+    }
 
 
 def _discrepancies(folder: Folder, tell: Progress) -> dict[str, Any]:
@@ -94,11 +102,23 @@ def answer(document: Mapping[str, Any], called: str, unseen: str = "") -> Answer
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     why = _why(document) if "patterns" in document else []
     plain = document.get("yardstick", {"warning": "", "sentence": ""})
-    parts = [plain["sentence"], *why, records_of("Over: error is measured - model", over), tests(document["tests"]),
-             in_short(document["error_budget"], document["sampling"]), roles_in_short(document["roles"])]  # fmt: skip
-    rest = [*(records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
-              for t in document["tests"]), roles(document["roles"]),
-             *budget(document["error_budget"], document["sampling"]), bands_of(document.get("bands", ()))]  # fmt: skip
+    parts = [
+        plain["sentence"],
+        *why,
+        records_of("Over: error is measured - model", over),
+        tests(document["tests"]),
+        in_short(document["error_budget"], document["sampling"]),
+        roles_in_short(document["roles"]),
+    ]
+    rest = [
+        *(
+            records_of(f"{t['name']} ({t['role']})", [{"test": t["name"], **c} for c in t["channels"]])
+            for t in document["tests"]
+        ),
+        roles(document["roles"]),
+        *budget(document["error_budget"], document["sampling"]),
+        bands_of(document.get("bands", ())),
+    ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
     words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"]]
     return Answer(" ".join(filter(None, words)), parts, more, rest)
@@ -106,8 +126,17 @@ def answer(document: Mapping[str, Any], called: str, unseen: str = "") -> Answer
 
 def tests(records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per test, those with most sensors over first."""
-    rows = [[t["name"], t["role"], len(t["channels"]), sum(c["verdict"] == "over" for c in t["channels"]), t["rmse_K"],
-             t["fitted_rmse_K"]] for t in records]  # fmt: skip
+    rows = [
+        [
+            t["name"],
+            t["role"],
+            len(t["channels"]),
+            sum(c["verdict"] == "over" for c in t["channels"]),
+            t["rmse_K"],
+            t["fitted_rmse_K"],
+        ]
+        for t in records
+    ]
     rows.sort(key=lambda row: -row[3])
     headers = ["test", "role", "sensors", "over", "rms (K)", "sensors as fitted (K)"]
     return Grid("", headers, rows, keep=["rms (K)", "sensors as fitted (K)", "over"])
@@ -115,10 +144,34 @@ def tests(records: Sequence[Mapping[str, Any]]) -> Grid:
 
 def records_of(title: str, records: Sequence[Mapping[str, Any]]) -> Grid:
     """A row per sensor."""
-    headers = ["sensor", "test", "place", "n", "rms (K)", "fitted (K)", "bias (K)", "largest (K)", "limit (K)",
-               "1 sigma (K)", "% of rise", "verdict"]  # fmt: skip
-    keys = ["channel", "test", "place", "n", "rmse_K", "fitted_rmse_K", "bias_K", "max_abs_K", "limit_K", "sigma_K",
-            "percent_of_rise", "verdict"]  # fmt: skip
+    headers = [
+        "sensor",
+        "test",
+        "place",
+        "n",
+        "rms (K)",
+        "fitted (K)",
+        "bias (K)",
+        "largest (K)",
+        "limit (K)",
+        "1 sigma (K)",
+        "% of rise",
+        "verdict",
+    ]
+    keys = [
+        "channel",
+        "test",
+        "place",
+        "n",
+        "rmse_K",
+        "fitted_rmse_K",
+        "bias_K",
+        "max_abs_K",
+        "limit_K",
+        "sigma_K",
+        "percent_of_rise",
+        "verdict",
+    ]
     keep = ["test", "rms (K)", "bias (K)", "limit (K)", "verdict"]
     return Grid(title, headers, [[r[k] for k in keys] for r in records], ["over"], keep)
 
@@ -177,9 +230,17 @@ def contradiction(row: Mapping[str, Any] | None) -> list[Grid | str]:
     if not row:
         return []
     rows = [
-        [d["test"], d["parameter"], d["others"], d["here"], "" if d["unit"] == "1" else d["unit"], abs(d["sd"]),
-         "yes" if d["possible"] else "no"] for d in row["differences"][:DIFFERENCES]
-    ]  # fmt: skip
+        [
+            d["test"],
+            d["parameter"],
+            d["others"],
+            d["here"],
+            "" if d["unit"] == "1" else d["unit"],
+            abs(d["sd"]),
+            "yes" if d["possible"] else "no",
+        ]
+        for d in row["differences"][:DIFFERENCES]
+    ]
     headers = ["test", "parameter", "other tests", "this test", "unit", "deviations", "can it differ?"]
     keep = ["parameter", "this test", "deviations", "can it differ?"]
     title = "What would have to differ between tests (by tangents)"

@@ -21,8 +21,11 @@ def doctor(case: str, target: str | None) -> int:
     with progress() as tell:
         path = find_case(case)
         wrong, doubts = looked(path, tell)
-    document = {"case": path.resolve().name, "wrong": [f.document() for f in wrong],
-                "doubts": [f.document() for f in doubts]}  # fmt: skip
+    document = {
+        "case": path.resolve().name,
+        "wrong": [f.document() for f in wrong],
+        "doubts": [f.document() for f in doubts],
+    }
     give(document, target, lambda: answer(wrong, doubts, case))
     return 2 if wrong else 1 if doubts else 0
 
@@ -54,6 +57,9 @@ def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> An
     things, look = ("thing", "looks") if len(doubts) == 1 and not wrong else ("things", "look")
     refused = f"{len(wrong)} would be refused, " if wrong else ""
     sentence = f"{refused}{len(doubts)} {things} {look} wrong." if number else "Nothing looks wrong."
-    lines = [f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what.removesuffix('?')}. Cure: {f.cure}"
-             for word, rows in (("REFUSED ", wrong), ("", doubts)) for f in rows]  # fmt: skip
+    lines = [
+        f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what.removesuffix('?')}. Cure: {f.cure}"
+        for word, rows in (("REFUSED ", wrong), ("", doubts))
+        for f in rows
+    ]
     return Answer(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")

@@ -150,8 +150,11 @@ def _machine(machine: str, tell: Progress) -> Model:
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
     if any(source.name == ASSUMED for source in network.sources):
-        raise InputError("declares no losses: nothing says what heated it in the tests", machine,
-                         "[losses.NAME] with kind, at and its numbers")  # fmt: skip
+        raise InputError(
+            "declares no losses: nothing says what heated it in the tests",
+            machine,
+            "[losses.NAME] with kind, at and its numbers",
+        )
     path = Path(machine)
     if not path.exists():
         name = path.name.removesuffix(".toml")
@@ -176,8 +179,9 @@ def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str,
 
     columns = [
         (source, g if (place := fixed_places.get(g.column)) is None else _at_place(source, g, place))
-        for source, clock in read for g in guesses(source, clock.columns, Target())
-    ]  # fmt: skip
+        for source, clock in read
+        for g in guesses(source, clock.columns, Target())
+    ]
     text = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
     network = read_network(tomllib.loads(text), "network.toml")
 
@@ -247,10 +251,14 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         tell("drawing the columns")
         _draw(drafts[0], partial / "out" / PICTURE)
     return {
-        "case": folder.name, "folder": str(folder), "invented_network": model.invented,
-        "warnings": unplaced(drafts), "sample_s": settings.sample_s, "findings": [f.document() for f in findings],
+        "case": folder.name,
+        "folder": str(folder),
+        "invented_network": model.invented,
+        "warnings": unplaced(drafts),
+        "sample_s": settings.sample_s,
+        "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
-    }  # fmt: skip
+    }
 
 
 def _draw(draft: Draft, png: Path) -> None:
@@ -279,11 +287,28 @@ def _as_recorded(folder: Path, drafts: Sequence[Draft]) -> Iterator[None]:
 
 
 def _document(draft: Draft, role: str) -> dict[str, Any]:
-    files = [{"file": str(r.source.file), "clock": r.clock.words, "rows": r.source.rows, "shift_s": r.shift_s,
-              "aligned_by": r.how, "notes": list(r.source.notes)} for r in draft.records]  # fmt: skip
-    return {"name": draft.name, "role": role, "duration_s": draft.span_s, "files": files, "notes": list(draft.notes),
-            "columns": [vars(g) for g in draft.guesses], "inputs": dict(draft.constants),
-            "boundaries": dict(draft.boundaries), "squares": dict(draft.squares)}  # fmt: skip
+    files = [
+        {
+            "file": str(r.source.file),
+            "clock": r.clock.words,
+            "rows": r.source.rows,
+            "shift_s": r.shift_s,
+            "aligned_by": r.how,
+            "notes": list(r.source.notes),
+        }
+        for r in draft.records
+    ]
+    return {
+        "name": draft.name,
+        "role": role,
+        "duration_s": draft.span_s,
+        "files": files,
+        "notes": list(draft.notes),
+        "columns": [vars(g) for g in draft.guesses],
+        "inputs": dict(draft.constants),
+        "boundaries": dict(draft.boundaries),
+        "squares": dict(draft.squares),
+    }
 
 
 def panels(draft: Draft) -> list[Panel]:
@@ -292,8 +317,10 @@ def panels(draft: Draft) -> list[Panel]:
 
     return [
         Panel(g.column, r.clock.seconds + r.shift_s, r.source.numbers(g.column), meaning(g), bool(g.place))
-        for r in draft.records for g in r.guesses if r.source.is_numeric(g.column)
-    ]  # fmt: skip
+        for r in draft.records
+        for g in r.guesses
+        if r.source.is_numeric(g.column)
+    ]
 
 
 def meaning(g: Guess) -> str:
@@ -306,8 +333,10 @@ def answer(document: Mapping[str, Any]) -> Answer:
     tests, folder = document["tests"], document["folder"]
     columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
     count = sum(bool(_goes(c)) for c in columns)
-    sentence = (f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
-                "used. All of this is guessed: change it in tests/*.toml.")  # fmt: skip
+    sentence = (
+        f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
+        "used. All of this is guessed: change it in tests/*.toml."
+    )
     sentence = " ".join([*(f"{w[0].upper()}{w[1:]}." for w in document["warnings"]), sentence])
     rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
     table = Grid(
@@ -336,8 +365,12 @@ def _seconds(duration: float) -> float | int:
 
 
 def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
-    return [f"{Path(f['file']).name} moved by {f['shift_s']:+.6g} s: {f['aligned_by']}."
-            for t in tests for f in t["files"] if f["aligned_by"]]  # fmt: skip
+    return [
+        f"{Path(f['file']).name} moved by {f['shift_s']:+.6g} s: {f['aligned_by']}."
+        for t in tests
+        for f in t["files"]
+        if f["aligned_by"]
+    ]
 
 
 def _remarks(document: Mapping[str, Any]) -> list[str]:
@@ -345,8 +378,10 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
     tests = document["tests"]
     remarks = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
     if document["invented_network"]:
-        remarks.append("no machine and no network was given: network.toml is made from the columns, its numbers are "
-                    "orders of magnitude")  # fmt: skip
+        remarks.append(
+            "no machine and no network was given: network.toml is made from the columns, its numbers are "
+            "orders of magnitude"
+        )
     if document["findings"]:
         count = len(document["findings"])
         things = "thing looks" if count == 1 else "things look"

@@ -44,9 +44,7 @@ def simulate(case: str, cycle: str | None, out: Path | None, target: str | None,
         posterior = posterior_of(folder, tell) if wanted(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
-    document = {
-        "case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits,
-    }  # fmt: skip
+    document = {"case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits}
     give(document, target, lambda: answer(document))
     return 0
 
@@ -80,9 +78,14 @@ def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cyc
 
 
 def _ran(
-    network: Network, values: Mapping[str, float], cycle: Cycle, folder: Folder, into: Path, tell: Progress,
+    network: Network,
+    values: Mapping[str, float],
+    cycle: Cycle,
+    folder: Folder,
+    into: Path,
+    tell: Progress,
     posterior: ParameterPosterior | None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     tell(f"running {cycle.name}")
     from validation.comparison.error_budget import error_budgets
     from validation.comparison.predict import thermal
@@ -128,26 +131,40 @@ def _csv(record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) 
 
 
 def _document(
-    cycle: Cycle, record: Record, rows: Mapping[str, Row], y: Array, heat: Audit, residuals: tuple[float, ...],
+    cycle: Cycle,
+    record: Record,
+    rows: Mapping[str, Row],
+    y: Array,
+    heat: Audit,
+    residuals: tuple[float, ...],
     file: Path,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     span, short = float(record.time[-1] - record.time[0]) or 1.0, short_of(record)
     hottest = np.argmax(y, axis=0)
     return {
-        "name": cycle.name, "file": str(file), "duration_s": span,
+        "name": cycle.name,
+        "file": str(file),
+        "duration_s": span,
         "places": [
-            {"place": name, "start_C": y[0, k], "max_C": y[hottest[k], k], "max_at_s": record.time[hottest[k]],
-             "end_C": y[-1, k]}
+            {
+                "place": name,
+                "start_C": y[0, k],
+                "max_C": y[hottest[k], k],
+                "max_at_s": record.time[hottest[k]],
+                "end_C": y[-1, k],
+            }
             for k, name in enumerate(rows)
         ],
         "losses": [
             {"loss": n, "declared_J": J, "injected_J": heat.injected_J[n], "mean_W": J / span}
             for n, J in heat.declared_J.items()
         ],
-        "energy_balance": heat.residual, "loss_mismatch": heat.mismatch,
-        "short_of": {name: seconds / span for name, seconds in short.items()}, "short_of_s": short,
+        "energy_balance": heat.residual,
+        "loss_mismatch": heat.mismatch,
+        "short_of": {name: seconds / span for name, seconds in short.items()},
+        "short_of_s": short,
         "coupling": {"rounds": len(residuals), "residuals_K": list(residuals)},
-    }  # fmt: skip
+    }
 
 
 def _circuits(folder: Folder) -> list[dict[str, Any]]:
@@ -178,8 +195,11 @@ def answer(document: Mapping[str, Any]) -> Answer:
 
 def _places(runs: Sequence[Mapping[str, Any]]) -> Grid:
     """Temperatures, the hottest first."""
-    rows = [[p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
-            for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]  # fmt: skip
+    rows = [
+        [p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
+        for r in runs
+        for p in sorted(r["places"], key=lambda p: -p["max_C"])
+    ]
     headers = ["place", "run", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
     if all("widest_ci95_K" in p for r in runs for p in r["places"]):
         widths = [p["widest_ci95_K"] for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]
@@ -194,14 +214,22 @@ def _losses(run: Mapping[str, Any]) -> Grid:
 
 def _closing(run: Mapping[str, Any]) -> list[str]:
     """What the drive could not do, whether it agrees with the temperatures, and the balance of heat."""
-    lines = [f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits: "
-             f"{run['short_of_s'][name]:.4g} s." for name, share in run["short_of"].items()]  # fmt: skip
+    lines = [
+        f"{name}: for {100 * share:.3g} % of the time short of what was wanted by more than 1 %, at the limits: "
+        f"{run['short_of_s'][name]:.4g} s."
+        for name, share in run["short_of"].items()
+    ]
     if rounds := run["coupling"]["residuals_K"]:
         lines.append(f"Drive and temperatures agree after {len(rounds)} rounds (last change {rounds[-1]:.2g} K).")
-    return [*lines, f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "
-            f"against declared {run['loss_mismatch']:.1e}."]  # fmt: skip
+    return [
+        *lines,
+        f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "
+        f"against declared {run['loss_mismatch']:.1e}.",
+    ]
 
 
 def _circuit(c: Mapping[str, Any]) -> str:
-    return (f"Circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
-            f"pump {c['pump_W']:.3g} W.")  # fmt: skip
+    return (
+        f"Circuit {c['circuit']}: {c['flow_m3_s'] * 6e4:.3g} l/min, {c['pressure_drop_Pa'] / 1e3:.3g} kPa, "
+        f"pump {c['pump_W']:.3g} W."
+    )

@@ -52,9 +52,10 @@ class CoolantLink(Effect):
         unit, scale = film_unit(network, self.place, touching[0])
         names = [self.name] if len(touching) == 1 else [f"{self.name}:{fluid}" for fluid in touching]
         links = [
-            x for name, fluid in zip(names, touching, strict=True)
+            x
+            for name, fluid in zip(names, touching, strict=True)
             for x in to_fluid(network, name, self.place, fluid, Fixed(1.0))
-        ]  # fmt: skip
+        ]
         return with_parameter(
             network.extended(links=links), self.parameter(*(link.name for link in links), scale=scale, unit=unit)
         )

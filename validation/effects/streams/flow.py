@@ -21,8 +21,9 @@ def _acts_as_flow(network: Network, links: Mapping[str, Link], p: Parameter) -> 
     streams = [e == 1.0 for link, e in pairs if link.kind == "stream"]
     films = [
         e != 1.0 and any(network.measures(name) in (AIR, LIQUID) for name in link.law.reads)
-        for link, e in pairs if link.kind != "stream"
-    ]  # fmt: skip
+        for link, e in pairs
+        if link.kind != "stream"
+    ]
     return all(streams) and all(films)
 
 

@@ -38,38 +38,53 @@ def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
         return value * d.factor(f"capacity.{key}", 0.05)
 
-    side = [b for end, _ in ENDS for b in (
-        Body(f"stub.{end}", 500.0, 4, 1.0, STEEL), Body(f"bearing.{end}", 300.0, 2, 0.2),
-        Body(f"flange.{end}", C(f"flange.{end}", 3000.0), 6, 0.2, IRON),
-    )]  # fmt: skip
+    side = [
+        b
+        for end, _ in ENDS
+        for b in (
+            Body(f"stub.{end}", 500.0, 4, 1.0, STEEL),
+            Body(f"bearing.{end}", 300.0, 2, 0.2),
+            Body(f"flange.{end}", C(f"flange.{end}", 3000.0), 6, 0.2, IRON),
+        )
+    ]
     return [
-        Body("armature", C("armature", 5000.0), 11, 0.08, COPPER), Body("core", C("rotor", 12000.0), 11, 2.0, STEEL),
+        Body("armature", C("armature", 5000.0), 11, 0.08, COPPER),
+        Body("core", C("rotor", 12000.0), 11, 2.0, STEEL),
         Body("commutator", C("commutator", 2500.0), 4, 0.06, COPPER),
         Body("poles", C("poles", 10000.0), 11, 3.0, STEEL),
-        Body("field", C("field", 6000.0), 11, 0.4, COPPER), Body("yoke", C("yoke", 18000.0), 11, 0.5, STEEL), *side,
-        Body("air", 60.0, 10, 1e4), Body("bench", 6400.0, 5, 0.25), Body("bench.deep", 41600.0, 5, 1.6),
-    ]  # fmt: skip
+        Body("field", C("field", 6000.0), 11, 0.4, COPPER),
+        Body("yoke", C("yoke", 18000.0), 11, 0.5, STEEL),
+        *side,
+        Body("air", 60.0, 10, 1e4),
+        Body("bench", 6400.0, 5, 0.25),
+        Body("bench.deep", 41600.0, 5, 1.6),
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
     def G(key: str, value: float, sd: float) -> float:
         return value * d.factor(key, sd)
 
-    side = [j for end, x in ENDS for j in (
-        Joint(f"rotor-{end}", "core", f"stub.{end}", 15.0, (x, 0.0)),
-        Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 8.0, 0.2), (1.0, 1.0)),
-        Joint(f"seat-{end}", f"bearing.{end}", f"flange.{end}", G(f"seat-{end}", 10.0, 0.2), (0.0, 1.0)),
-        Joint(f"spigot-{end}", f"flange.{end}", "yoke", G(f"spigot-{end}", 15.0, 0.25), (0.0, x)),
-    )]  # fmt: skip
+    side = [
+        j
+        for end, x in ENDS
+        for j in (
+            Joint(f"rotor-{end}", "core", f"stub.{end}", 15.0, (x, 0.0)),
+            Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 8.0, 0.2), (1.0, 1.0)),
+            Joint(f"seat-{end}", f"bearing.{end}", f"flange.{end}", G(f"seat-{end}", 10.0, 0.2), (0.0, 1.0)),
+            Joint(f"spigot-{end}", f"flange.{end}", "yoke", G(f"spigot-{end}", 15.0, 0.25), (0.0, x)),
+        )
+    ]
     return [
         Joint("liner", "armature", "core", G("liner", 90.0, 0.2), slope=5e-4),
         Joint("risers", "armature", "commutator", G("risers", 20.0, 0.15), (1.0, 0.0)),
         Joint("hub", "commutator", "core", G("hub", 6.0, 0.25), (0.5, 1.0)),
         Joint("coil", "field", "poles", G("coil", 30.0, 0.25)),
-        Joint("bolts", "poles", "yoke", G("bolts", 120.0, 0.25), slope=1e-3), *side,
+        Joint("bolts", "poles", "yoke", G("bolts", 120.0, 0.25), slope=1e-3),
+        *side,
         Joint("feet", "yoke", "bench", G("feet", 2.0, 0.25), (0.5, 0.0)),
         Joint("bed", "bench", "bench.deep", 6.0, (1.0, 0.0)),
-    ]  # fmt: skip
+    ]
 
 
 def films(s: Skeleton, d: Draw) -> list[Film]:
@@ -136,10 +151,12 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
     even = np.full(11, 1 / 11)
     out = [
-        Loss("armature", s.cells("armature"), even, direct(Ra)), Loss("field", s.cells("field"), even, direct(Rf)),
-        Loss("core", s.cells("core"), even, iron(0.8)), Loss("faces", s.cells("poles"), even, iron(0.2)),
+        Loss("armature", s.cells("armature"), even, direct(Ra)),
+        Loss("field", s.cells("field"), even, direct(Rf)),
+        Loss("core", s.cells("core"), even, iron(0.8)),
+        Loss("faces", s.cells("poles"), even, iron(0.2)),
         Loss("brushes", s.cells("commutator"), np.full(4, 0.25), brushes),
-    ]  # fmt: skip
+    ]
     for end, _ in ENDS:
         P = 15.0 * d.factor(f"bearing.{end}", 0.25)
 

@@ -41,10 +41,12 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("locked", "calibrate", 75.0, direct), Plan("load", "calibrate", 75.0, load),
-    Plan("speeds", "calibrate", 75.0, speeds), Plan("road", "validate", 75.0, road),
+    Plan("locked", "calibrate", 75.0, direct),
+    Plan("load", "calibrate", 75.0, load),
+    Plan("speeds", "calibrate", 75.0, speeds),
+    Plan("road", "validate", 75.0, road),
     Plan("road-2", "hold-out", 75.0, road),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("convection@flange.de", lambda a: airflow("flange.de", a), 20.0),
     Hidden("convection@yoke", lambda a: airflow("yoke", a), 60.0),
@@ -77,13 +79,33 @@ FOREIGN = {
     "heater at flange.nde": lambda seed: foreign.hot_spell("flange.nde", 120.0),
 }
 ABSORBED = {
-    "link.bolts": lambda seed: Change({"bolts": 0.2}), "link.coil": lambda seed: Change({"coil": 0.3}),
-    "fan.flow": lambda seed: Change({"fan": 0.5}), "loss.brushes": lambda seed: Change({"drop": 2.0, "rub": 2.0}),
-}  # fmt: skip
-TENSE = {"bolts": 0.25, "coil": 0.25, "fan": 0.12, "iron": 0.15, "hub": 0.25, "feet": 0.25, "spigot-de": 0.25,
-         "rub": 0.2, "still": 0.15, "capacity.yoke": 0.08}  # fmt: skip
-PARTS = {"winding.armature": "armature", "rotor": "core", "commutator": "commutator", "poles": "poles",
-         "winding.field": "field", "yoke": "yoke", "flange.de": "flange.de", "flange.nde": "flange.nde"}  # fmt: skip
+    "link.bolts": lambda seed: Change({"bolts": 0.2}),
+    "link.coil": lambda seed: Change({"coil": 0.3}),
+    "fan.flow": lambda seed: Change({"fan": 0.5}),
+    "loss.brushes": lambda seed: Change({"drop": 2.0, "rub": 2.0}),
+}
+TENSE = {
+    "bolts": 0.25,
+    "coil": 0.25,
+    "fan": 0.12,
+    "iron": 0.15,
+    "hub": 0.25,
+    "feet": 0.25,
+    "spigot-de": 0.25,
+    "rub": 0.2,
+    "still": 0.15,
+    "capacity.yoke": 0.08,
+}
+PARTS = {
+    "winding.armature": "armature",
+    "rotor": "core",
+    "commutator": "commutator",
+    "poles": "poles",
+    "winding.field": "field",
+    "yoke": "yoke",
+    "flange.de": "flange.de",
+    "flange.nde": "flange.nde",
+}
 PASSING = (
     Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),
     Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
@@ -94,12 +116,29 @@ PASSING = (
 )
 WORDS = {
     "fan slower@air": ("flow@stream.fan", "flow@fan.flow", "input.factor@fan_flow_m3h"),
-    "cover@yoke": ("blockage@yoke",), "meter@current_A": ("input.factor@current_A",),
-}  # fmt: skip
+    "cover@yoke": ("blockage@yoke",),
+    "meter@current_A": ("input.factor@current_A",),
+}
 BRUSHED = Archetype(
-    "brushed", machine, PLANS,
-    {"commutator": Spot("commutator", 0.5), "poles": Spot("poles", 0.5), "winding.field": Spot("field", 0.5),
-     "yoke": Spot("yoke", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
-     "air.de": Spot("air", 0.8)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
-)  # fmt: skip
+    "brushed",
+    machine,
+    PLANS,
+    {
+        "commutator": Spot("commutator", 0.5),
+        "poles": Spot("poles", 0.5),
+        "winding.field": Spot("field", 0.5),
+        "yoke": Spot("yoke", 0.5),
+        "flange.de": Spot("flange.de", 0.5),
+        "flange.nde": Spot("flange.nde", 0.5),
+        "air.de": Spot("air", 0.8),
+    },
+    {"bench": Spot("bench", 0.1)},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
+    TENSE,
+    PARTS,
+    PASSING,
+    words=WORDS,
+)

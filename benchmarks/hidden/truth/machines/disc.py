@@ -15,18 +15,7 @@ from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.effects import (
-    METER,
-    airflow,
-    blown,
-    bridge,
-    covered,
-    draught,
-    heating,
-    less,
-    spinning,
-    warming,  # fmt: skip
-)
+from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
 from hidden.truth.films import air, plate_still, radiation
 from hidden.truth.losses import ALPHA
 from hidden.truth.machine import Film, Inputs, Loss, Machine
@@ -58,28 +47,44 @@ def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
         return value * d.factor(f"capacity.{key}", 0.06)
 
-    side = [b for s in SIDES for b in (
-        Body(f"rotor.{s}", C("rotor", 1900.0), 5, 0.35, -8e-4), Body(f"magnets.{s}", C("magnets", 520.0), 5, 4.0),
-        Body(f"cover.{s}", C("cover", 2100.0), 5, 0.12, -1e-4), Body(f"air.{s}", 12.0, 3, 1e4),
-    )]  # fmt: skip
+    side = [
+        b
+        for s in SIDES
+        for b in (
+            Body(f"rotor.{s}", C("rotor", 1900.0), 5, 0.35, -8e-4),
+            Body(f"magnets.{s}", C("magnets", 520.0), 5, 4.0),
+            Body(f"cover.{s}", C("cover", 2100.0), 5, 0.12, -1e-4),
+            Body(f"air.{s}", 12.0, 3, 1e4),
+        )
+    ]
     return [
-        Body("coils", C("coils", 1500.0), 6, 0.15, -2e-4), Body("teeth", C("teeth", 1700.0), 6, 0.5),
-        Body("ring", C("ring", 2600.0), 4, 0.06, -1e-4), Body("shaft", C("shaft", 900.0), 5, 1.5, -8e-4), *side,
-    ]  # fmt: skip
+        Body("coils", C("coils", 1500.0), 6, 0.15, -2e-4),
+        Body("teeth", C("teeth", 1700.0), 6, 0.5),
+        Body("ring", C("ring", 2600.0), 4, 0.06, -1e-4),
+        Body("shaft", C("shaft", 900.0), 5, 1.5, -8e-4),
+        *side,
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
     def G(key: str, value: float, sd: float = 0.25) -> float:
         return value * d.factor(key, sd)
 
-    side = [j for k, s in enumerate(SIDES) for j in (
-        Joint(f"glue-{s}", f"magnets.{s}", f"rotor.{s}", G(f"glue-{s}", 30.0, 0.2)),
-        Joint(f"hub-{s}", f"rotor.{s}", "shaft", G(f"hub-{s}", 6.0), (0.0, float(k))),
-        Joint(f"bearing-{s}", "shaft", f"cover.{s}", G(f"bearing-{s}", 1.6), (float(k), 0.0)),
-        Joint(f"rim-{s}", f"cover.{s}", "ring", G(f"rim-{s}", 14.0), (1.0, 0.5)),
-    )]  # fmt: skip
-    return [Joint("resin", "coils", "teeth", G("resin", 55.0, 0.2), slope=5e-4),
-            Joint("clamp", "teeth", "ring", G("clamp", 22.0), (1.0, 0.5)), *side]  # fmt: skip
+    side = [
+        j
+        for k, s in enumerate(SIDES)
+        for j in (
+            Joint(f"glue-{s}", f"magnets.{s}", f"rotor.{s}", G(f"glue-{s}", 30.0, 0.2)),
+            Joint(f"hub-{s}", f"rotor.{s}", "shaft", G(f"hub-{s}", 6.0), (0.0, float(k))),
+            Joint(f"bearing-{s}", "shaft", f"cover.{s}", G(f"bearing-{s}", 1.6), (float(k), 0.0)),
+            Joint(f"rim-{s}", f"cover.{s}", "ring", G(f"rim-{s}", 14.0), (1.0, 0.5)),
+        )
+    ]
+    return [
+        Joint("resin", "coils", "teeth", G("resin", 55.0, 0.2), slope=5e-4),
+        Joint("clamp", "teeth", "ring", G("clamp", 22.0), (1.0, 0.5)),
+        *side,
+    ]
 
 
 def films(s: Skeleton, d: Draw) -> list[Film]:
@@ -100,8 +105,13 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 
     for side in SIDES:
         air_cells = s.cells(f"air.{side}")
-        for body, A, h in (("coils", 0.018, washed), ("teeth", 0.026, washed), (f"magnets.{side}", 0.04, disc),
-                           (f"rotor.{side}", 0.03, disc), (f"cover.{side}", 0.05, washed)):  # fmt: skip
+        for body, A, h in (
+            ("coils", 0.018, washed),
+            ("teeth", 0.026, washed),
+            (f"magnets.{side}", 0.04, disc),
+            (f"rotor.{side}", 0.03, disc),
+            (f"cover.{side}", 0.05, washed),
+        ):
             cells = s.cells(body)
             near = air_cells[np.arange(cells.size) * 3 // cells.size]
             out.append(Film(f"{body} in {side}", cells, near, np.full(cells.size, A / cells.size), h))
@@ -131,8 +141,14 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
         end = s.cells("shaft")[[0]] if side == "left" else s.cells("shaft")[[-1]]
         out.append(Loss(f"grease {side}", end, np.ones(1), grease))
-        out.append(Loss(f"eddy {side}", s.cells(f"magnets.{side}"), np.full(5, 0.2),
-                        lambda T, u: eddy * (abs(u["speed_rpm"]) / 3000.0) ** 1.8))  # fmt: skip
+        out.append(
+            Loss(
+                f"eddy {side}",
+                s.cells(f"magnets.{side}"),
+                np.full(5, 0.2),
+                lambda T, u: eddy * (abs(u["speed_rpm"]) / 3000.0) ** 1.8,
+            )
+        )
     return out
 
 
@@ -173,10 +189,12 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("locked rotor", "calibrate", 80.0, locked), Plan("bench", "calibrate", 80.0, bench),
-    Plan("coast", "calibrate", 60.0, coast), Plan("road", "validate", 80.0, road), Plan("road back", "hold-out",
-        80.0, road),
-)  # fmt: skip
+    Plan("locked rotor", "calibrate", 80.0, locked),
+    Plan("bench", "calibrate", 80.0, bench),
+    Plan("coast", "calibrate", 60.0, coast),
+    Plan("road", "validate", 80.0, road),
+    Plan("road back", "hold-out", 80.0, road),
+)
 MISSING = (
     Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
     Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
@@ -185,21 +203,26 @@ MISSING = (
     Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
     Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
     Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
-    Hidden("no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, ((("losses", "joule", "alpha_1_K"),
-        0.0),)),
-)  # fmt: skip
+    Hidden(
+        "no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, ((("losses", "joule", "alpha_1_K"), 0.0),)
+    ),
+)
 WORDS = {
-    "road wind@ring": ("convection@stator_ring",), "shaft fan@cover.right": ("convection.fan@cover_R",
-    "convection.rotation@cover_R"),
+    "road wind@ring": ("convection@stator_ring",),
+    "shaft fan@cover.right": ("convection.fan@cover_R", "convection.rotation@cover_R"),
     "draught@cover.left": ("convection.constant@cover_L",),
-    "windage@rotor.left": ("windage@disc_L", "windage@pm_L"), "ac copper@coils": ("copper.ac@coils",),
-    "load loss@magnets.left": ("loss.rotor.load@pm_L",), "bridge@coils-ring": ("coupling@coils|stator_ring",),
+    "windage@rotor.left": ("windage@disc_L", "windage@pm_L"),
+    "ac copper@coils": ("copper.ac@coils",),
+    "load loss@magnets.left": ("loss.rotor.load@pm_L",),
+    "bridge@coils-ring": ("coupling@coils|stator_ring",),
     "no tempco@coils": ("copper.feedback@joule",),
-    "draught@ring": ("convection.constant@stator_ring",), "side blower@cover.right": ("convection.constant@cover_R",),
+    "draught@ring": ("convection.constant@stator_ring",),
+    "side blower@cover.right": ("convection.constant@cover_R",),
     "heat@cover.left": ("loss.constant@cover_L",),
-    "blower slower@air": ("input.factor@blower_on",), "cover@ring": ("blockage@stator_ring",),
+    "blower slower@air": ("input.factor@blower_on",),
+    "cover@ring": ("blockage@stator_ring",),
     "meter@current_A": ("input.factor@current_A",),
-}  # fmt: skip
+}
 FAULTS = {
     "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
     "sensor.lag@coils": lambda seed: faults.slow("coils", 100.0),
@@ -207,18 +230,22 @@ FAULTS = {
     "sensor.drift@stator_ring": lambda seed: faults.drift("ring", 5.0),
     "sensor.stem@teeth": lambda seed: faults.stem("teeth", 0.2),
     "time.offset@bench": lambda seed: Change(
-        in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}),
+        in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}
+    ),
     "input.factor@current_A": lambda seed: faults.factor("current_A", 0.88),
     "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", -4.0),
     "clipped@coils": lambda seed: faults.clipped("coils", 0.6),
-}  # fmt: skip
+}
 FOREIGN = {
     "cable at coils": lambda seed: foreign.cable("coils", 3.0, 1500.0),
     "splash at stator_ring": lambda seed: foreign.gusts("ring", 150.0, seed),
     "demagnetisation at pm_R": lambda seed: foreign.runaway("magnets.right", 60.0, 45.0),
 }
-ABSORBED = {"coil joint": lambda seed: Change({"resin": 0.3}), "loss.iron": lambda seed: Change({"iron": 2.2}),
-            "discs": lambda seed: Change({"discs": 0.45})}  # fmt: skip
+ABSORBED = {
+    "coil joint": lambda seed: Change({"resin": 0.3}),
+    "loss.iron": lambda seed: Change({"iron": 2.2}),
+    "discs": lambda seed: Change({"discs": 0.45}),
+}
 PASSING = (
     Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
     Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
@@ -228,16 +255,45 @@ PASSING = (
     Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
 DISC = Archetype(
-    "disc", machine, PLANS,
-    {"coils": Spot("coils", 0.5), "teeth": Spot("teeth", 0.5), "ring": Spot("ring", 0.5),
-    "cover.left": Spot("cover.left", 0.5),
-     "cover.right": Spot("cover.right", 0.5)},
-    {}, MISSING, FAULTS, FOREIGN, ABSORBED,
-    {"resin": 0.2, "clamp": 0.25, "discs": 0.15, "iron": 0.15, "blower": 0.1, "still": 0.15, "rim-left": 0.25,
-    "hub-right": 0.25},
-    {"coils": "coils", "teeth": "teeth", "stator_ring": "ring", "shaft": "shaft", "disc_L": "rotor.left",
-    "disc_R": "rotor.right",
-     "pm_L": "magnets.left", "pm_R": "magnets.right", "cover_L": "cover.left", "cover_R": "cover.right"}, PASSING,
-    Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08), {"ring": "stator_ring", "cover.left": "cover_L",
-    "cover.right": "cover_R"}, WORDS,
-)  # fmt: skip
+    "disc",
+    machine,
+    PLANS,
+    {
+        "coils": Spot("coils", 0.5),
+        "teeth": Spot("teeth", 0.5),
+        "ring": Spot("ring", 0.5),
+        "cover.left": Spot("cover.left", 0.5),
+        "cover.right": Spot("cover.right", 0.5),
+    },
+    {},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
+    {
+        "resin": 0.2,
+        "clamp": 0.25,
+        "discs": 0.15,
+        "iron": 0.15,
+        "blower": 0.1,
+        "still": 0.15,
+        "rim-left": 0.25,
+        "hub-right": 0.25,
+    },
+    {
+        "coils": "coils",
+        "teeth": "teeth",
+        "stator_ring": "ring",
+        "shaft": "shaft",
+        "disc_L": "rotor.left",
+        "disc_R": "rotor.right",
+        "pm_L": "magnets.left",
+        "pm_R": "magnets.right",
+        "cover_L": "cover.left",
+        "cover_R": "cover.right",
+    },
+    PASSING,
+    Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08),
+    {"ring": "stator_ring", "cover.left": "cover_L", "cover.right": "cover_R"},
+    WORDS,
+)

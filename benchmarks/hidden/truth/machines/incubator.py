@@ -26,11 +26,14 @@ def bodies(d: Draw) -> list[Body]:
         return value * d.factor(f"capacity.{key}", 0.07)
 
     return [
-        Body("plate", C("plate", 420.0), 4, 0.15), Body("air", 45.0, 3, 1e4),
-        Body("inner", C("inner", 700.0), 5, 0.5), Body("foam", C("foam", 260.0), 5, 0.02),
-        Body("outer", C("outer", 900.0), 5, 0.6), Body("rack", C("rack", 1500.0), 4, 0.6),
+        Body("plate", C("plate", 420.0), 4, 0.15),
+        Body("air", 45.0, 3, 1e4),
+        Body("inner", C("inner", 700.0), 5, 0.5),
+        Body("foam", C("foam", 260.0), 5, 0.02),
+        Body("outer", C("outer", 900.0), 5, 0.6),
+        Body("rack", C("rack", 1500.0), 4, 0.6),
         Body("lid", C("lid", 450.0), 4, 1.5),
-    ]  # fmt: skip
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
@@ -62,9 +65,11 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
             each = np.full(part.size, area * d.factor(f"inside.{body}", 0.12) / s.cells(body).size)
             out.append(Film(f"{body} inside", part, np.array([own]), each, inside(h0)))
     return [
-        *out, Film("outside", s.cells("outer"), "T_ambient", np.full(5, 0.1), outside),
-        Film("top", s.cells("lid"), "T_ambient", np.full(4, 0.03), outside), *_mixing(air),
-    ]  # fmt: skip
+        *out,
+        Film("outside", s.cells("outer"), "T_ambient", np.full(5, 0.1), outside),
+        Film("top", s.cells("lid"), "T_ambient", np.full(4, 0.03), outside),
+        *_mixing(air),
+    ]
 
 
 def _mixing(air: NDArray[np.int64]) -> list[Film]:
@@ -77,10 +82,14 @@ def _mixing(air: NDArray[np.int64]) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     watts = WATTS * d.factor("heater", 0.05)
     return [
-        Loss("heater", s.cells("plate"), np.full(4, 0.25), lambda T,
-            u: watts * u["heater_on"] * (1.0 - 2e-4 * (T - 40.0))),
+        Loss(
+            "heater",
+            s.cells("plate"),
+            np.full(4, 0.25),
+            lambda T, u: watts * u["heater_on"] * (1.0 - 2e-4 * (T - 40.0)),
+        ),
         Loss("stirrer", s.cells("air"), np.full(3, 1 / 3), lambda T, u: STIRRER * u["fan_on"]),
-    ]  # fmt: skip
+    ]
 
 
 def machine(d: Draw, change: Change) -> Machine:
@@ -114,10 +123,12 @@ def both(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("heat up and cool", "calibrate", 120.0, still), Plan("stirred", "calibrate", 90.0, stirred),
-    Plan("night", "calibrate", 120.0, both), Plan("day", "validate", 90.0, both),
+    Plan("heat up and cool", "calibrate", 120.0, still),
+    Plan("stirred", "calibrate", 90.0, stirred),
+    Plan("night", "calibrate", 120.0, both),
+    Plan("day", "validate", 90.0, both),
     Plan("weekend", "hold-out", 120.0, both),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("draught@outer", lambda a: draught("outer", a), 8.0),
     Hidden("leak@air", lambda a: room_air("air", a), 3.0),
@@ -125,7 +136,7 @@ MISSING = (
     Hidden("lamp@outer", lambda a: heating("outer", a), 60.0),
     Hidden("sleeve@lid", lambda a: to_room("lid", lambda T, Ta, u: a * (((T - Ta) ** 2 + 4.0) / 1600.0) ** 0.17), 6.0),
     Hidden("bridge@plate-rack", lambda a: bridge("shelf", a, "plate", "rack", (0.9, 0.1)), 4.0),
-)  # fmt: skip
+)
 FAULTS = {
     "sensor.gain@rack": lambda seed: faults.gain("rack", -0.12),
     "sensor.lag@chamber": lambda seed: faults.slow("air", 150.0),
@@ -156,21 +167,32 @@ PASSING = (
     Hidden("meter@heater_on", lambda a: less("heater_on", a), 0.7, least=METER),
 )
 WORDS = {
-    "draught@outer": ("convection.constant@shell",), "leak@air": ("convection.constant@chamber",
-    "convection.buoyant@chamber", "heat@chamber"),
+    "draught@outer": ("convection.constant@shell",),
+    "leak@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
     "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
     "lamp@outer": ("loss.constant@shell",),
-    "bridge@plate-outer": ("coupling@plate|shell",), "sleeve@lid": ("convection.buoyant@lid",
-    "convection.constant@lid"),
-    "bridge@plate-rack": ("coupling@plate|rack",), "second heater@rack": ("loss.constant@rack", "heat@rack"),
-    "stirrer slower@air": ("input.factor@fan_on",), "cover@outer": ("blockage@shell",),
+    "bridge@plate-outer": ("coupling@plate|shell",),
+    "sleeve@lid": ("convection.buoyant@lid", "convection.constant@lid"),
+    "bridge@plate-rack": ("coupling@plate|rack",),
+    "second heater@rack": ("loss.constant@rack", "heat@rack"),
+    "stirrer slower@air": ("input.factor@fan_on",),
+    "cover@outer": ("blockage@shell",),
     "meter@heater_on": ("input.factor@heater_on",),
-}  # fmt: skip
+}
 INCUBATOR = Archetype(
-    "incubator", machine, PLANS,
+    "incubator",
+    machine,
+    PLANS,
     {"plate": Spot("plate", 0.5), "air": Spot("air", 0.5), "rack": Spot("rack", 0.5), "outer": Spot("outer", 0.4)},
-    {}, MISSING, FAULTS, FOREIGN, ABSORBED,
+    {},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
     {"foam": 0.15, "stirred": 0.15, "still": 0.12, "hinge": 0.3, "feet": 0.25, "capacity.rack": 0.07},
-    {"plate": "plate", "chamber": "air", "wall": "inner", "shell": "outer", "rack": "rack", "lid": "lid"}, PASSING,
-    Logger(20.0, 10.0, 0.25, (2.0, 20.0), 0.15), {"air": "chamber", "outer": "shell"}, WORDS,
-)  # fmt: skip
+    {"plate": "plate", "chamber": "air", "wall": "inner", "shell": "outer", "rack": "rack", "lid": "lid"},
+    PASSING,
+    Logger(20.0, 10.0, 0.25, (2.0, 20.0), 0.15),
+    {"air": "chamber", "outer": "shell"},
+    WORDS,
+)

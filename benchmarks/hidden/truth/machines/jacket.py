@@ -39,40 +39,56 @@ def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
         return value * d.factor(f"capacity.{key}", 0.05)
 
-    side = [b for end, _ in ENDS for b in (
-        Body(f"winding.{end}", C(f"winding.{end}", 800.0), 5, 0.1, COPPER), Body(f"stub.{end}", 300.0, 4, 1.2, STEEL),
-        Body(f"shield.{end}", C(f"shield.{end}", 2000.0), 6, 0.12, ALUMINIUM), Body(f"bearing.{end}", 200.0, 2, 0.2),
-        Body(f"air.{end}", 20.0),
-    )]  # fmt: skip
+    side = [
+        b
+        for end, _ in ENDS
+        for b in (
+            Body(f"winding.{end}", C(f"winding.{end}", 800.0), 5, 0.1, COPPER),
+            Body(f"stub.{end}", 300.0, 4, 1.2, STEEL),
+            Body(f"shield.{end}", C(f"shield.{end}", 2000.0), 6, 0.12, ALUMINIUM),
+            Body(f"bearing.{end}", 200.0, 2, 0.2),
+            Body(f"air.{end}", 20.0),
+        )
+    ]
     return [
-        Body("slot", C("winding.slot", 1300.0), 11, 0.12, COPPER), Body("teeth", C("stator", 3500.0), 11, 9.0, STEEL),
-        Body("yoke", C("stator", 4500.0), 11, 7.0, STEEL), Body("magnets", C("magnets", 650.0), 11, 20.0),
-        Body("rotor", C("rotor", 5300.0), 11, 3.0, STEEL), Body("housing", C("housing", 8000.0), 11, 0.12, ALUMINIUM),
-        Body("water", 1700.0, 8, 1e4, c_slope=1e-3), *side,
-        Body("bench", 9000.0, 5, 0.2), Body("bench.deep", 60000.0, 5, 0.8),
-    ]  # fmt: skip
+        Body("slot", C("winding.slot", 1300.0), 11, 0.12, COPPER),
+        Body("teeth", C("stator", 3500.0), 11, 9.0, STEEL),
+        Body("yoke", C("stator", 4500.0), 11, 7.0, STEEL),
+        Body("magnets", C("magnets", 650.0), 11, 20.0),
+        Body("rotor", C("rotor", 5300.0), 11, 3.0, STEEL),
+        Body("housing", C("housing", 8000.0), 11, 0.12, ALUMINIUM),
+        Body("water", 1700.0, 8, 1e4, c_slope=1e-3),
+        *side,
+        Body("bench", 9000.0, 5, 0.2),
+        Body("bench.deep", 60000.0, 5, 0.8),
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
     def G(key: str, value: float, sd: float) -> float:
         return value * d.factor(key, sd)
 
-    side = [j for end, x in ENDS for j in (
-        Joint(f"slot-{end}", "slot", f"winding.{end}", G(f"slot-{end}", 40.0, 0.1), (x, 0.0)),
-        Joint(f"potting-{end}", f"winding.{end}", "housing", G(f"potting-{end}", 5.0, 0.25), (0.6, x)),
-        Joint(f"rotor-{end}", "rotor", f"stub.{end}", 15.0, (x, 0.0)),
-        Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 8.0, 0.2), (1.0, 1.0)),
-        Joint(f"seat-{end}", f"bearing.{end}", f"shield.{end}", G(f"seat-{end}", 12.0, 0.2), (0.0, 1.0)),
-        Joint(f"spigot-{end}", f"shield.{end}", "housing", G(f"spigot-{end}", 20.0, 0.25), (0.0, x)),
-    )]  # fmt: skip
+    side = [
+        j
+        for end, x in ENDS
+        for j in (
+            Joint(f"slot-{end}", "slot", f"winding.{end}", G(f"slot-{end}", 40.0, 0.1), (x, 0.0)),
+            Joint(f"potting-{end}", f"winding.{end}", "housing", G(f"potting-{end}", 5.0, 0.25), (0.6, x)),
+            Joint(f"rotor-{end}", "rotor", f"stub.{end}", 15.0, (x, 0.0)),
+            Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 8.0, 0.2), (1.0, 1.0)),
+            Joint(f"seat-{end}", f"bearing.{end}", f"shield.{end}", G(f"seat-{end}", 12.0, 0.2), (0.0, 1.0)),
+            Joint(f"spigot-{end}", f"shield.{end}", "housing", G(f"spigot-{end}", 20.0, 0.25), (0.0, x)),
+        )
+    ]
     return [
         Joint("liner", "slot", "teeth", G("liner", 60.0, 0.2), slope=5e-4),
         Joint("lamination", "teeth", "yoke", G("lamination", 320.0, 0.1), slope=STEEL),
         Joint("fit", "yoke", "housing", G("fit", 160.0, 0.25), slope=1e-3),
-        Joint("glue", "magnets", "rotor", G("glue", 45.0, 0.2)), *side,
+        Joint("glue", "magnets", "rotor", G("glue", 45.0, 0.2)),
+        *side,
         Joint("mount", "shield.de", "bench", G("mount", 3.0, 0.25), (0.1, 0.0)),
         Joint("bed", "bench", "bench.deep", 8.0, (1.0, 0.0)),
-    ]  # fmt: skip
+    ]
 
 
 def films(s: Skeleton, d: Draw) -> list[Film]:
@@ -92,8 +108,10 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         return weight * channel(0.5 * (T + Tf), u["flow_l_min"], 1.2e-4, 0.010)
 
     housing = s.cells("housing")[[0, 2, 3, 5, 6, 7, 9, 10]]
-    out = [Film("drum", s.cells("housing"), "T_ambient", np.full(11, 0.32 / 11), drum),
-           Film("jacket", housing, s.cells("water"), np.full(8, wall / 8), wet)]  # fmt: skip
+    out = [
+        Film("drum", s.cells("housing"), "T_ambient", np.full(11, 0.32 / 11), drum),
+        Film("jacket", housing, s.cells("water"), np.full(8, wall / 8), wet),
+    ]
     ring = 0.06 * np.arange(6, 0, -1) / 21.0 * d.factor("face", 0.1)
     out += [Film(f"shield.{end}", s.cells(f"shield.{end}"), "T_ambient", ring, shield) for end, _ in ENDS]
     return [*out, *inside(s, d)]
@@ -107,8 +125,11 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         def h(T: Array, Ta: Array, u: Inputs, k1: float = k1, k2: float = k2) -> float:
             return stirred(u["speed_rpm"], 0.07, k1, k2)
 
-        walls = ((s.cells(f"winding.{end}"), 0.02), (s.cells(f"shield.{end}")[2:], 0.04),
-                 (np.array([s.cell("rotor", x)]), 0.025))  # fmt: skip
+        walls = (
+            (s.cells(f"winding.{end}"), 0.02),
+            (s.cells(f"shield.{end}")[2:], 0.04),
+            (np.array([s.cell("rotor", x)]), 0.025),
+        )
         air = s.cells(f"air.{end}")
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.8e-3 / d.factor("gap", 0.15)
@@ -134,9 +155,13 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), winding),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.6 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.4 / 11), iron),
-        Loss("eddy", s.cells("magnets"), np.full(11, 1 / 11),
-             lambda T, u: km * (u["speed_rpm"] / RATED) ** 1.9 / (1.0 + 0.0005 * (T - 40.0))),
-    ]  # fmt: skip
+        Loss(
+            "eddy",
+            s.cells("magnets"),
+            np.full(11, 1 / 11),
+            lambda T, u: km * (u["speed_rpm"] / RATED) ** 1.9 / (1.0 + 0.0005 * (T - 40.0)),
+        ),
+    ]
     for end, _ in ENDS:
         P = 22.0 * d.factor(f"bearing.{end}", 0.25)
 

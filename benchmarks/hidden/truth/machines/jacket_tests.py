@@ -19,8 +19,13 @@ Rng = np.random.Generator
 def drive(at: Array, current: Array, speed: Array, wind: Array, flow: Array, inlet: Array) -> dict[str, Array]:
     """The chiller starts 5 K below `inlet` and is there after some minutes."""
     warming = inlet - 5.0 * np.exp(-at / 200.0)
-    return {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": wind, "flow_l_min": flow,
-            "T_coolant": warming}  # fmt: skip
+    return {
+        "current_A": current,
+        "speed_rpm": speed,
+        "vehicle_speed_mps": wind,
+        "flow_l_min": flow,
+        "T_coolant": warming,
+    }
 
 
 def direct(rng: Rng, at: Array) -> dict[str, Array]:
@@ -48,10 +53,12 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("standstill", "calibrate", 75.0, direct), Plan("load", "calibrate", 75.0, load),
-    Plan("speeds", "calibrate", 75.0, speeds), Plan("road", "validate", 75.0, road),
+    Plan("standstill", "calibrate", 75.0, direct),
+    Plan("load", "calibrate", 75.0, load),
+    Plan("speeds", "calibrate", 75.0, speeds),
+    Plan("road", "validate", 75.0, road),
     Plan("road-2", "hold-out", 75.0, road),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("convection@shield.de", lambda a: airflow("shield.de", a), 30.0),
     Hidden("convection@housing", lambda a: airflow("housing", a), 80.0),
@@ -82,14 +89,34 @@ FOREIGN = {
     "rub at shield.nde": lambda seed: foreign.rub("bearing.nde", "rotor", "housing", 30.0),
 }
 ABSORBED = {
-    "link.fit": lambda seed: Change({"fit": 0.2}), "link.liner": lambda seed: Change({"liner": 0.25}),
-    "link.jacket": lambda seed: Change({"jacket": 0.3}), "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}  # fmt: skip
-TENSE = {"fit": 0.25, "liner": 0.2, "jacket": 0.15, "iron": 0.15, "glue": 0.2, "mount": 0.25, "spigot-de": 0.25,
-         "potting-de": 0.25, "gap": 0.15, "magnet": 0.2}  # fmt: skip
-PARTS = {"winding.slot": "slot", "winding.de": "winding.de", "winding.nde": "winding.nde", "stator": "yoke",
-         "magnets": "magnets", "rotor": "rotor", "housing": "housing", "shield.de": "shield.de",
-         "shield.nde": "shield.nde"}  # fmt: skip
+    "link.fit": lambda seed: Change({"fit": 0.2}),
+    "link.liner": lambda seed: Change({"liner": 0.25}),
+    "link.jacket": lambda seed: Change({"jacket": 0.3}),
+    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+}
+TENSE = {
+    "fit": 0.25,
+    "liner": 0.2,
+    "jacket": 0.15,
+    "iron": 0.15,
+    "glue": 0.2,
+    "mount": 0.25,
+    "spigot-de": 0.25,
+    "potting-de": 0.25,
+    "gap": 0.15,
+    "magnet": 0.2,
+}
+PARTS = {
+    "winding.slot": "slot",
+    "winding.de": "winding.de",
+    "winding.nde": "winding.nde",
+    "stator": "yoke",
+    "magnets": "magnets",
+    "rotor": "rotor",
+    "housing": "housing",
+    "shield.de": "shield.de",
+    "shield.nde": "shield.nde",
+}
 PASSING = (
     Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
     Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
@@ -99,13 +126,30 @@ PASSING = (
     Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
 )
 WORDS = {
-    "pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min"), "cover@housing": ("blockage@housing",),
+    "pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min"),
+    "cover@housing": ("blockage@housing",),
     "meter@current_A": ("input.factor@current_A",),
-}  # fmt: skip
+}
 JACKET = Archetype(
-    "jacket", machine, PLANS,
-    {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "stator": Spot("yoke", 0.5),
-     "magnets": Spot("magnets", 0.5), "housing": Spot("housing", 0.5), "shield.de": Spot("shield.de", 0.5),
-     "shield.nde": Spot("shield.nde", 0.5)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
-)  # fmt: skip
+    "jacket",
+    machine,
+    PLANS,
+    {
+        "winding.slot": Spot("slot", 0.5),
+        "winding.de": Spot("winding.de", 0.5),
+        "stator": Spot("yoke", 0.5),
+        "magnets": Spot("magnets", 0.5),
+        "housing": Spot("housing", 0.5),
+        "shield.de": Spot("shield.de", 0.5),
+        "shield.nde": Spot("shield.nde", 0.5),
+    },
+    {"bench": Spot("bench", 0.1)},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
+    TENSE,
+    PARTS,
+    PASSING,
+    words=WORDS,
+)

@@ -25,36 +25,52 @@ def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
         return value * d.factor(f"capacity.{key}", 0.05)
 
-    side = [b for end, *_ in ENDS for b in (
-        Body(f"coil.{end}", C("coil", 2900.0), 4, 0.1, COPPER), Body(f"bearing.{end}", C("bearing", 600.0), 2, 0.1),
-        Body(f"shield.{end}", C("shield", 6200.0), 5, 0.16, CAST), Body(f"air.{end}", 60.0),
-    )]  # fmt: skip
+    side = [
+        b
+        for end, *_ in ENDS
+        for b in (
+            Body(f"coil.{end}", C("coil", 2900.0), 4, 0.1, COPPER),
+            Body(f"bearing.{end}", C("bearing", 600.0), 2, 0.1),
+            Body(f"shield.{end}", C("shield", 6200.0), 5, 0.16, CAST),
+            Body(f"air.{end}", 60.0),
+        )
+    ]
     return [
-        Body("slot", C("slot", 4600.0), 6, 0.1, COPPER), Body("teeth", C("teeth", 17000.0), 6, 3.0, STEEL),
-        Body("yoke", C("yoke", 36000.0), 6, 2.0, STEEL), Body("rotor", C("rotor", 31000.0), 6, 0.25, STEEL),
-        Body("shaft", C("shaft", 9000.0), 11, 4.5, STEEL), Body("frame", C("frame", 23000.0), 10, 0.35, CAST),
-        Body("feet", C("feet", 5000.0), 3, 0.4, CAST), *side, Body("slab", 40000.0, 4, 0.3),
-    ]  # fmt: skip
+        Body("slot", C("slot", 4600.0), 6, 0.1, COPPER),
+        Body("teeth", C("teeth", 17000.0), 6, 3.0, STEEL),
+        Body("yoke", C("yoke", 36000.0), 6, 2.0, STEEL),
+        Body("rotor", C("rotor", 31000.0), 6, 0.25, STEEL),
+        Body("shaft", C("shaft", 9000.0), 11, 4.5, STEEL),
+        Body("frame", C("frame", 23000.0), 10, 0.35, CAST),
+        Body("feet", C("feet", 5000.0), 3, 0.4, CAST),
+        *side,
+        Body("slab", 40000.0, 4, 0.3),
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
     def G(key: str, value: float, sd: float = 0.25) -> float:
         return value * d.factor(key, sd)
 
-    side = [j for end, x, on, _ in ENDS for j in (
-        Joint(f"overhang-{end}", "slot", f"coil.{end}", G(f"overhang-{end}", 36.0, 0.15), (x, 0.0)),
-        Joint(f"journal-{end}", "shaft", f"bearing.{end}", G(f"journal-{end}", 9.0), (on, 0.0)),
-        Joint(f"seat-{end}", f"bearing.{end}", f"shield.{end}", G(f"seat-{end}", 20.0), (1.0, 1.0)),
-        Joint(f"spigot-{end}", f"shield.{end}", "frame", G(f"spigot-{end}", 28.0), (0.0, x)),
-    )]  # fmt: skip
+    side = [
+        j
+        for end, x, on, _ in ENDS
+        for j in (
+            Joint(f"overhang-{end}", "slot", f"coil.{end}", G(f"overhang-{end}", 36.0, 0.15), (x, 0.0)),
+            Joint(f"journal-{end}", "shaft", f"bearing.{end}", G(f"journal-{end}", 9.0), (on, 0.0)),
+            Joint(f"seat-{end}", f"bearing.{end}", f"shield.{end}", G(f"seat-{end}", 20.0), (1.0, 1.0)),
+            Joint(f"spigot-{end}", f"shield.{end}", "frame", G(f"spigot-{end}", 28.0), (0.0, x)),
+        )
+    ]
     return [
         Joint("wall", "slot", "teeth", G("wall", 150.0, 0.2), slope=4e-4),
         Joint("back", "teeth", "yoke", G("back", 420.0, 0.1), slope=STEEL),
-        Joint("press", "yoke", "frame", G("press", 330.0), slope=1e-3), *side,
+        Joint("press", "yoke", "frame", G("press", 330.0), slope=1e-3),
+        *side,
         Joint("core on shaft", "rotor", "shaft", G("core on shaft", 55.0), (0.5, 0.5)),
         Joint("legs", "frame", "feet", G("legs", 9.0), (0.5, 0.0)),
         Joint("bolts", "feet", "slab", G("bolts", 3.0), (1.0, 0.0)),
-    ]  # fmt: skip
+    ]
 
 
 def outside(s: Skeleton, d: Draw) -> list[Film]:
@@ -94,8 +110,12 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         def h(T: Array, Ta: Array, u: Inputs, k: float = k * openness) -> float:
             return k * (1.0 + 0.5 * (abs(u["speed_rpm"]) / 1000.0 * 9.4) ** 0.7)
 
-        walls = ((s.cells(f"coil.{end}"), 0.16), (s.cells(f"shield.{end}")[1:], 0.12),
-                 (np.array([s.cell("rotor", x)]), 0.07), (np.array([s.cell("frame", x)]), 0.06))  # fmt: skip
+        walls = (
+            (s.cells(f"coil.{end}"), 0.16),
+            (s.cells(f"shield.{end}")[1:], 0.12),
+            (np.array([s.cell("rotor", x)]), 0.07),
+            (np.array([s.cell("frame", x)]), 0.06),
+        )
         air = s.cells(f"air.{end}")
         out += [Film(f"space.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
 
@@ -122,10 +142,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
     out = [
         Loss("slot", s.cells("slot"), np.full(6, 0.52 / 6), winding),
-        Loss("teeth", s.cells("teeth"), np.full(6, 0.55 / 6), iron), Loss("yoke", s.cells("yoke"), np.full(6,
-            0.45 / 6), iron),
+        Loss("teeth", s.cells("teeth"), np.full(6, 0.55 / 6), iron),
+        Loss("yoke", s.cells("yoke"), np.full(6, 0.45 / 6), iron),
         Loss("bars", s.cells("rotor"), np.full(6, 1 / 6), bars),
-    ]  # fmt: skip
+    ]
     for end, *_ in ENDS:
         P = 55.0 * d.factor(f"grease-{end}", 0.25)
 

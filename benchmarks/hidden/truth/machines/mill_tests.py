@@ -8,18 +8,7 @@ from numpy.typing import NDArray
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.change import Change
-from hidden.truth.effects import (
-    METER,
-    airflow,
-    covered,
-    draught,
-    heating,
-    joined,
-    less,
-    spinning,
-    switched,
-    warming,  # fmt: skip
-)
+from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
 from hidden.truth.losses import ALPHA
 from hidden.truth.machines.mill import R20, machine
 from hidden.truth.profile import levels, steady, until
@@ -27,9 +16,20 @@ from hidden.truth.readings import Logger
 
 Array = NDArray[np.float64]
 Rng = np.random.Generator
-NODES = {"n1": "slot", "n2": "coil.de", "n3": "coil.nde", "n4": "teeth", "n5": "yoke", "n6": "rotor",
-         "n9": "bearing.de",
-         "n10": "bearing.nde", "n11": "shield.de", "n12": "shield.nde", "n13": "frame", "n15": "feet"}  # fmt: skip
+NODES = {
+    "n1": "slot",
+    "n2": "coil.de",
+    "n3": "coil.nde",
+    "n4": "teeth",
+    "n5": "yoke",
+    "n6": "rotor",
+    "n9": "bearing.de",
+    "n10": "bearing.nde",
+    "n11": "shield.de",
+    "n12": "shield.nde",
+    "n13": "frame",
+    "n15": "feet",
+}
 CALLED = {body: node for node, body in NODES.items()}
 
 
@@ -58,10 +58,12 @@ def shift(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("dc heating", "calibrate", 120.0, direct), Plan("stand", "calibrate", 120.0, stand),
-    Plan("towed", "calibrate", 100.0, towed), Plan("shift", "validate", 120.0, shift),
+    Plan("dc heating", "calibrate", 120.0, direct),
+    Plan("stand", "calibrate", 120.0, stand),
+    Plan("towed", "calibrate", 100.0, towed),
+    Plan("shift", "validate", 120.0, shift),
     Plan("late shift", "hold-out", 120.0, shift),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("road wind@n11", lambda a: airflow("shield.de", a, 0.35), 30.0),
     Hidden("shaft fan@n11", lambda a: spinning("shield.de", a), 20.0),
@@ -71,19 +73,23 @@ MISSING = (
     Hidden("friction@n9", lambda a: heating("bearing.de", a, (5 / 3, 1.3), fade=0.004), 150.0),
     Hidden("ac copper@n1", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
     Hidden("inverter iron@n4", lambda a: switched("teeth", a / 4000.0, "switching_Hz"), 500.0),
-    Hidden("no tempco@n1", lambda a: warming("slot", 3.0 * R20, a), ALPHA,
-           ((("losses", "copper", "alpha_1_K"), 0.0),)),
-)  # fmt: skip
+    Hidden("no tempco@n1", lambda a: warming("slot", 3.0 * R20, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)),
+)
 WORDS = {
-    "road wind@n11": ("convection@n11",), "shaft fan@n11": ("convection.fan@n11", "convection.rotation@n11"),
+    "road wind@n11": ("convection@n11",),
+    "shaft fan@n11": ("convection.fan@n11", "convection.rotation@n11"),
     "coupling heat@n9": ("conduction.shaft@n7", "conduction.shaft@n9"),
-    "draught@n13": ("convection.constant@n13", "convection.constant@n14"), "windage@n6": ("windage@n6",),
-    "friction@n9": ("bearing.friction@n9",), "ac copper@n1": ("copper.ac@n1",), "inverter iron@n4": ("iron.pwm@n4",),
+    "draught@n13": ("convection.constant@n13", "convection.constant@n14"),
+    "windage@n6": ("windage@n6",),
+    "friction@n9": ("bearing.friction@n9",),
+    "ac copper@n1": ("copper.ac@n1",),
+    "inverter iron@n4": ("iron.pwm@n4",),
     "no tempco@n1": ("copper.feedback@copper",),
     "draught@n11": ("convection.constant@n11",),
     "heat@n12": ("loss.constant@n12",),
-    "cover@n12": ("blockage@n12",), "meter@current_A": ("input.factor@current_A",),
-}  # fmt: skip
+    "cover@n12": ("blockage@n12",),
+    "meter@current_A": ("input.factor@current_A",),
+}
 ALL = ("slot", "coil.de", "yoke", "frame", "shield.de", "shield.nde", "bearing.de", "feet")
 FAULTS = {
     "sensor.gain@n5": lambda seed: faults.gain("yoke", -0.1),
@@ -103,9 +109,11 @@ FOREIGN = {
     "heater at n12": lambda seed: foreign.hot_spell("shield.nde", 250.0),
 }
 ABSORBED = {
-    "frame joint": lambda seed: Change({"press": 0.25}), "slot wall": lambda seed: Change({"wall": 0.35}),
-    "fan": lambda seed: Change({"fan": 0.5}), "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}  # fmt: skip
+    "frame joint": lambda seed: Change({"press": 0.25}),
+    "slot wall": lambda seed: Change({"wall": 0.35}),
+    "fan": lambda seed: Change({"fan": 0.5}),
+    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+}
 PASSING = (
     Hidden("draught@n13", lambda a: draught("frame", a), 60.0),
     Hidden("draught@n11", lambda a: draught("shield.de", a), 20.0),
@@ -114,11 +122,32 @@ PASSING = (
     Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
 )
 MILL = Archetype(
-    "mill", machine, PLANS,
-    {b: Spot(b, x) for b, x in (("slot", 0.5), ("coil.de", 0.5), ("yoke", 0.6), ("frame", 0.5), ("shield.de", 0.4),
-                                ("shield.nde", 0.4), ("bearing.de", 0.7), ("feet", 0.4))},
-    {"bench": Spot("slab", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED,
+    "mill",
+    machine,
+    PLANS,
+    {
+        b: Spot(b, x)
+        for b, x in (
+            ("slot", 0.5),
+            ("coil.de", 0.5),
+            ("yoke", 0.6),
+            ("frame", 0.5),
+            ("shield.de", 0.4),
+            ("shield.nde", 0.4),
+            ("bearing.de", 0.7),
+            ("feet", 0.4),
+        )
+    },
+    {"bench": Spot("slab", 0.1)},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
     {"press": 0.25, "wall": 0.2, "fan": 0.12, "iron": 0.15, "cage": 0.15, "legs": 0.25, "seat-de": 0.25, "still": 0.15},
-    {**NODES, "n7": "shaft"}, PASSING, Logger(30.0, 10.0, 0.1, (10.0, 40.0), 0.1), CALLED, WORDS,
+    {**NODES, "n7": "shaft"},
+    PASSING,
+    Logger(30.0, 10.0, 0.1, (10.0, 40.0), 0.1),
+    CALLED,
+    WORDS,
     {"n7": (0.0, 0.5), "n13": (0.0, 0.5)},
-)  # fmt: skip
+)

@@ -27,10 +27,13 @@ def bodies(d: Draw) -> list[Body]:
         return value * d.factor(f"capacity.{key}", 0.06)
 
     return [
-        Body("copper", C("copper", 42.0), 5, 3.0, -2e-4), Body("teeth", C("iron", 120.0), 5, 9.0, -8e-4),
-        Body("case", C("case", 150.0), 6, 1.2, ALUMINIUM), Body("lid", C("lid", 45.0), 2, 0.6, ALUMINIUM),
-        Body("rotor", C("rotor", 75.0), 4, 6.0), Body("bracket", 45.0, 5, 0.8, ALUMINIUM),
-    ]  # fmt: skip
+        Body("copper", C("copper", 42.0), 5, 3.0, -2e-4),
+        Body("teeth", C("iron", 120.0), 5, 9.0, -8e-4),
+        Body("case", C("case", 150.0), 6, 1.2, ALUMINIUM),
+        Body("lid", C("lid", 45.0), 2, 0.6, ALUMINIUM),
+        Body("rotor", C("rotor", 75.0), 4, 6.0),
+        Body("bracket", 45.0, 5, 0.8, ALUMINIUM),
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
@@ -107,10 +110,12 @@ def duty(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("Stillstand", "calibrate", 50.0, held), Plan("Leerlauf", "calibrate", 50.0, idle),
-    Plan("Takt 1", "calibrate", 50.0, duty), Plan("Takt 2", "validate", 50.0, duty),
+    Plan("Stillstand", "calibrate", 50.0, held),
+    Plan("Leerlauf", "calibrate", 50.0, idle),
+    Plan("Takt 1", "calibrate", 50.0, duty),
+    Plan("Takt 2", "validate", 50.0, duty),
     Plan("Takt 3", "hold-out", 50.0, duty),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("draught@case", lambda a: draught("case", a), 1.5),
     Hidden("shaft fan@case", lambda a: spinning("case", a), 1.0),
@@ -119,9 +124,13 @@ MISSING = (
     Hidden("bearing friction@rotor", lambda a: heating("rotor", a, (5 / 3, 1.2), fade=0.004), 3.0),
     Hidden("ac copper@copper", lambda a: heating("copper", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 400.0),
     Hidden("inverter iron@case", lambda a: switched("teeth", a / 16000.0, "switching_Hz"), 15.0),
-    Hidden("no tempco@copper", lambda a: warming("copper", 3.0 * R20, a), ALPHA,
-           ((("losses", "Kupfer", "alpha_1_K"), 0.0),)),
-)  # fmt: skip
+    Hidden(
+        "no tempco@copper",
+        lambda a: warming("copper", 3.0 * R20, a),
+        ALPHA,
+        ((("losses", "Kupfer", "alpha_1_K"), 0.0),),
+    ),
+)
 FAULTS = {
     "sensor.gain@Wicklung": lambda seed: faults.gain("copper", -0.1),
     "sensor.lag@Wicklung": lambda seed: faults.slow("copper", 120.0),
@@ -144,19 +153,33 @@ PASSING = (
     Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
 )
 WORDS = {
-    "draught@case": ("convection.constant@Gehaeuse",), "shaft fan@case": ("convection.fan@Gehaeuse",
-    "convection.rotation@Gehaeuse"),
-    "coupling heat@rotor": ("conduction.shaft@Rotor",), "windage@rotor": ("windage@Rotor",),
+    "draught@case": ("convection.constant@Gehaeuse",),
+    "shaft fan@case": ("convection.fan@Gehaeuse", "convection.rotation@Gehaeuse"),
+    "coupling heat@rotor": ("conduction.shaft@Rotor",),
+    "windage@rotor": ("windage@Rotor",),
     # that the declared friction is a factor too small is the same heat by the same law at the same node
     "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse", "loss.factor@loss:Lager"),
     "ac copper@copper": ("copper.ac@Wicklung",),
     "inverter iron@case": ("iron.pwm@Gehaeuse",),
-    "no tempco@copper": ("copper.feedback@Kupfer",), "heat@case": ("loss.constant@Gehaeuse",),
-    "cover@case": ("blockage@Gehaeuse",), "meter@current_A": ("input.factor@current_A",),
-}  # fmt: skip
+    "no tempco@copper": ("copper.feedback@Kupfer",),
+    "heat@case": ("loss.constant@Gehaeuse",),
+    "cover@case": ("blockage@Gehaeuse",),
+    "meter@current_A": ("input.factor@current_A",),
+}
 SERVO = Archetype(
-    "servo", machine, PLANS, {"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)}, {}, MISSING, FAULTS, FOREIGN,
-    ABSORBED, {"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
-    {"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"}, PASSING, Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
-    {"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"}, WORDS,
-)  # fmt: skip
+    "servo",
+    machine,
+    PLANS,
+    {"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)},
+    {},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
+    {"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
+    {"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"},
+    PASSING,
+    Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
+    {"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"},
+    WORDS,
+)

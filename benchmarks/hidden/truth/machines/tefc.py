@@ -22,37 +22,52 @@ def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
         return value * d.factor(f"capacity.{key}", 0.05)
 
-    side = [b for end, _ in ENDS for b in (
-        Body(f"winding.{end}", C(f"winding.{end}", 850.0), 5, 0.12, COPPER), Body(f"stub.{end}", 300.0, 4, 1.6, STEEL),
-        Body(f"flange.{end}", C(f"flange.{end}", 1500.0), 6, 0.1, ALUMINIUM), Body(f"bearing.{end}", 220.0, 2, 0.2),
-        Body(f"air.{end}", 20.0),
-    )]  # fmt: skip
+    side = [
+        b
+        for end, _ in ENDS
+        for b in (
+            Body(f"winding.{end}", C(f"winding.{end}", 850.0), 5, 0.12, COPPER),
+            Body(f"stub.{end}", 300.0, 4, 1.6, STEEL),
+            Body(f"flange.{end}", C(f"flange.{end}", 1500.0), 6, 0.1, ALUMINIUM),
+            Body(f"bearing.{end}", 220.0, 2, 0.2),
+            Body(f"air.{end}", 20.0),
+        )
+    ]
     return [
-        Body("slot", C("winding.slot", 1700.0), 11, 0.18, COPPER), Body("teeth", C("core", 4100.0), 11, 9.0, STEEL),
-        Body("yoke", C("core", 5500.0), 11, 6.0, STEEL), Body("rotor", C("rotor", 9000.0), 11, 0.35, ALUMINIUM),
-        Body("housing", C("housing", 6000.0), 11, 0.35, ALUMINIUM), *side,
-        Body("bench", 6400.0, 6, 0.25), Body("bench.deep", 41600.0, 6, 1.6),
-    ]  # fmt: skip
+        Body("slot", C("winding.slot", 1700.0), 11, 0.18, COPPER),
+        Body("teeth", C("core", 4100.0), 11, 9.0, STEEL),
+        Body("yoke", C("core", 5500.0), 11, 6.0, STEEL),
+        Body("rotor", C("rotor", 9000.0), 11, 0.35, ALUMINIUM),
+        Body("housing", C("housing", 6000.0), 11, 0.35, ALUMINIUM),
+        *side,
+        Body("bench", 6400.0, 6, 0.25),
+        Body("bench.deep", 41600.0, 6, 1.6),
+    ]
 
 
 def joints(d: Draw) -> list[Joint]:
     def G(key: str, value: float, sd: float) -> float:
         return value * d.factor(key, sd)
 
-    side = [j for end, x in ENDS for j in (
-        Joint(f"slot-{end}", "slot", f"winding.{end}", G(f"slot-{end}", 30.0, 0.1), (x, 0.0)),
-        Joint(f"rotor-{end}", "rotor", f"stub.{end}", 20.0, (x, 0.0)),
-        Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 9.0, 0.2), (1.0, 1.0)),
-        Joint(f"seat-{end}", f"bearing.{end}", f"flange.{end}", G(f"seat-{end}", 12.0, 0.25), (0.0, 1.0)),
-        Joint(f"spigot-{end}", f"flange.{end}", "housing", G(f"spigot-{end}", 14.0, 0.25), (0.0, x)),
-    )]  # fmt: skip
+    side = [
+        j
+        for end, x in ENDS
+        for j in (
+            Joint(f"slot-{end}", "slot", f"winding.{end}", G(f"slot-{end}", 30.0, 0.1), (x, 0.0)),
+            Joint(f"rotor-{end}", "rotor", f"stub.{end}", 20.0, (x, 0.0)),
+            Joint(f"shaft-{end}", f"stub.{end}", f"bearing.{end}", G(f"shaft-{end}", 9.0, 0.2), (1.0, 1.0)),
+            Joint(f"seat-{end}", f"bearing.{end}", f"flange.{end}", G(f"seat-{end}", 12.0, 0.25), (0.0, 1.0)),
+            Joint(f"spigot-{end}", f"flange.{end}", "housing", G(f"spigot-{end}", 14.0, 0.25), (0.0, x)),
+        )
+    ]
     return [
         Joint("liner", "slot", "teeth", G("liner", 45.0, 0.2), slope=5e-4),
         Joint("lamination", "teeth", "yoke", G("lamination", 260.0, 0.1), slope=STEEL),
-        Joint("fit", "yoke", "housing", G("fit", 70.0, 0.25), slope=1e-3), *side,
+        Joint("fit", "yoke", "housing", G("fit", 70.0, 0.25), slope=1e-3),
+        *side,
         Joint("feet", "housing", "bench", G("feet", 1.6, 0.25), (0.5, 0.0)),
         Joint("bed", "bench", "bench.deep", 6.0, (1.0, 0.0)),
-    ]  # fmt: skip
+    ]
 
 
 def outside(s: Skeleton, d: Draw) -> list[Film]:
@@ -97,9 +112,11 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
 
         air = s.cells(f"air.{end}")
         walls = (
-            (s.cells(f"winding.{end}"), 0.08), (s.cells(f"flange.{end}")[2:], 0.05),
-            (np.array([s.cell("rotor", x)]), 0.03), (np.array([s.cell("housing", x)]), 0.03),
-        )  # fmt: skip
+            (s.cells(f"winding.{end}"), 0.08),
+            (s.cells(f"flange.{end}")[2:], 0.05),
+            (np.array([s.cell("rotor", x)]), 0.03),
+            (np.array([s.cell("housing", x)]), 0.03),
+        )
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.5e-3 / d.factor("gap", 0.15)
 

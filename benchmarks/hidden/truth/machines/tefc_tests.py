@@ -42,10 +42,12 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 
 PLANS = (
-    Plan("standstill", "calibrate", 75.0, direct), Plan("load", "calibrate", 75.0, load),
-    Plan("speeds", "calibrate", 75.0, speeds), Plan("road", "validate", 75.0, road),
+    Plan("standstill", "calibrate", 75.0, direct),
+    Plan("load", "calibrate", 75.0, load),
+    Plan("speeds", "calibrate", 75.0, speeds),
+    Plan("road", "validate", 75.0, road),
     Plan("road-2", "hold-out", 75.0, road),
-)  # fmt: skip
+)
 MISSING = (
     Hidden("convection@flange.de", lambda a: airflow("flange.de", a), 8.0),
     Hidden("convection@housing", lambda a: airflow("housing", a), 60.0),
@@ -79,15 +81,35 @@ FOREIGN = {
     "heater at flange.nde": lambda seed: foreign.hot_spell("flange.nde", 60.0),
 }
 ABSORBED = {
-    "link.fit": lambda seed: Change({"fit": 0.25}), "link.liner": lambda seed: Change({"liner": 0.25}),
-    "loss.cage": lambda seed: Change({"cage": 2.0}), "link.fins-fan": lambda seed: Change({"fan": 0.45}),
-}  # fmt: skip
-TENSE = {"fit": 0.25, "liner": 0.2, "fan": 0.15, "iron": 0.15, "seat-de": 0.25, "feet": 0.25, "capacity.housing": 0.1,
-         "cage": 0.12, "spigot-de": 0.25, "still": 0.15}  # fmt: skip
-PARTS = {"winding.slot": "slot", "winding.de": "winding.de", "winding.nde": "winding.nde", "core": "yoke",
-         "rotor": "rotor",
-         "housing": "housing", "flange.de": "flange.de", "flange.nde": "flange.nde", "bearing.de": "bearing.de",
-         "bearing.nde": "bearing.nde"}  # fmt: skip
+    "link.fit": lambda seed: Change({"fit": 0.25}),
+    "link.liner": lambda seed: Change({"liner": 0.25}),
+    "loss.cage": lambda seed: Change({"cage": 2.0}),
+    "link.fins-fan": lambda seed: Change({"fan": 0.45}),
+}
+TENSE = {
+    "fit": 0.25,
+    "liner": 0.2,
+    "fan": 0.15,
+    "iron": 0.15,
+    "seat-de": 0.25,
+    "feet": 0.25,
+    "capacity.housing": 0.1,
+    "cage": 0.12,
+    "spigot-de": 0.25,
+    "still": 0.15,
+}
+PARTS = {
+    "winding.slot": "slot",
+    "winding.de": "winding.de",
+    "winding.nde": "winding.nde",
+    "core": "yoke",
+    "rotor": "rotor",
+    "housing": "housing",
+    "flange.de": "flange.de",
+    "flange.nde": "flange.nde",
+    "bearing.de": "bearing.de",
+    "bearing.nde": "bearing.nde",
+}
 PASSING = (
     Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
     Hidden("convection.constant@flange.de", lambda a: draught("flange.de", a), 15.0),
@@ -97,9 +119,25 @@ PASSING = (
 )
 WORDS = {"cover@housing": ("blockage@housing",), "meter@current_A": ("input.factor@current_A",)}
 TEFC = Archetype(
-    "tefc", machine, PLANS,
-    {"winding.slot": Spot("slot", 0.5), "winding.de": Spot("winding.de", 0.5), "core": Spot("yoke", 0.5),
-     "housing": Spot("housing", 0.5), "flange.de": Spot("flange.de", 0.5), "flange.nde": Spot("flange.nde", 0.5),
-     "bearing.de": Spot("bearing.de", 0.3)},
-    {"bench": Spot("bench", 0.1)}, MISSING, FAULTS, FOREIGN, ABSORBED, TENSE, PARTS, PASSING, words=WORDS,
-)  # fmt: skip
+    "tefc",
+    machine,
+    PLANS,
+    {
+        "winding.slot": Spot("slot", 0.5),
+        "winding.de": Spot("winding.de", 0.5),
+        "core": Spot("yoke", 0.5),
+        "housing": Spot("housing", 0.5),
+        "flange.de": Spot("flange.de", 0.5),
+        "flange.nde": Spot("flange.nde", 0.5),
+        "bearing.de": Spot("bearing.de", 0.3),
+    },
+    {"bench": Spot("bench", 0.1)},
+    MISSING,
+    FAULTS,
+    FOREIGN,
+    ABSORBED,
+    TENSE,
+    PARTS,
+    PASSING,
+    words=WORDS,
+)

@@ -28,8 +28,10 @@ def history(name, theta, sd, rng, years=(2026.0,), drift=0.0):
 def test_mean_spread_and_drift_of_a_normal_population_are_found():
     rng, sd = np.random.default_rng(1), np.array([0.05, 0.05])
     spread, mean, drift = np.array([0.2, 0.0]), np.array([0.1, -0.2]), np.array([-0.1, 0.0])
-    units = [history(f"u{i}", mean + spread * rng.standard_normal(2), sd, rng, (2025.0, 2026.0, 2027.0), drift)
-             for i in range(400)]  # fmt: skip
+    units = [
+        history(f"u{i}", mean + spread * rng.standard_normal(2), sd, rng, (2025.0, 2026.0, 2027.0), drift)
+        for i in range(400)
+    ]
     found = population(units)
     assert_allclose(found.mean, mean, atol=3 * 0.2 / 20)
     assert_allclose(found.spread, spread, atol=0.02)

@@ -49,8 +49,9 @@ def watched(design, truth, y=None, given=(0, 1, 2)):
 def test_it_is_the_kalman_filter_of_the_textbook():
     """Two nodes, one sensor, constant coefficients: against matrices written down once more (Simon 2006, 5.1)."""
     net = bare_network("two", {"a": 500.0, "b": 2000.0}, ("air",))
-    net = net.extended([node_link(net, "ab", "link", "a", "b", Fixed(2.0)),
-                        node_link(net, "bair", "film", "b", "air", Fixed(1.0))])  # fmt: skip
+    net = net.extended(
+        [node_link(net, "ab", "link", "a", "b", Fixed(2.0)), node_link(net, "bair", "film", "b", "air", Fixed(1.0))]
+    )
     W, tau, sigma, h, n = np.array([[400.0, 50.0], [50.0, 100.0]]), 900.0, 0.5, 2.0, 200
     y = 20.0 + 5.0 * np.sin(np.arange(n) / 30.0)
     sensor = Channel("a", "a", Row(np.array([0]), np.ones(1)), y, sigma)

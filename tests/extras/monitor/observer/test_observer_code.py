@@ -57,8 +57,9 @@ def precise(made):
 
 
 def in_python(made, truth, y):
-    one = observer(made.process, made.noise, made.table_sd, made.sensors, y[0], {"ambient": 20.0}, made.rise_K,
-                   made.bias)  # fmt: skip
+    one = observer(
+        made.process, made.noise, made.table_sd, made.sensors, y[0], {"ambient": 20.0}, made.rise_K, made.bias
+    )
     samples, codes = [], []
     rows = [o.row for o in made.model.outputs]
     for s in one.follow(truth.record, y):

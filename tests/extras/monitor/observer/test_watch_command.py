@@ -25,8 +25,20 @@ def rows(case):
 
 @pytest.fixture(scope="module")
 def document(thermoscope, case, rows):
-    done = thermoscope("use", "watch", case, "--follow", rows, "--sensor", "T_winding", "--sensor", "T_yoke",
-                       "--json", "-", cwd=case.parent)  # fmt: skip
+    done = thermoscope(
+        "use",
+        "watch",
+        case,
+        "--follow",
+        rows,
+        "--sensor",
+        "T_winding",
+        "--sensor",
+        "T_yoke",
+        "--json",
+        "-",
+        cwd=case.parent,
+    )
     assert done.code == 0, done.err
     return done.document
 
@@ -36,8 +48,10 @@ def test_the_document_says_what_was_estimated(case, rows, document):
     assert document["like"] == "stand"
     assert document["samples"] == 1500
     assert [(s["sensor"], s["given"]) for s in document["sensors"]] == [
-        ("T_winding", True), ("T_yoke", True), ("T_flange", False),
-    ]  # fmt: skip
+        ("T_winding", True),
+        ("T_yoke", True),
+        ("T_flange", False),
+    ]
     last = np.loadtxt(rows, delimiter=",", skiprows=1)[-1]
     winding = next(p for p in document["places"] if p["place"] == "winding")
     assert abs(winding["end_C"] - last[4]) < 0.5
@@ -52,8 +66,22 @@ def test_the_document_says_what_was_estimated(case, rows, document):
 @pytest.mark.heavy
 def test_a_pipe_gives_what_the_file_gives(case, rows, document):
     """A line a minute, and the same temperatures."""
-    command = [sys.executable, "-c", RUN, "use", "watch", str(case), "--follow", "-", "--sensor", "T_winding",
-               "--sensor", "T_yoke", "--json", "pipe.json"]  # fmt: skip
+    command = [
+        sys.executable,
+        "-c",
+        RUN,
+        "use",
+        "watch",
+        str(case),
+        "--follow",
+        "-",
+        "--sensor",
+        "T_winding",
+        "--sensor",
+        "T_yoke",
+        "--json",
+        "pipe.json",
+    ]
     done = subprocess.run(command, cwd=case.parent, input=rows.read_text(), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert sum(" min  winding " in line for line in done.stdout.splitlines()) == 50
@@ -108,9 +136,11 @@ def test_packed_rows_are_read(thermoscope, case, rows, tmp_path):
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [(["--as", "c", "--sensor", "T_yoke"], "--as c has no sensors"),
-     (["--as", "observer", "--sensor", "T_rotor"], "no sensor 'T_rotor'")],
-)  # fmt: skip
+    [
+        (["--as", "c", "--sensor", "T_yoke"], "--as c has no sensors"),
+        (["--as", "observer", "--sensor", "T_rotor"], "no sensor 'T_rotor'"),
+    ],
+)
 def test_a_wrong_observer_to_export_is_one_message(thermoscope, case, tmp_path, options, message):
     done = thermoscope("use", "export", case, *options, "--out", tmp_path / "c", cwd=tmp_path)
     assert (done.code, done.err.count("error:")) == (2, 1)
@@ -119,8 +149,22 @@ def test_a_wrong_observer_to_export_is_one_message(thermoscope, case, tmp_path, 
 
 
 def test_an_exported_observer_says_what_it_takes(thermoscope, case, tmp_path):
-    done = thermoscope("use", "export", case, "--as", "observer", "--sensor", "T_winding", "--sensor", "T_yoke",
-                       "--out", tmp_path, "--json", "-", cwd=tmp_path)  # fmt: skip
+    done = thermoscope(
+        "use",
+        "export",
+        case,
+        "--as",
+        "observer",
+        "--sensor",
+        "T_winding",
+        "--sensor",
+        "T_yoke",
+        "--out",
+        tmp_path,
+        "--json",
+        "-",
+        cwd=tmp_path,
+    )
     assert done.code == 0, done.err
     assert done.document["sensors"] == ["T_winding", "T_yoke"]
     assert done.document["inputs"] == ["current_A", "ambient"]

@@ -58,8 +58,9 @@ def test_a_rest_and_its_settling_are_the_closed_form():
     P = R * 100.0**2
     assert_allclose(found.z[0] - AIR, P / (G - P * ALPHA), rtol=1e-9)
     assert_allclose(found.settling(ROW), C / (G - P * ALPHA) * np.log(20.0), rtol=1e-3)
-    assert_allclose(losses(body(), {}, {"current_A": 100.0, "flow": 1.0}, found.z, ("copper",)),
-                    G * (found.z[0] - AIR), rtol=1e-9)  # fmt: skip
+    assert_allclose(
+        losses(body(), {}, {"current_A": 100.0, "flow": 1.0}, found.z, ("copper",)), G * (found.z[0] - AIR), rtol=1e-9
+    )
 
 
 def test_settling_is_that_of_a_run():

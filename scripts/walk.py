@@ -1,0 +1,140 @@
+"""Walks one machine file to its network and one case to its verdict, and prints the files whose code ran, in order.
+
+python scripts/walk.py                     # the imports alone: longest chain of every room, circles
+python scripts/walk.py --machine pmsm-m1   # and the files from a machine file to its network
+python scripts/walk.py --case tclab        # and the files from a case to its verdict
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import sys
+from collections.abc import Callable, Iterator
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")  # from the ground up
+Graph = dict[str, set[str]]
+
+
+def import_graph(types: bool) -> Graph:
+    """Module -> the modules of the rooms that it imports.  types : what only a type checker reads counts, too"""
+    files = {name_of(f): f for room in ROOMS for f in (ROOT / room).rglob("*.py")}
+    return {name: set(imported(file, files, types)) - {name} for name, file in files.items()}
+
+
+def name_of(file: Path) -> str:
+    return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def imported(file: Path, known: dict[str, Path], types: bool) -> Iterator[str]:
+    """Modules of the rooms that a file imports, inside functions as well."""
+    todo: list[ast.AST] = [ast.parse(file.read_text(encoding="utf-8"))]
+    while todo:
+        node = todo.pop()
+        if not types and isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+            continue
+        todo += ast.iter_child_nodes(node)
+        if isinstance(node, ast.ImportFrom):
+            wholes = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from (w if w in known else str(node.module) for w in wholes if w in known or node.module in known)
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+
+
+def longest_chain(graph: Graph) -> list[str]:
+    """The longest chain of modules of a graph without circles that import each other, the upper one first."""
+    below: dict[str, list[str]] = {}
+    for name in TopologicalSorter(graph).static_order():
+        below[name] = [name, *max((below[m] for m in graph[name]), key=_by_length, default=[])]
+    return max(below.values(), key=_by_length, default=[])
+
+
+def _by_length(chain: list[str]) -> tuple[int, list[str]]:
+    """Of two that are as long, the same one every time."""
+    return len(chain), chain
+
+
+def circle(graph: Graph) -> list[str]:
+    """Modules that import each other in a circle; [] where none do."""
+    try:
+        TopologicalSorter({name: sorted(graph[name]) for name in sorted(graph)}).prepare()
+    except CycleError as fault:
+        return list(fault.args[1])
+    return []
+
+
+def of_room(graph: Graph, room: str) -> Graph:
+    inside = {name for name in graph if name.partition(".")[0] == room}
+    return {name: graph[name] & inside for name in inside}
+
+
+def visits(work: Callable[[], Any]) -> list[str]:
+    """Modules whose functions run, one entry for every change from one to another."""
+    out: list[str] = []
+    names: dict[str, str] = {}
+
+    def look(frame: FrameType, event: str, argument: Any) -> None:
+        if event != "call":
+            return
+        file = frame.f_code.co_filename
+        if file not in names:
+            path = Path(file)
+            ours = path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ROOMS
+            names[file] = name_of(path) if ours else ""
+        name = names[file]
+        if name and frame.f_code.co_name != "<module>" and (not out or out[-1] != name):
+            out.append(name)
+
+    sys.setprofile(look)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return out
+
+
+def print_walk(title: str, path: list[str]) -> None:
+    """Every file once, in order of the first visit, and how often the walk goes from one to another and upwards."""
+    rooms = [ROOMS.index(name.partition(".")[0]) for name in path]
+    climbs = sum(b > a for a, b in pairwise(rooms))
+    files = list(dict.fromkeys(path))
+    print(f"{title}: {len(files)} files, {len(path)} visits, {climbs} of them climb to an upper room")
+    print(*(f"  {name}" for name in files), sep="\n")
+
+
+def print_chains() -> None:
+    """The longest chain of every room and what goes in a circle."""
+    graph, typed = import_graph(types=False), import_graph(types=True)
+    for room in ROOMS:
+        chain = longest_chain(of_room(graph, room))
+        print(f"{room}: {len(of_room(graph, room))} files, longest chain {len(chain)}: {' > '.join(chain)}")
+        if ring := circle(of_room(typed, room)):
+            print(f"  in a circle by types: {' > '.join(ring)}")
+    whole = longest_chain(graph)
+    print(f"all rooms: {len(graph)} files, longest chain {len(whole)}")
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--machine", help="a machine file, or a name that comes along")
+    options.add_argument("--case", help="a case folder, or the name of a case that comes along")
+    wish = options.parse_args()
+    print_chains()
+    import thermoscope as ts
+
+    if wish.machine:
+        print_walk(f"{wish.machine} to its network", visits(lambda: ts.build(wish.machine)))
+    if wish.case:
+        print_walk(f"{wish.case} loaded", visits(lambda: ts.open(wish.case)))
+        print_walk(f"{wish.case} to its verdict", visits(lambda: ts.open(wish.case).diagnose()))
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    main()
