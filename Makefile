@@ -4,16 +4,19 @@ export OPENBLAS_NUM_THREADS ?= 1
 unexport PYTHONDONTWRITEBYTECODE  # without bytecode each of some hundred started programs compiles the product again
 BIN := .venv/bin
 
-.PHONY: demo test quick docs benchmark designs setup check lock clean
+.PHONY: demo test quick nightly docs benchmark designs setup check lock clean
 
 demo: setup  ## the whole loop on the shipped hidden-effect case
 	@$(BIN)/thermoscope demo --out out/demo
 
-test: setup  ## every check: style, types, import contracts, tests
-	@$(BIN)/python -m pytest
+test: setup  ## every check (style, types, import contracts, tests); of the nightly tests the fifth whose turn it is
+	@$(BIN)/python -m pytest --turn $$(cat tests/turn)
 
 quick: setup  ## the tests without those marked heavy, which build machines of full size, diagnose, or start programs
-	@$(BIN)/python -m pytest -m "not heavy"
+	@$(BIN)/python -m pytest -m "not heavy and not nightly"
+
+nightly: setup  ## the tests of wheel, browsers, full machines and rates, all of them
+	@$(BIN)/python -m pytest -m nightly
 
 docs: setup  ## the documentation as a site, in out/site
 	@$(BIN)/mkdocs build --quiet

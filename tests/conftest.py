@@ -1,7 +1,9 @@
-"""Shared by all tests: one thread per process, files of long tests first, the command line, the small case."""
+"""Shared by all tests: one thread per process, tiers, files of long tests first, the command line, the small case."""
 
+import json
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,13 +31,47 @@ def root() -> Path:
     return ROOT
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with heavy tests begin: one that begins last keeps one of two workers waiting for its end.
+PARTS = 5  # of the nightly tests: as many landings until each has run
+DURATIONS = ROOT / "tests" / "durations.json"
+spent: Counter[str] = Counter()  # file -> seconds of its tests
 
-    First of all the rules of the house, which run no network: in a new checkout one worker compiles the kernels
-    meanwhile, and the other finds them.
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--turn", type=int, metavar="N", help=f"of the nightly tests only part N modulo {PARTS}")
+    parser.addoption("--record", action="store_true", help=f"keep how long every file took in {DURATIONS.name}")
+
+
+def waiting(items: list[pytest.Item], turn: int) -> set[pytest.Item]:
+    """Nightly tests whose turn it is not: of their files, in the order of their names, every fifth has its turn."""
+    nightly = [item for item in items if item.get_closest_marker("nightly")]
+    files = sorted({item.path for item in nightly})
+    return {item for item in nightly if files.index(item.path) % PARTS != turn % PARTS}
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    spent[report.nodeid.split("::")[0]] += report.duration
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if session.config.getoption("--record") and "PYTEST_XDIST_WORKER" not in os.environ:
+        known = json.loads(DURATIONS.read_text()) if DURATIONS.exists() else {}
+        kept = {file: seconds for file, seconds in known.items() if (ROOT / file).exists()}
+        kept |= {file: round(seconds, 1) for file, seconds in spent.items() if seconds >= 0.5}
+        DURATIONS.write_text(json.dumps(dict(sorted(kept.items(), key=lambda pair: -pair[1])), indent=0) + "\n")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of the nightly tests those whose turn it is; files with heavy tests begin.
+
+    A heavy file that begins last keeps one of two workers waiting for its end.  First of all the rules of the house,
+    which run no network: in a new checkout one worker compiles the kernels meanwhile, and the other finds them.
     """
-    heavy = {item.path for item in items if item.get_closest_marker("heavy")}
+    turn = config.getoption("--turn")
+    if turn is not None:
+        later = waiting(items, turn)
+        config.hook.pytest_deselected(items=list(later))
+        items[:] = [item for item in items if item not in later]
+    heavy = {i.path for i in items if i.get_closest_marker("heavy") or i.get_closest_marker("nightly")}
     items.sort(key=lambda item: (item.path not in heavy, item.path.parent.name != "house"))
 
 

@@ -13,7 +13,7 @@ from geom import load_machine
 from lumped.build.network_size import smallest_network
 from lumped.condensation.reduction_error import Errors
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module")

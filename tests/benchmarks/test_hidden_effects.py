@@ -25,7 +25,7 @@ from validation import add, calibrate
 from validation.effects import kinds
 from validation.effects.streams.flow import flows
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 SAID = {"verdict": "adequate", "groups": [], "where": [], "pulls": [], "words": "", "candidates": {}, "lead": ""}
 

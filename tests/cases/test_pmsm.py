@@ -16,7 +16,7 @@ from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case
 from validation.bases.which_base import declared_base, on_base, which_base, wrong_bases
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 GAP = "k.liner-gap"
 SWITCHES = {"plate": "on_plate", "bench": "on_bench"}
 

@@ -30,7 +30,7 @@ TINY = Recipe(tolerance=0.3, shifts=(), random_points=1, local_points=1, local_s
 # One of each kind through `build`: two bases to stand on, a jacket, a cowl with radial fins.
 BUILT = [
     "cases/pmsm-bases/machine.toml",
-    *(pytest.param(name, marks=pytest.mark.heavy) for name in ("ipmsm-48s8p-jacket", "tefc-industrial-radial")),
+    *(pytest.param(name, marks=pytest.mark.nightly) for name in ("ipmsm-48s8p-jacket", "tefc-industrial-radial")),
 ]
 FORMS = ("xlsx", "csv", "c", "json", "matlab", "fmu")
 LOOK = ("doctor", "compare", "compare --why", "simulate", "effects", "curves", "report", "render")
@@ -111,7 +111,7 @@ def opened_once(load_case, home):
 
 
 LINES = [
-    pytest.param(case, words, marks=[pytest.mark.heavy] if case != "tclab" or words in STEPS else [])
+    pytest.param(case, words, marks=[pytest.mark.nightly] if case != "tclab" or words in STEPS else [])
     for case, all_ in TAKEN.items()
     for words in all_
 ]
@@ -131,7 +131,7 @@ def test_a_shipped_case_goes_through_the_command(home, tmp_path, case, words):
 
 @pytest.mark.parametrize(
     ("case", "words"),
-    [pytest.param(*k, marks=[pytest.mark.heavy] if k[0] != "tclab" else [], id=" ".join(k)) for k in REFUSED],
+    [pytest.param(*k, marks=[pytest.mark.nightly] if k[0] != "tclab" else [], id=" ".join(k)) for k in REFUSED],
 )
 def test_what_a_shipped_case_has_not_is_said(home, tmp_path, case, words):
     command, *options = words.split()

@@ -17,7 +17,7 @@ LONG = {"residuals", "fan_for_a_while"}  # which calibrate a measured case, and 
 TESTED_ELSEWHERE = {"hust", "tclab"}
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.heavy] if n in LONG else []) for n in TOLERANCE])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.nightly] if n in LONG else []) for n in TOLERANCE])
 def test_example(name, root, tmp_path, monkeypatch):
     """one_node: a step of the integrator may be wrong by 10 mK, of 30 K here; the others are the same sums."""
     monkeypatch.setattr(sys, "argv", [name, str(tmp_path)])
@@ -27,7 +27,7 @@ def test_example(name, root, tmp_path, monkeypatch):
     assert all((tmp_path / file).stat().st_size > 1000 for file in WRITES[name])
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.heavy] if n in LONG else []) for n in REFERENCE])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.nightly] if n in LONG else []) for n in REFERENCE])
 def test_example_against_its_reference(name, root):
     left = runpy.run_path(str(root / "examples" / f"{name}.py"))
     assert np.shape(left["computed"]) == np.shape(left["expected"])

@@ -132,7 +132,7 @@ def used(root, tmp_path_factory):
     return run
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_family_goes_all_the_way_to_a_network(used):
     """Its assumed loss leaves through the tube, the rod is warmer than the tube, volumes are those of a cylinder."""
     found = json.loads(used(FAMILY))
@@ -179,19 +179,19 @@ def test_a_heat_flux_drives_an_input_in_its_own_unit(read):
     assert read["last"]["flux"] == pytest.approx(5000.0)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_loss_follows_the_heat_flux(used):
     """500 W/m2 into 0.01 m2 leave through 0.5 W/K: 10 K."""
     assert json.loads(used(FLUX))["rise"] == pytest.approx(10.0, rel=1e-4)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_correlation_carries_heat(used):
     """5 W from 0.0314 m2 of a sphere: at 30 K Ra = 2.5e6 and Nu = 20.0 (by hand), so h = 5.31 W/m2/K."""
     assert json.loads(used(FILM))["rise"] == pytest.approx(5.0 / (5.31 * 0.0314), rel=0.02)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_picture_is_drawn_by_the_command(used, root, tmp_path):
     code = "import sys; sys.argv[0] = 'thermoscope'; from thermoscope.cli import main; main()"
     case = root / "cases" / "tclab"

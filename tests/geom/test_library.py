@@ -12,7 +12,7 @@ from geom import COARSE, InputError, build_mesh, library, load_machine, mesh_qua
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module", params=DISTINCT)

@@ -150,7 +150,7 @@ def test_one_length_out_of_proportion_is_built_or_refused_with_what_fits(family)
     assert times >= 5  # one in ten, or more
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @FAMILIES
 def test_any_lengths_out_of_proportion_end_in_a_machine_as_refusals_ask(family):
     wide, rng, several = replace(family, parameters=tuple(map(widened, family.parameters))), np.random.default_rng(4), 0

@@ -82,7 +82,7 @@ def distinct(pool, i, count):
     return list(itertools.islice(itertools.cycle(pool), i * count, i * count + count))
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("i", range(30))
 def test_every_writing_command(tmp_path, i):
     """Ten names a case, 300 in all; three commands each see every case, the others one in two."""
@@ -108,7 +108,7 @@ def test_every_writing_command(tmp_path, i):
         checked(file)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.skipif(not (has_zig() or any(map(shutil.which, ("gcc", "clang")))), reason="needs a C compiler")
 def test_a_unit_is_compiled_and_loaded_and_nothing_runs(tmp_path):
     hot, *others = distinct(NAMES, 0, len(OLD))
@@ -154,7 +154,7 @@ def hostile_folder(tmp_path):
     return tmp_path
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "start",
     [
@@ -172,7 +172,7 @@ def test_nothing_is_imported_from_the_folder_of_a_case(hostile_folder, start):
     assert sorted(hostile_folder.rglob("*")) == before
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_pipe_that_closes_and_no_stdout_at_all(tmp_path):
     """One message, no traceback, exit code 2; without a stdout the document is written all the same."""
     command = [sys.executable, "-c", RUN, "test", "quantities"]
@@ -218,7 +218,7 @@ def test_a_file_name_that_is_no_text(tmp_path):
     assert answered("new", tmp_path / f"{name}.csv", "--yes", cwd=tmp_path).code == 2
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("i", range(15))
 def test_a_recording_with_hostile_headers_becomes_a_case(tmp_path, i):
     """Twenty names a file, 300 in all: what `new` writes is read again, and names nothing that a file may not."""

@@ -28,7 +28,7 @@ FILES = sorted(f for f in CASES.rglob("case.toml") if "[tests." in f.read_text(e
 
 def parameter(file):
     """A case with a machine takes half a minute: its mesh and network are of full size. tclab's is the smallest."""
-    marks = [] if file.parent.name == "tclab" else [pytest.mark.heavy]
+    marks = [] if file.parent.name == "tclab" else [pytest.mark.nightly]
     return pytest.param(str(file.parent.relative_to(CASES)), marks=marks)
 
 

@@ -17,7 +17,7 @@ from viz.rendering.cut import QUARTER
 from viz.rendering.nodes import SplitMesh
 
 LARGE = ("series-dc-100kw-air", "series-dc-100kw-jacket-two-zigzag", "tefc-industrial-radial", "ipmsm-48s8p-jacket")
-MACHINES = (*(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE), "tefc-industrial", "pmsm-m1")
+MACHINES = (*(pytest.param(name, marks=pytest.mark.nightly) for name in LARGE), "tefc-industrial", "pmsm-m1")
 
 
 @pytest.fixture(scope="module", params=MACHINES)

@@ -11,7 +11,7 @@ from simulated.fleet import written
 from thermoscope.cli import whole_app
 
 distributed = pytest.importorskip("distributed")
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module")

@@ -75,7 +75,7 @@ def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
         pytest.param(
             ("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"),
             "no Dask scheduler",
-            marks=pytest.mark.heavy,  # ten seconds, in which a scheduler may answer
+            marks=pytest.mark.nightly,  # ten seconds, in which a scheduler may answer
         ),
     ],
 )

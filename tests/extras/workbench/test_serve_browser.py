@@ -19,7 +19,7 @@ from thermoscope.case_folder.history import load_history
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: uv pip install playwright")
 pytestmark = [
-    pytest.mark.heavy,
+    pytest.mark.nightly,
     pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
 ]
 SERVER = Path(__file__).parents[2] / "shared" / "motor_case.py"

@@ -8,7 +8,7 @@ from thinned import thinned
 from geom import check_cad, export_cad, library, load_machine
 from geom.solids.cad import solids
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 
 def only_new_parts():

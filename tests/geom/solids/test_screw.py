@@ -16,7 +16,7 @@ from geom.solids.surfaces import surface
 HELICES = [
     Helix(0.100, 0.110, 0.020, 0.120, 0.020, 0.015, 0.004, 0.7),
     Helix(0.050, 0.080, 0.010, 0.040, 0.025, 0.020, 0.020, -2.0),  # as blunt as wide: no end plane is left
-    pytest.param(Helix(1.500, 1.520, 0.100, 2.900, 0.070, 0.040, 0.010, 3.0), marks=pytest.mark.heavy),  # forty turns
+    pytest.param(Helix(1.500, 1.520, 0.100, 2.900, 0.070, 0.040, 0.010, 3.0), marks=pytest.mark.nightly),  # forty turns
     Helix(0.010, 0.012, 0.005, 0.009, 0.003, 0.002, 0.001, 0.0),
 ]
 CASES = pytest.mark.parametrize("helix", HELICES, ids=lambda h: f"{h.turns:.1f} turns")

@@ -84,7 +84,7 @@ def test_a_ceiling_with_a_hole_that_holds_an_island():
 LARGE = ("series-dc-100kw", "tefc-industrial-radial", "series-dc-100kw-jacket-one")
 
 
-@pytest.mark.parametrize("name", ["pmsm-m1", *(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE)])
+@pytest.mark.parametrize("name", ["pmsm-m1", *(pytest.param(name, marks=pytest.mark.nightly) for name in LARGE)])
 def test_parts_of_the_library_are_exact(name):
     for part in load_machine(name).parts:
         checked(part.prisms)

@@ -10,7 +10,7 @@ from lumped.build.pipeline import prepared
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 TIME = np.arange(0.0, 3600.0, 30.0)
 INPUTS = {  # a stop, a start, a flow that varies
     "current_A": 30.0 + 10.0 * np.sin(TIME / 300.0),

@@ -36,7 +36,7 @@ def written(folder, other):
     return ts.open(case)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_other_units_change_nothing(tmp_path):
     """Twelve digits are 1e-10 of a temperature; steps of a fit end within 1e-6 of each other."""
     here, there = (written(tmp_path / word, word == "other") for word in ("same", "other"))

@@ -41,7 +41,7 @@ def test_the_same_errors_at_all_steps(switched):
     assert max(s.error_K for own in steps for s in own) < 0.05
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_the_same_diagnosis_at_all_steps(switched):
     """Same verdict, the effect as probable within 0.01, sizes within 3 % and within 5 % of the truth (6 W/K).
 

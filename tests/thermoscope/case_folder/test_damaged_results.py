@@ -16,7 +16,7 @@ from lumped.condensation.basis_cache import BasisCache, Centre
 from measured.importing.case_files import folder_whole
 from thermoscope import caches
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 
 def folder(file):
@@ -206,7 +206,7 @@ with folder_whole(Path("made")) as partial:
 """
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("number", ["SIGTERM", "SIGKILL"])
 def test_a_killed_new_leaves_nothing(tmp_path, number):
     work, cache = tmp_path / "work", tmp_path / "cache"

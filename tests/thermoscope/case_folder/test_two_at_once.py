@@ -30,7 +30,7 @@ main()
 """
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_the_second_of_two_calibrations_is_refused(case, tmp_path):
     doors = [tmp_path / "a", tmp_path / "b"]
     both = [

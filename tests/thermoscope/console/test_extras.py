@@ -54,7 +54,7 @@ def said(case, commands):
     return [(int(code), text) for text, code in parts]
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "commands",
     [
@@ -105,7 +105,7 @@ def test_the_extras_are_those_of_the_project(root):
     assert all(distribution(PYPI.get(p, p)) for p in HEAVY)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_missing_part_is_said_before_any_work_and_is_the_right_one(case):
     """A declared network has no geometry, whatever is installed; an optimisation lacks its method first."""
     asked = {

@@ -211,7 +211,7 @@ def odds(seed=None):
     return {"".join(sorted(o.hypothesis)): o.probability for o in answer.odds}
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("seed", range(2))
 def test_another_order_gives_the_same_odds(seed):
     """Within 0.01; the ends of a pair may have changed places in a name."""

@@ -35,7 +35,7 @@ def whole():
     return bench(), *leading(bench())
 
 
-@pytest.mark.parametrize("lid", [pytest.param(True, marks=pytest.mark.heavy), False])
+@pytest.mark.parametrize("lid", [pytest.param(True, marks=pytest.mark.nightly), False])
 def test_a_test_cut_in_two_gives_the_same_odds(request, lid):
     case, effects, p = request.getfixturevalue("whole") if lid else (bench(()), *leading(bench(())))
     *others, last = case.tests
@@ -45,7 +45,7 @@ def test_a_test_cut_in_two_gives_the_same_odds(request, lid):
     assert q == pytest.approx(p, abs=0.1)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_the_order_of_the_tests_gives_the_same_odds(whole):
     case, effects, p = whole
     turned = replace(case, tests=tuple(case.tests[i] for i in np.random.default_rng(3).permutation(3)))
@@ -54,7 +54,7 @@ def test_the_order_of_the_tests_gives_the_same_odds(whole):
     assert q == pytest.approx(p, abs=0.01)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_every_second_sample_leads_to_the_same_effect(whole):
     case, effects, p = whole
 

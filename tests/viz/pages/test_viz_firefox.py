@@ -11,7 +11,7 @@ from viz.viewer.page import document, render
 
 FIREFOX = shutil.which("firefox") or shutil.which("firefox-esr")
 pytestmark = [
-    pytest.mark.heavy,
+    pytest.mark.nightly,
     pytest.mark.skipif(
         FIREFOX is None or shutil.which("xvfb-run") is None,
         reason="needs Firefox and a screen: apt-get install -y firefox-esr xvfb xauth",

@@ -17,7 +17,7 @@ from viz.viewer.packing import unpacked
 from viz.viewer.page import document, render
 
 LARGE = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket")
-MACHINES = ("pmsm-m1", *(pytest.param(name, marks=pytest.mark.heavy) for name in LARGE))
+MACHINES = ("pmsm-m1", *(pytest.param(name, marks=pytest.mark.nightly) for name in LARGE))
 COARSE_M = 0.15  # of the mesh: its nodes only say which part a corner is warm as
 FAR = 0.01  # of the machine's size that a corner may leave the shape by: three pixels of three hundred
 
@@ -69,7 +69,7 @@ def test_few_triangles_keep_shapes(shown):
         assert less.shape.volume == pytest.approx(body.shape.volume, rel=LOST)
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_the_page_opens_with_it_and_cuts_show_the_mesh(browser, tmp_path):
     """A part and its true temperature under the pointer either way; the machine fills the picture; a silent console."""
     nodes, one = split(motor(24)), recorded()
@@ -128,7 +128,7 @@ def test_a_computer_that_cannot_draw_makes_the_page_all_the_same(monkeypatch):
     assert document("motor", nodes, [recorded()], PLACE, machine=machine())["looks"]["counts"]
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_windows_are_opened_to_what_is_hidden_and_to_nothing_else(browser, tmp_path):
     """As it looks: the open shaft is seen from above and the housing's lower side is not; from below the other way."""
     nodes, one = split(motor(24)), recorded()

@@ -19,7 +19,7 @@ from viz.viewer.flux import nodal_flux
 from viz.viewer.low_rank import ERROR_K
 from viz.viewer.page import Earlier, document, machine_document, render, temperature_document
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 LARGEST = 1e6  # bytes of a page
 CASE_MESH_M = 0.06  # size of the elements of a case, see lumped.build.pipeline.build
 

@@ -51,7 +51,9 @@ def cases(request):
     }
 
 
-@pytest.mark.parametrize("view", [pytest.param(v, marks=[] if v == "default" else [pytest.mark.heavy]) for v in VIEWS])
+@pytest.mark.parametrize(
+    "view", [pytest.param(v, marks=[] if v == "default" else [pytest.mark.nightly]) for v in VIEWS]
+)
 def test_every_label_points_at_its_own_part(cases, view):
     """Six labels at a time, as pictures have them; so many rounds that every sensor has had one."""
     for surface, known in cases.values():

@@ -13,7 +13,7 @@ from measured.recordings.sheet import load_sheet
 from simulated.fleet import DRIFT_YEAR, written
 from thermoscope.case_folder.folder import load_case
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 NAMES, SD = ("a", "b"), np.array([0.5, 0.5])
 

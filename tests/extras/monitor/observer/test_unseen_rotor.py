@@ -12,7 +12,7 @@ from thermoscope.case_folder.folder import load_case
 from validation.comparison.error_budget import model_of
 from validation.comparison.predict import predict
 
-pytestmark = pytest.mark.heavy
+pytestmark = pytest.mark.nightly
 
 HUST = Path(__file__).parents[4] / "cases" / "hust-ipmsm"
 
