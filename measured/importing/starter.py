@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from shlex import quote
 
 import numpy as np
@@ -34,8 +35,78 @@ SPREAD = 1.0  # prior of everything here, in powers of e
 Columns = Sequence[tuple[Source, Guess]]
 
 
-def starter(columns: Columns, name: str, span_s: float) -> str:
-    """The text of network.toml. InputError where no column is a temperature of a machine."""
+@dataclass(frozen=True)
+class FirstTerm:
+    """A link between two nodes, or a node and a boundary; or a loss at one node.
+
+    ends : two names, or one;  value : W/K or W;  of : (input, its value there, exponent) of all that it follows
+    sd : prior of its logarithm
+    """
+
+    ends: tuple[str, ...]
+    value: float
+    of: tuple[tuple[str, float, float], ...] = ()
+    sd: float = SPREAD
+
+
+@dataclass(frozen=True)
+class FirstNetwork:
+    """A network of measured parts.
+
+    capacities : node -> (J/K, prior of its logarithm);  terms : links and losses;  watts : mean of all losses
+    learnt : tests that its numbers were learnt from, none where they are orders of magnitude
+    """
+
+    name: str
+    boundaries: Sequence[str]
+    capacities: Mapping[str, tuple[float, float]]
+    terms: Sequence[FirstTerm]
+    watts: float
+    learnt: Sequence[str] = ()
+
+    def text(self) -> str:
+        """As network.toml."""
+        lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
+        lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
+        for node, (C, sd) in self.capacities.items():
+            role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
+            lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {sd:.2g}", ""]
+        names: set[str] = set()
+        links = [term for term in self.terms if len(term.ends) == 2]
+        losses = [term for term in self.terms if len(term.ends) == 1]
+        for i, term in enumerate(links, 1):
+            name = "-".join([*term.ends, *(of[0] for of in term.of)])
+            name = name if is_plain(name) and name not in names else f"link-{i}"
+            names.add(name)
+            lines += [f"[links.{toml_key(name)}]", f"between = {toml_value(list(term.ends))}"]
+            lines += [f"G_W_K = {term.value:.3g}", *_follows(term), f"prior_sd = {term.sd:.2g}", ""]
+        for i, term in enumerate(losses, 1):
+            lines += [f"[losses.{f'heat-{i}' if len(losses) > 1 else 'heat'}]", 'kind = "constant"']
+            lines += [f"at = {toml_value(term.ends[0])}", f"P_W = {term.value:.4g}", *_follows(term)]
+            lines += [f"prior_sd = {term.sd:.2g}", ""]
+        return "\n".join(lines)
+
+    def _remark(self) -> list[str]:
+        known = (
+            "# Put in what you know (masses, materials, areas, what heats what: docs/network-toml.md), then calibrate."
+        )
+        if not self.learnt:
+            return ["# A first network made from the columns alone: every number is an order of magnitude.", known]
+        return [
+            f"# A first network learnt from {', '.join(self.learnt)}: the fewest links and losses that predict what",
+            "# was left out. Readings tell how its numbers compare, not how large they are together:",
+            f"# the heat is taken to be {self.watts:.4g} W on average.",
+            known,
+        ]
+
+
+def _follows(term: FirstTerm) -> list[str]:
+    of = [f"{{ input = {toml_value(i)}, at = {at:.4g}, exponent = {p} }}" for i, at, p in term.of]
+    return [f"of = {of[0] if len(of) == 1 else '[' + ', '.join(of) + ']'}"] if of else []
+
+
+def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
+    """The network of some columns. InputError where none is a temperature of a machine."""
     places = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
@@ -46,9 +117,12 @@ def starter(columns: Columns, name: str, span_s: float) -> str:
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
-    heat, watts = _heat(columns, max(rises, key=lambda place: rises[place]))
+    losses, watts = _heat(columns, max(rises, key=lambda place: rises[place]))
     G = watts / max(*rises.values(), 1.0)
-    return _toml(name, nodes, boundaries, G * TIME_CONSTANT * span_s / len(nodes), G, heat)
+    inside = [FirstTerm(pair, 5 * G) for pair in itertools.pairwise(nodes)]
+    outside = [FirstTerm((n, b), G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
+    capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
+    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts)
 
 
 def unplaced(drafts: Sequence[Draft]) -> list[str]:
@@ -108,12 +182,12 @@ def rise(source: Source, g: Guess) -> float:
     return float(np.max(finite) - finite[0])
 
 
-def _heat(columns: Columns, at: str) -> tuple[str, float]:
-    """The losses as lines of TOML, and their mean (W)."""
+def _heat(columns: Columns, at: str) -> tuple[list[FirstTerm], float]:
+    """The losses, and their mean (W)."""
     by_quantity = {q: {g.feeds: in_memory(s, g) for s, g in reversed(of)} for q in HEATS if (of := heating(columns, q))}
     kind = next((q for q in HEATS if q in by_quantity), "")
     if not kind:
-        return _loss("heat", at, ASSUMED_W, ""), ASSUMED_W
+        return [FirstTerm((at,), ASSUMED_W)], ASSUMED_W
     sources = by_quantity[kind]
     for axes in AXES:
         parts = [f"{axis}_A" for axis in axes]
@@ -121,14 +195,11 @@ def _heat(columns: Columns, at: str) -> tuple[str, float]:
             sources["current_A"] = np.sqrt(sum(np.square(sources[name]) for name in parts))
     first = MAIN[kind] if MAIN.get(kind) in sources else list(sources)[-1]
     selection = list(sources.items()) if kind == "share" else [(first, sources[first])]
-    lines, total = [], 0.0
-    for i, (feeds, values) in enumerate(selection, 1):
+    losses = []
+    for feeds, values in selection:
         mean = float(np.sqrt(np.nanmean(np.square(values)))) or 1.0
-        watts = mean if kind == "power" else ASSUMED_W
-        law = f"of = {{ input = {toml_value(feeds)}, at = {mean:.4g}, exponent = {POWERS[kind]} }}"
-        lines.append(_loss(f"heat-{i}" if len(selection) > 1 else "heat", at, watts, law))
-        total += watts
-    return "\n".join(lines), total
+        losses.append(FirstTerm((at,), mean if kind == "power" else ASSUMED_W, ((feeds, mean, POWERS[kind]),)))
+    return losses, sum(loss.value for loss in losses)
 
 
 def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
@@ -150,36 +221,3 @@ def _passes(values: Array, beside_current: bool) -> bool:
     """Does a power pass through?  One that is always below zero, with no current beside it, is a reversed clamp."""
     noise = NOISE * float(np.nanmax(np.abs(values)))
     return bool(np.nanmin(values) < -noise and (np.nanmax(values) > noise or beside_current))
-
-
-def _loss(name: str, at: str, watts: float, of: str) -> str:
-    lines = [f"[losses.{name}]", 'kind = "constant"', f"at = {toml_value(at)}", f"P_W = {watts:.4g}", of]
-    return "\n".join([*(line for line in lines if line), f"prior_sd = {SPREAD}", ""])
-
-
-def _toml(name: str, nodes: Sequence[str], boundaries: Sequence[str], C: float, G: float, heat: str) -> str:
-    """One link from node to node in a row, and one to each boundary."""
-    lines = [
-        "# A first network made from the columns alone: every number is an order of magnitude. Put in what you know:",
-        "# masses, materials, areas, what heats what (docs/network-toml.md), then thermoscope model calibrate.",
-        "",
-        "[network]",
-        f"name = {toml_value(name)}",
-        f"boundaries = {toml_value(list(boundaries))}",
-        "",
-    ]
-    for node in nodes:
-        role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
-        lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {SPREAD}", ""]
-    inside = [(a, b, 5 * G) for a, b in itertools.pairwise(nodes)]
-    outside = [(n, b, G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
-    for i, (a, b, size) in enumerate((*inside, *outside), 1):
-        link = f"{a}-{b}" if is_plain(f"{a}-{b}") else f"link-{i}"
-        lines += [
-            f"[links.{toml_key(link)}]",
-            f"between = {toml_value([a, b])}",
-            f"G_W_K = {size:.3g}",
-            f"prior_sd = {SPREAD}",
-            "",
-        ]
-    return "\n".join([*lines, heat])

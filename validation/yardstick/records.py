@@ -15,7 +15,7 @@ MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and
 MOST_WORK = 1e11  # multiplications of all fits together: some 20 s on one core
 FEWEST_ROWS = 2_000  # of all tests together: fewer would not show what happens within a test
 FEW_SENSORS = 10  # with more of them fewer inputs are looked at: terms grow as their product
-MOST_INPUTS, FEW_INPUTS = 8, 3
+MOST_INPUTS, FEW_INPUTS = 8, 5
 FITS = 5.0  # of every sensor, counted in the longest of them: three powers, and windows that overlap less and less
 MIDDLE = 40  # windows of a test over which an input is held against how fast sensors move
 
@@ -77,23 +77,47 @@ def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:
 
 
 def _telling(names: Sequence[str], tests: Sequence[Test], most: int) -> tuple[str, ...]:
-    """Of many inputs those that go with how fast the sensors move."""
+    """Of many inputs those that say most of how fast the sensors move, each beside those that were chosen before it.
+
+    Three columns of one current say no more than one of them; the speed beside it does.
+    """
     if len(names) <= most:
         return tuple(names)
     sizes: dict[str, list[Array]] = {name: [] for name in names}
     rates = []
     for test in tests:
         ends = np.unique(np.linspace(0, test.time.size - 1, MIDDLE + 1).astype(int))
-        y = np.column_stack([_filled(test.time, c.y)[ends] for c in test.channels])
-        rates.append(np.abs(np.diff(y, axis=0)).mean(axis=1))
+        y = np.column_stack([_filled(test.time, c.y)[ends] for c in test.channels if c.name in _read(tests)])
+        rates.append(np.diff(y, axis=0))
         for name in names:
-            running = np.cumsum(np.abs(np.asarray(test.inputs[name], float)))
-            sizes[name].append(np.diff(running[ends]))
-    rate = np.concatenate(rates)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        match = {name: abs(float(np.corrcoef(np.concatenate(u), rate)[0, 1])) for name, u in sizes.items()}
-    best = sorted(names, key=lambda name: -np.nan_to_num(match[name]))[:most]
-    return tuple(name for name in names if name in best)
+            size = np.abs(np.asarray(test.inputs[name], float))
+            sizes[name].append(np.diff(np.cumsum(np.column_stack([size, size**2]), axis=0)[ends], axis=0))
+    left = _standard(np.concatenate(rates))
+    columns = {name: _standard(np.concatenate(u)) for name, u in sizes.items()}
+    chosen: list[str] = []
+    for _ in range(most):
+        gains = {}
+        for name in (n for n in names if n not in chosen):
+            q, r = np.linalg.qr(columns[name])
+            alive = np.abs(np.diag(r)) > 1e-9 * max(float(np.abs(r).max()), 1e-300)
+            gains[name] = float(np.sum((q[:, alive].T @ left) ** 2))
+        best = max(gains, key=lambda name: gains[name])
+        q, _ = np.linalg.qr(columns[best])
+        left = left - q @ (q.T @ left)
+        columns = {name: u - q @ (q.T @ u) for name, u in columns.items()}
+        chosen.append(best)
+    return tuple(name for name in names if name in chosen)
+
+
+def _read(tests: Sequence[Test]) -> set[str]:
+    """Sensors that all tests have."""
+    return set.intersection(*({c.name for c in t.channels} for t in tests))
+
+
+def _standard(table: Array) -> Array:
+    """Columns of mean 0 and standard deviation 1; 0 where nothing moves."""
+    centred = table - table.mean(axis=0)
+    return centred / np.maximum(centred.std(axis=0), 1e-300)
 
 
 def _in_all(tables: Sequence[Iterable[str]]) -> tuple[str, ...]:

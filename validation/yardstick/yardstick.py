@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from measured.case import Case
 from validation.threads import one_blas_thread
 from validation.yardstick.black_box import BlackBoxLessons
-from validation.yardstick.free_network import Form, NetworkLessons
+from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons
 from validation.yardstick.persistence import usual_rise
 from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
@@ -89,27 +89,24 @@ def _errors_in(of: Mapping[str, float]) -> dict[str, float | None]:
 @one_blas_thread
 def yardstick(case: Case) -> Yardstick | None:
     """The plain models of a case; None where nothing can be learnt: no sensor, no test to fit, or too few rows."""
-    columns = table_columns(case.usable, case.tests)
-    if not columns.sensors:
+    prepared = folds_of(case)
+    if prepared is None:
         return None
+    folds, columns = prepared
     step = row_step(case.usable, columns)
-    records = _parted([table_record(t, columns, step) for t in case.usable])
+    records = [r for fold in folds for r in fold]
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
     unseen = [r for r in unseen if r.read.any()]  # one of other sensors says nothing about these
-    if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
-        return None
-    folds = _folds(records)
-    records = [r for fold in folds for r in fold]
     which = {
         "persistence": _best(_persistences(folds, columns), folds),
         "black_box": _best(_black_boxes(folds, columns), folds),
         "free_network": _best(_free_networks(folds, columns), folds),
     }
     models = {kind: fit(range(len(folds))) for kind, (fit, _) in which.items()}
-    errors = {kind: [*left, *(_error(models[kind], r) for r in unseen)] for kind, (_, left) in which.items()}
+    errors = {kind: [*left, *(error_of(models[kind], r) for r in unseen)] for kind, (_, left) in which.items()}
 
     def pooled(rows: Sequence[int], columns: Sequence[int] | slice = slice(None)) -> dict[str, float]:
-        return {kind: _rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}
+        return {kind: rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}
 
     names = [r.name for r in (*records, *unseen)]
     learnt, unseen_numbers = range(len(records)), range(len(records), len(names))
@@ -121,6 +118,26 @@ def yardstick(case: Case) -> Yardstick | None:
         sensors={sensor: pooled(scope, [j]) for j, sensor in enumerate(columns.sensors)},
         terms=needed_terms(which["free_network"][0], folds, columns, case),
     )
+
+
+def folds_of(case: Case) -> tuple[list[list[Record]], Columns] | None:
+    """The tests a fit may use as tables, what is left out at a time; None where nothing can be learnt from them."""
+    columns = table_columns(case.usable, case.tests)
+    if not columns.sensors:
+        return None
+    step = row_step(case.usable, columns)
+    records = _parted([table_record(t, columns, step) for t in case.usable])
+    if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
+        return None
+    return _folds(records), columns
+
+
+def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
+    """The window and powers with which a free network predicts best what was left out."""
+    fit, _ = _best(_free_networks(folds, columns), folds)
+    whole = fit(range(len(folds)))
+    assert isinstance(whole, FreeNetwork)
+    return whole.form
 
 
 def _parted(records: Sequence[Record]) -> list[Record]:
@@ -167,16 +184,16 @@ def _best(fitters: Sequence[Fitter], folds: Sequence[Sequence[Record]]) -> tuple
 
     def left_out(fit: Fitter) -> list[Array]:
         models = [fit([j for j in every if j != i]) for i in every]
-        return [_error(model, r) for model, fold in zip(models, folds, strict=True) for r in fold]
+        return [error_of(model, r) for model, fold in zip(models, folds, strict=True) for r in fold]
 
-    return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: _rms(pair[1]))
+    return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: rms(pair[1]))
 
 
-def _error(model: Plain, record: Record) -> Array:
+def error_of(model: Plain, record: Record) -> Array:
     """(n, n_sensor) measured - modelled (K), NaN where nothing was read."""
     return np.where(record.read, record.T - model.run(record), np.nan)
 
 
-def _rms(errors: Sequence[Array]) -> float:
+def rms(errors: Sequence[Array]) -> float:
     every = np.concatenate([e[~np.isnan(e)] for e in errors])
     return float(np.sqrt(np.mean(every**2))) if every.size else float("nan")

@@ -4,7 +4,7 @@ import math
 import tomllib
 
 import pytest
-from test_sites import MOTOR
+from sited_motor import MOTOR
 
 from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds

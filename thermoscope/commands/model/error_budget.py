@@ -45,7 +45,7 @@ def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
     """The largest sum and the sample steps in a sentence."""
     rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
     sampling = (
-        f"compared every {' to '.join(f'{h:.3g}' for h in dict.fromkeys((every[0], every[-1])))} s" if every else ""
+        f"compared every {' to '.join(dict.fromkeys(f'{h:.3g}' for h in (every[0], every[-1])))} s" if every else ""
     )
     if not rows:
         return f"Readings and model are {sampling}." if sampling else ""

@@ -25,7 +25,7 @@ from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, read_source, signature
-from measured.importing.starter import place_of, starter, unplaced
+from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.grid import LONGEST_S
 from thermoscope.console.answer import Answer, Grid
@@ -59,12 +59,15 @@ class Wishes:
 
 @dataclass(frozen=True)
 class Model:
-    """What the tests are held against.  put : copies it into a case and returns its line of case.toml"""
+    """What the tests are held against.  put : copies it into a case and returns its line of case.toml
+
+    first : where nobody gave one
+    """
 
     network: Network
     target: Target
     put: Callable[[Path], str]
-    invented: bool = False
+    first: FirstNetwork | None = None
 
 
 def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
@@ -182,15 +185,15 @@ def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str,
         for source, clock in read
         for g in guesses(source, clock.columns, Target())
     ]
-    text = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
-    network = read_network(tomllib.loads(text), "network.toml")
+    first = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
+    network = read_network(tomllib.loads(first.text()), "network.toml")
 
     def put(folder: Path) -> str:
-        write_whole(folder / "network.toml", text)
+        write_whole(folder / "network.toml", first.text())
         return 'network = "network.toml"'
 
     places = {s.labels[g.column]: place for s, g in columns if (place := place_of(g, s.labels[g.column]))}
-    return Model(network, replace(target_of(network), places_by_header=places), put, True)
+    return Model(network, replace(target_of(network), places_by_header=places), put, first)
 
 
 def _at_place(source: Source, g: Guess, place: str) -> Guess:
@@ -234,10 +237,14 @@ def drafts_of(
 
 def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
     """Write the case, read it as compare would, draw its columns; the document of the command."""
+    from measured.case import Case
+    from measured.case import Model as CaseModel
     from measured.recordings.readings import read_test
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
+    from thermoscope.case_folder.quantities import with_quantities
     from thermoscope.case_folder.settings import read_settings
+    from validation.yardstick.first_network import learn_network
 
     with folder_whole(folder) as partial:
         tell("writing the case")
@@ -245,15 +252,24 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         settings = read_settings(partial)
         with _as_recorded(partial, drafts):
             patients = [patient_of(entry) for entry in settings.tests]
-            for entry, one in zip(settings.tests, patients, strict=True):
-                read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s)
+            tests = [
+                read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s).test
+                for entry, one in zip(settings.tests, patients, strict=True)
+            ]
         findings = [f for f in examined(patients, model.network) if not f.remark]
+        if model.first:
+            tell("learning a first network")
+            network = with_quantities(model.network, [one.sheet for one in patients], tests)
+            first = learn_network(Case(folder.name, CaseModel(network), tuple(tests)), model.first)
+            model = replace(model, first=first)
+            write_whole(partial / "network.toml", first.text())
         tell("drawing the columns")
         _draw(drafts[0], partial / "out" / PICTURE)
     return {
         "case": folder.name,
         "folder": str(folder),
-        "invented_network": model.invented,
+        "invented_network": model.first is not None,
+        "learnt_from": list(first.learnt) if model.first else [],
         "warnings": unplaced(drafts),
         "sample_s": settings.sample_s,
         "findings": [f.document() for f in findings],
@@ -377,7 +393,12 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
     """What was assumed, and what looks wrong."""
     tests = document["tests"]
     remarks = [note for t in tests for note in (*t["notes"], *(m for f in t["files"] for m in f["notes"]))]
-    if document["invented_network"]:
+    if document["learnt_from"]:
+        remarks.append(
+            "no machine and no network was given: network.toml holds the fewest links and losses that predict what was "
+            "left out; how large they are together is assumed"
+        )
+    elif document["invented_network"]:
         remarks.append(
             "no machine and no network was given: network.toml is made from the columns, its numbers are "
             "orders of magnitude"

@@ -1,0 +1,74 @@
+"""The first network learnt from readings: the machine's own links and losses, whatever is held out."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from two_bodies import bench
+
+from measured.importing.starter import FirstNetwork
+from validation.yardstick.first_network import learn_network
+
+HEAT = 80.0  # W at full load, as `two_bodies` declares it
+
+
+def first_of(case):
+    """How much heat there is on average is all that a first network is told."""
+    mean = float(np.mean([t.inputs["load"].mean() for t in case.usable]))
+    return FirstNetwork("first", ["ambient"], {}, [], HEAT * mean)
+
+
+@pytest.fixture(scope="module")
+def case():
+    sound = bench(held=())
+    return replace(sound, tests=(*sound.tests[:2], replace(sound.tests[2], role="hold-out")))
+
+
+@pytest.fixture(scope="module")
+def learnt(case):
+    return learn_network(case, first_of(case))
+
+
+def terms(network):
+    return {(frozenset(t.ends), t.of[0][0] if t.of else ""): t.value for t in network.terms}
+
+
+def test_links_and_losses_are_those_of_the_machine(learnt):
+    found = terms(learnt)
+    assert set(found) == {
+        (frozenset({"body", "core"}), ""),
+        (frozenset({"body", "ambient"}), ""),
+        (frozenset({"core"}), "load"),
+    }
+    assert found[frozenset({"body", "core"}), ""] == pytest.approx(4.0, rel=0.05)
+    assert found[frozenset({"body", "ambient"}), ""] == pytest.approx(2.0, rel=0.05)
+
+
+def test_capacities_are_those_of_the_machine(learnt):
+    assert learnt.capacities["body"][0] == pytest.approx(4000.0, rel=0.05)
+    assert learnt.capacities["core"][0] == pytest.approx(1500.0, rel=0.1)
+
+
+def test_held_out_readings_change_nothing(case, learnt):
+    held = case.tests[2]
+    bent = replace(held, channels=tuple(replace(c, y=c.y + 50.0) for c in held.channels))
+    assert learn_network(replace(case, tests=(*case.tests[:2], bent)), first_of(case)).terms == learnt.terms
+
+
+def test_the_order_of_tests_and_sensors_changes_nothing(case, learnt):
+    turned = tuple(replace(t, channels=t.channels[::-1]) for t in case.tests[::-1])
+    other = terms(learn_network(replace(case, tests=turned), first_of(case)))
+    assert other == pytest.approx(terms(learnt), rel=0.02)
+
+
+def test_twice_the_heat_is_twice_of_everything(case, learnt):
+    first = first_of(case)
+    double = learn_network(case, replace(first, watts=2.0 * first.watts))
+    assert terms(double) == pytest.approx({k: 2.0 * v for k, v in terms(learnt).items()})
+
+
+def test_no_film_follows_a_current(case):
+    """A current that runs whenever the load does would explain a film as well; films follow what moves."""
+    network = replace(case.model.network, quantities={"load": "current"})
+    learnt = learn_network(replace(case, model=replace(case.model, network=network)), first_of(case))
+    assert not [t for t in learnt.terms if len(t.ends) == 2 and t.of]

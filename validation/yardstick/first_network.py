@@ -1,0 +1,322 @@
+"""A first network from readings alone: which links and losses they need, and how large these are.
+
+The free network fits each sensor for itself, per its own heat capacity. Here the same terms are held together by what
+a network is: heat that leaves one node arrives at the other, and each node has one capacity,
+
+    C_n (T_n(t + h) - T_n(t)) = sum_jg G_njg int (T_j - T_n) x_g dt + sum_k P_nk int y_k dt,
+
+all of them at least 0, and G_njg = G_jng. With the capacities known this is one non-negative least squares; with all
+else known each capacity is one, too, so the two are solved in turn. Rises alone tell nothing of how large all of it is
+together: one number, the mean heat, is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from measured.case import Case
+from measured.importing.starter import FirstNetwork, FirstTerm
+from validation.threads import one_blas_thread
+from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, loss_factors, nonnegative
+from validation.yardstick.records import Columns, Record
+from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
+
+Array = NDArray[np.float64]
+Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
+ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
+FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
+TRIED = 2  # terms of each node at a time: those that the increments ask for most
+BETTER, WORSE = 0.97, 1.02  # times the error left out: what a term must buy, and what may be lost without it
+FEW_NODES = 4  # with more of them only the second way is gone: trying terms one by one would take minutes
+MANY = 0.9  # times the error of the simpler network: what a network of more terms must come to
+MAIN = 0.3  # of what moves a node: such a term is tried last, whatever it follows
+TURNS, STILL = 12, 3e-3  # of capacities and coefficients, and the relative change that ends them
+SPREAD = (0.2, 1.0)  # prior of a number, in powers of e: the folds share most of their tests; a first network's own
+SLOW = 3.0  # records long is the time constant given to what the readings tie to nothing
+
+
+@one_blas_thread
+def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
+    """The network that the tests a fit may use ask for; `first` itself where they are too short to ask for any.
+
+    case : its nodes, one for each sensor's place, and its tests;  first : says how much heat there is altogether
+    """
+    prepared = folds_of(case)
+    if prepared is None:
+        return first
+    folds, columns = prepared
+    form = best_free_network(folds, columns)
+    places = {c.name: c.place for t in case.tests for c in t.channels}
+    table = _TermTable.of(folds, columns, form, places, case.model.network.measures)
+    heat = np.mean([loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
+    every = range(len(folds))
+    needed = _needed_terms(table, folds)
+    fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
+    if not min(table.mean_heat(theta, heat) for theta, _ in fits) > 0.0:
+        return first  # nothing heats it: there is no size to give to anything
+    (theta, C), *parts = [(s * theta, s * C) for theta, C in fits for s in [first.watts / table.mean_heat(theta, heat)]]
+    scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
+    terms = [
+        FirstTerm(
+            ends, float(theta[k]), tuple((i, scale[i], p) for i, p in of), _spread([part[k] for part, _ in parts])
+        )
+        for k, (ends, of) in enumerate(table.candidates)
+        if theta[k] > 0.0
+    ]
+    capacities = {node: (float(C[n]), _spread([part[n] for _, part in parts])) for n, node in enumerate(table.nodes)}
+    length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
+    alone = [node for node in table.nodes if not _reaches(node, terms, first.boundaries)]
+    terms += [FirstTerm((node, first.boundaries[0]), capacities[node][0] / (SLOW * length)) for node in alone]
+    return replace(first, capacities=capacities, terms=terms, learnt=[t.name for t in case.usable])
+
+
+def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArray[np.bool_]:
+    """(n_term,): the few terms with which what was left out is predicted best.
+
+    One way there begins with constant links between all nodes and takes in, one by one, the loss or the input that a
+    link follows which helps most: the increments say which to try, what is left out decides. The other way begins with
+    all that the increments want. On both, each term that is not missed then goes. The first is simpler and is taken
+    unless the second predicts much better.
+    """
+    every = range(len(folds))
+
+    def left_out(allowed: NDArray[np.bool_]) -> float:
+        models = [table.free(*table.fit([j for j in every if j != i], allowed)) for i in every]
+        return rms([error_of(model, r) for model, fold in zip(models, folds, strict=True) for r in fold])
+
+    def grown() -> tuple[float, NDArray[np.bool_]]:
+        needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
+        least = left_out(needed)
+        while trials := [_with(needed, k, True) for k in table.asked(every, needed)]:
+            errors = [left_out(trial) for trial in trials]
+            if min(errors) > BETTER * least:
+                break
+            close = [k for k, error in enumerate(errors) if BETTER * error <= min(errors)]
+            best = min(close, key=lambda k: (float(table.price[trials[k] & ~needed][0]), errors[k]))  # the simplest
+            needed, least = trials[best], errors[best]
+        return pruned(needed, least)
+
+    def pruned(needed: NDArray[np.bool_], least: float) -> tuple[float, NDArray[np.bool_]]:
+        shares, last = table.shares(every, *table.fit(every, needed)), least
+        order = sorted(np.flatnonzero(needed), key=lambda k: (-table.price[k] * (shares[k] < MAIN), shares[k]))
+        count = max(len(order) // 2, 1)
+        while count:  # many at a time, then each half of those that are missed together
+            for some in [order[i : i + count] for i in range(0, len(order), count)]:
+                without = needed.copy()
+                without[some] = False
+                if (error := left_out(without)) <= WORSE * least:
+                    needed, last, least = without, error, min(error, least)
+                    order = [k for k in order if k not in some]
+            count = 0 if count == 1 else -(-count // 2)
+        return last, needed
+
+    whole = table.fit(every, np.ones(len(table.candidates), bool))[0] > 0.0
+    many, by_many = pruned(whole, left_out(whole))
+    if len(table.nodes) > FEW_NODES:
+        return by_many
+    few, by_few = grown()
+    return by_many if many < MANY * few else by_few
+
+
+def _with(chosen: NDArray[np.bool_], k: int, value: bool) -> NDArray[np.bool_]:
+    out = chosen.copy()
+    out[k] = value
+    return out
+
+
+def _spread(values: Sequence[float]) -> float:
+    """Standard deviation of the logarithm over the fits with one test left out, within SPREAD."""
+    logs = np.log(np.maximum(values, 1e-300))
+    return float(np.clip(np.std(logs) * np.sqrt(max(len(logs) - 1, 1)), *SPREAD))  # jackknife
+
+
+def _reaches(node: str, terms: Sequence[FirstTerm], boundaries: Sequence[str]) -> bool:
+    """Does heat find a way from a node to a boundary?"""
+    known, todo = {node}, [node]
+    while todo:
+        here = todo.pop()
+        for term in terms:
+            if len(term.ends) == 2 and here in term.ends:
+                other = term.ends[term.ends[0] == here]
+                if other in boundaries:
+                    return True
+                if other not in known:
+                    known.add(other)
+                    todo.append(other)
+    return False
+
+
+@dataclass(frozen=True)
+class _TermTable:
+    """All terms that may be in the network, and where each stands in the tables of a node.
+
+    candidates : (ends, what it follows);  rows[n] : (term, column) of node n's table;  normal : of each fold and node
+    weight : (n_node,) of a node's residual (1/K2): one over what its own free fit leaves
+    sensors : of every sensor the number of its node;  bodies : (n_body,) where the others stand among all bodies
+    shape : numbers of all bodies, of what a link may follow, and of losses
+    """
+
+    nodes: tuple[str, ...]
+    candidates: list[tuple[tuple[str, ...], Powers]]
+    rows: list[tuple[NDArray[np.intp], NDArray[np.intp]]]
+    normal: list[list[Array]]
+    weight: Array
+    sensors: tuple[int, ...]
+    bodies: NDArray[np.intp]
+    shape: tuple[int, int, int]
+    form: Form
+
+    @staticmethod
+    def of(
+        folds: Sequence[Sequence[Record]],
+        columns: Columns,
+        form: Form,
+        places: Mapping[str, str],
+        measures: Callable[[str], str],
+    ) -> _TermTable:
+        lessons = NetworkLessons.of(folds, columns, form)
+        first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
+        nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
+        links, losses = _link_powers(columns.inputs, form.powers), _loss_powers(columns.inputs)
+        first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
+        nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
+        links, losses = _link_powers(columns.inputs, form.powers), _loss_powers(columns.inputs)
+        stirs = [all(measures(i) not in ELECTRICAL for i, _ in of) for of in links]
+        heats = [_heats([measures(i) for i, _ in of]) for of in losses]
+        bodies = [
+            *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
+            *columns.boundaries,
+        ]
+        number: dict[tuple[tuple[str, ...], Powers], int] = {}
+        rows = []
+        for sensor in nodes:
+            node = places[sensor]
+            keys = [(_ends(node, places.get(body, body)), of) for body in bodies for of in links]
+            joined = [body in columns.boundaries or (body in nodes and body != sensor) for body in bodies]
+            allowed = [join and stir for join in joined for stir in stirs]
+            keys += [((node,), of) for of in losses]
+            allowed += heats
+            chosen = np.flatnonzero(allowed)
+            rows.append((np.array([number.setdefault(keys[c], len(number)) for c in chosen], int), chosen))
+        index = [columns.sensors.index(s) for s in nodes]
+        normal = [[fold[i] for i in index] for fold in lessons.normal]
+        weight = np.array(
+            [1.0 / max(_residual(np.sum([fold[n] for fold in normal], axis=0)), 1e-12) for n in range(len(nodes))]
+        )
+        names = tuple(places[s] for s in nodes)
+        where = np.append(np.flatnonzero(columns.steady), len(columns.sensors) + np.arange(len(columns.boundaries)))
+        shape = (len(columns.sensors) + len(columns.boundaries), len(links), len(losses))
+        owner = tuple(names.index(places[s]) for s in columns.sensors)
+        return _TermTable(names, list(number), rows, normal, weight, owner, where, shape, form)
+
+    def fit(self, lessons: Sequence[int], allowed: NDArray[np.bool_]) -> tuple[Array, Array]:
+        """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  allowed : may be > 0"""
+        place = np.cumsum(allowed) - 1  # of an allowed term among these
+        parts = []
+        for n, (term, column) in enumerate(self.rows):
+            N, some = self._table(n, lessons), allowed[term]
+            parts.append((N[np.ix_(column[some], column[some])], N[column[some], -1], place[term[some]]))
+        C, a = np.ones(len(self.nodes)), np.zeros(int(allowed.sum()))
+        for _ in range(TURNS):
+            AA, Ab = np.zeros((a.size, a.size)), np.zeros(a.size)
+            for (N, b, term), w, c in zip(parts, self.weight, C, strict=True):
+                AA[np.ix_(term, term)] += N * (w / c**2)
+                Ab[term] += b * (w / c)
+            a = nonnegative(AA, Ab)
+            new = np.array([_capacity(N, b, a[term], c) for (N, b, term), c in zip(parts, C, strict=True)])
+            new /= np.exp(np.mean(np.log(new)))
+            if np.allclose(new, C, rtol=STILL):
+                break
+            C = new
+        theta = np.zeros(len(self.candidates))
+        theta[allowed] = a
+        return theta, C
+
+    def _table(self, node: int, lessons: Sequence[int]) -> Array:
+        return np.sum([self.normal[i][node] for i in lessons], axis=0)
+
+    def asked(self, lessons: Sequence[int], allowed: NDArray[np.bool_]) -> list[int]:
+        """Of each node the terms outside `allowed` that would explain most of what is left of its rises, by price."""
+        theta, C = self.fit(lessons, allowed)
+        out: dict[int, None] = {}
+        for n, ((term, column), c) in enumerate(zip(self.rows, C, strict=True)):
+            N = self._table(n, lessons)
+            table = N[np.ix_(column, column)]
+            left = N[column, -1] - table @ (theta[term] / c)
+            gain = np.maximum(left, 0.0) / np.sqrt(np.maximum(np.diag(table), 1e-300)) / self.price[term]
+            gain[allowed[term]] = 0.0
+            out |= dict.fromkeys(int(term[i]) for i in np.argsort(-gain, kind="stable")[:TRIED] if gain[i] > 0.0)
+        return list(out)
+
+    @property
+    def price(self) -> Array:
+        """(n_term,): what follows one input is likelier than what follows two or a square."""
+        return np.array([1.0 + 0.25 * sum(p for _, p in of) for _, of in self.candidates])
+
+    def shares(self, lessons: Sequence[int], theta: Array, C: Array) -> Array:
+        """(n_term,): of what moves a node, root mean squares; of a link's two nodes the larger."""
+        out = np.zeros(theta.size)
+        for n, (term, column) in enumerate(self.rows):
+            N = self._table(n, lessons)
+            size = theta[term] * np.sqrt(np.maximum(np.diag(N)[column], 0.0))
+            np.maximum.at(out, term, size / max(float(size.sum()), 1e-300))
+        return out
+
+    def free(self, theta: Array, C: Array) -> FreeNetwork:
+        """The same network node by node, per capacity."""
+        bodies, factors, k = self.shape
+        links, sources = np.zeros((len(self.sensors), bodies, factors)), np.zeros((len(self.sensors), k))
+        for n, sensor in enumerate(self.sensors):
+            row = self._row(sensor, theta) / C[sensor]
+            links[n, self.bodies], sources[n] = row[:-k].reshape(-1, factors), row[-k:]
+        return FreeNetwork(self.form, links, sources)
+
+    def mean_heat(self, theta: Array, heat: Array) -> float:
+        """All losses together.  heat : (n_loss,) mean of each loss's factor"""
+        return float(sum(self._row(n, theta)[-len(heat) :] @ heat for n in range(len(self.nodes))))
+
+    def _row(self, node: int, theta: Array) -> Array:
+        """Coefficients as the columns of a node's table have them."""
+        term, column = self.rows[node]
+        row = np.zeros(self.normal[0][node].shape[0] - 1)
+        row[column] = theta[term]
+        return row
+
+
+def _heats(quantities: Sequence[str]) -> bool:
+    """May a loss follow these together?  Two currents do not, a current and a speed, or a voltage, do."""
+    electrical = [q for q in quantities if q in ELECTRICAL]
+    return not set(quantities) & set(FLOWS) and (len(electrical) < 2 or set(electrical) == {"current", "voltage"})
+
+
+def _ends(node: str, other: str) -> tuple[str, ...]:
+    return (node, other) if node <= other else (other, node)
+
+
+def _capacity(N: Array, b: Array, a: Array, before: float) -> float:
+    """The capacity with which a node's heat explains most of its rises."""
+    explained = float(a @ b)
+    return float(a @ N @ a) / explained if explained > 0.0 else before
+
+
+def _residual(N: Array) -> float:
+    """Sum of squares that a node's own free fit leaves (K2)."""
+    a = nonnegative(N[:-1, :-1], N[:-1, -1])
+    return float(N[-1, -1] - 2.0 * a @ N[:-1, -1] + a @ N[:-1, :-1] @ a)
+
+
+def _link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
+    """What stands in the columns of `link_factors`."""
+    return [(), *(((i, float(p)),) for p in range(1, powers + 1) for i in inputs)]
+
+
+def _loss_powers(inputs: Sequence[str]) -> list[Powers]:
+    """What stands in the columns of `loss_factors`."""
+    single: list[Powers] = [((i, p),) for p in (1.0, 2.0) for i in inputs]
+    pairs: list[Powers] = [((a, p), (b, q)) for a, b in combinations(inputs, 2) for p in (1.0, 2.0) for q in (1.0, 2.0)]
+    return [(), *single, *pairs]
