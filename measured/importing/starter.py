@@ -87,16 +87,16 @@ class FirstNetwork:
         return "\n".join(lines)
 
     def _remark(self) -> list[str]:
-        known = (
+        advice = (
             "# Put in what you know (masses, materials, areas, what heats what: docs/network-toml.md), then calibrate."
         )
         if not self.learnt:
-            return ["# A first network made from the columns alone: every number is an order of magnitude.", known]
+            return ["# A first network made from the columns alone: every number is an order of magnitude.", advice]
         return [
             f"# A first network learnt from {', '.join(self.learnt)}: the fewest links and losses that predict what",
             "# was left out. Readings tell how its numbers compare, not how large they are together:",
             f"# the heat is taken to be {self.watts:.4g} W on average.",
-            known,
+            advice,
         ]
 
 

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
 FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
-TRIED = 2  # terms of each node at a time: those that the increments ask for most
+TRIALS = 2  # terms of each node at a time: those that the increments ask for most
 BETTER, WORSE = 0.97, 1.02  # times the error left out: what a term must buy, and what may be lost without it
 FEW_NODES = 4  # with more of them only the second way is gone: trying terms one by one would take minutes
 MANY = 0.9  # times the error of the simpler network: what a network of more terms must come to
@@ -85,14 +85,14 @@ def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArr
     """
     every = range(len(folds))
 
-    def left_out(allowed: NDArray[np.bool_]) -> float:
-        models = [table.free(*table.fit([j for j in every if j != i], allowed)) for i in every]
+    def left_out(active: NDArray[np.bool_]) -> float:
+        models = [table.free(*table.fit([j for j in every if j != i], active)) for i in every]
         return rms([error_of(model, r) for model, fold in zip(models, folds, strict=True) for r in fold])
 
     def grown() -> tuple[float, NDArray[np.bool_]]:
         needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
         least = left_out(needed)
-        while trials := [_with(needed, k, True) for k in table.asked(every, needed)]:
+        while trials := [_with(needed, k, True) for k in table.steepest_terms(every, needed)]:
             errors = [left_out(trial) for trial in trials]
             if min(errors) > BETTER * least:
                 break
@@ -123,8 +123,8 @@ def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArr
     return by_many if many < MANY * few else by_few
 
 
-def _with(chosen: NDArray[np.bool_], k: int, value: bool) -> NDArray[np.bool_]:
-    out = chosen.copy()
+def _with(selection: NDArray[np.bool_], k: int, value: bool) -> NDArray[np.bool_]:
+    out = selection.copy()
     out[k] = value
     return out
 
@@ -137,7 +137,7 @@ def _spread(values: Sequence[float]) -> float:
 
 def _reaches(node: str, terms: Sequence[FirstTerm], boundaries: Sequence[str]) -> bool:
     """Does heat find a way from a node to a boundary?"""
-    known, todo = {node}, [node]
+    visited, todo = {node}, [node]
     while todo:
         here = todo.pop()
         for term in terms:
@@ -145,8 +145,8 @@ def _reaches(node: str, terms: Sequence[FirstTerm], boundaries: Sequence[str]) -
                 other = term.ends[term.ends[0] == here]
                 if other in boundaries:
                     return True
-                if other not in known:
-                    known.add(other)
+                if other not in visited:
+                    visited.add(other)
                     todo.append(other)
     return False
 
@@ -197,12 +197,12 @@ class _TermTable:
         for sensor in nodes:
             node = places[sensor]
             keys = [(_ends(node, places.get(body, body)), of) for body in bodies for of in links]
-            joined = [body in columns.boundaries or (body in nodes and body != sensor) for body in bodies]
-            allowed = [join and stir for join in joined for stir in stirs]
+            others = [body in columns.boundaries or (body in nodes and body != sensor) for body in bodies]
+            active = [join and stir for join in others for stir in stirs]
             keys += [((node,), of) for of in losses]
-            allowed += heats
-            chosen = np.flatnonzero(allowed)
-            rows.append((np.array([number.setdefault(keys[c], len(number)) for c in chosen], int), chosen))
+            active += heats
+            selection = np.flatnonzero(active)
+            rows.append((np.array([number.setdefault(keys[c], len(number)) for c in selection], int), selection))
         index = [columns.sensors.index(s) for s in nodes]
         normal = [[fold[i] for i in index] for fold in lessons.normal]
         weight = np.array(
@@ -214,14 +214,14 @@ class _TermTable:
         owner = tuple(names.index(places[s]) for s in columns.sensors)
         return _TermTable(names, list(number), rows, normal, weight, owner, where, shape, form)
 
-    def fit(self, lessons: Sequence[int], allowed: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  allowed : may be > 0"""
-        place = np.cumsum(allowed) - 1  # of an allowed term among these
+    def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
+        """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""
+        place = np.cumsum(active) - 1  # of an active term among these
         parts = []
         for n, (term, column) in enumerate(self.rows):
-            N, some = self._table(n, lessons), allowed[term]
+            N, some = self._table(n, lessons), active[term]
             parts.append((N[np.ix_(column[some], column[some])], N[column[some], -1], place[term[some]]))
-        C, a = np.ones(len(self.nodes)), np.zeros(int(allowed.sum()))
+        C, a = np.ones(len(self.nodes)), np.zeros(int(active.sum()))
         for _ in range(TURNS):
             AA, Ab = np.zeros((a.size, a.size)), np.zeros(a.size)
             for (N, b, term), w, c in zip(parts, self.weight, C, strict=True):
@@ -234,23 +234,23 @@ class _TermTable:
                 break
             C = new
         theta = np.zeros(len(self.candidates))
-        theta[allowed] = a
+        theta[active] = a
         return theta, C
 
     def _table(self, node: int, lessons: Sequence[int]) -> Array:
         return np.sum([self.normal[i][node] for i in lessons], axis=0)
 
-    def asked(self, lessons: Sequence[int], allowed: NDArray[np.bool_]) -> list[int]:
-        """Of each node the terms outside `allowed` that would explain most of what is left of its rises, by price."""
-        theta, C = self.fit(lessons, allowed)
+    def steepest_terms(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> list[int]:
+        """Of each node the terms outside `active` that would explain most of what is left of its rises, by price."""
+        theta, C = self.fit(lessons, active)
         out: dict[int, None] = {}
         for n, ((term, column), c) in enumerate(zip(self.rows, C, strict=True)):
             N = self._table(n, lessons)
             table = N[np.ix_(column, column)]
             left = N[column, -1] - table @ (theta[term] / c)
             gain = np.maximum(left, 0.0) / np.sqrt(np.maximum(np.diag(table), 1e-300)) / self.price[term]
-            gain[allowed[term]] = 0.0
-            out |= dict.fromkeys(int(term[i]) for i in np.argsort(-gain, kind="stable")[:TRIED] if gain[i] > 0.0)
+            gain[active[term]] = 0.0
+            out |= dict.fromkeys(int(term[i]) for i in np.argsort(-gain, kind="stable")[:TRIALS] if gain[i] > 0.0)
         return list(out)
 
     @property

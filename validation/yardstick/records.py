@@ -94,10 +94,10 @@ def _telling(names: Sequence[str], tests: Sequence[Test], most: int) -> tuple[st
             sizes[name].append(np.diff(np.cumsum(np.column_stack([size, size**2]), axis=0)[ends], axis=0))
     left = _standard(np.concatenate(rates))
     columns = {name: _standard(np.concatenate(u)) for name, u in sizes.items()}
-    chosen: list[str] = []
+    selection: list[str] = []
     for _ in range(most):
         gains = {}
-        for name in (n for n in names if n not in chosen):
+        for name in (n for n in names if n not in selection):
             q, r = np.linalg.qr(columns[name])
             alive = np.abs(np.diag(r)) > 1e-9 * max(float(np.abs(r).max()), 1e-300)
             gains[name] = float(np.sum((q[:, alive].T @ left) ** 2))
@@ -105,8 +105,8 @@ def _telling(names: Sequence[str], tests: Sequence[Test], most: int) -> tuple[st
         q, _ = np.linalg.qr(columns[best])
         left = left - q @ (q.T @ left)
         columns = {name: u - q @ (q.T @ u) for name, u in columns.items()}
-        chosen.append(best)
-    return tuple(name for name in names if name in chosen)
+        selection.append(best)
+    return tuple(name for name in names if name in selection)
 
 
 def _read(tests: Sequence[Test]) -> set[str]:
