@@ -7,7 +7,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from decimal import Decimal
 from numbers import Real
@@ -25,23 +25,8 @@ HEADER = 2  # line of the first row of numbers
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
 # As loggers, spreadsheets and statistics programs write that nothing was read.
 MISSING = frozenset(
-    {
-        "",
-        "#n/a",
-        "#n/a n/a",
-        "#na",
-        "-1.#ind",
-        "1.#ind",
-        "-1.#qnan",
-        "1.#qnan",
-        "-nan",
-        "nan",
-        "<na>",
-        "n/a",
-        "na",
-        "null",
-        "none",
-    }
+    {"", "na", "n/a", "#na", "#n/a", "#n/a n/a", "<na>", "null", "none"}
+    | {"nan", "-nan", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan"}
 )
 SWITCH = {"true": True, "false": False}
 
@@ -49,12 +34,19 @@ SWITCH = {"true": True, "false": False}
 @dataclass(frozen=True)
 class DataTable:
     """cells : name -> (rows,) float with NaN where nothing was read; datetime64 and timedelta64; bool; or objects of
-    any kind with None where nothing was read"""
+    any kind with None where nothing was read
 
-    cells: Mapping[str, Column]
+    units : column -> unit as the file keeps it, apart from the name;  start : of its clock (s since 1970), if known
+    notes : what is doubtful in the file
+    """
+
+    cells: Mapping[str, Any]
+    units: Mapping[str, str] = field(default_factory=dict)
+    start: float | None = None
+    notes: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, columns: Iterable[tuple[object, Any]], file: Path) -> DataTable:
+    def of(cls, columns: Iterable[tuple[object, Any]], file: Path, **about: Any) -> DataTable:
         """Of pairs (name, values) in the order of the file. InputError for a name that comes twice."""
         pairs = [(str(name).strip(), values) for name, values in columns]
         twice = [name for name, count in Counter(name for name, _ in pairs).items() if count > 1]
@@ -63,7 +55,7 @@ class DataTable:
         cells = {name: _typed(values) for name, values in pairs}
         if len(rows := {column.size for column in cells.values()}) > 1:
             raise InputError(f"columns have from {min(rows)} to {max(rows)} rows", str(file), "columns of equal length")
-        return cls(cells)
+        return cls(cells, **about)
 
     @property
     def columns(self) -> list[str]:
