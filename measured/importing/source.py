@@ -8,7 +8,6 @@ import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -78,28 +77,10 @@ def as_numbers(cells: Sequence[Any]) -> Array:
     """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
         return np.asarray(cells, float)
-    quick = np.fromiter(map(_quick, cells), float, len(cells))
-    for i in np.flatnonzero(~np.isfinite(quick)):
-        quick[i] = _number(cells[int(i)])
-    return quick
-
-
-def _quick(cell: Any) -> float:
-    """By Python's own reader, which takes nearly all cells; it would also take 1_000."""
-    try:
-        return float("nan") if isinstance(cell, str) and "_" in cell else float(cell)
-    except (TypeError, ValueError):
-        return float("nan")
-
-
-def _number(cell: Any) -> float:
-    return float("nan") if cell is None else _of_word(str(cell))
-
-
-@lru_cache(maxsize=2**16)
-def _of_word(cell: str) -> float:
-    value = number(cell)
-    return SWITCH.get(cell.strip().lower(), value) if np.isnan(value) else value
+    cells = [None if isinstance(cell, list | dict | np.ndarray) else cell for cell in cells]  # as Parquet may hold
+    meaning = {cell: number(cell) for cell in set(cells)}
+    meaning |= {c: SWITCH[word] for c in meaning if isinstance(c, str) and (word := c.strip().lower()) in SWITCH}
+    return np.fromiter(map(meaning.__getitem__, cells), float, len(cells))
 
 
 def read_source(file: Path) -> Source:
