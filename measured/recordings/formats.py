@@ -35,7 +35,7 @@ SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
-Found = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
+Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
 BOOK = "an Excel workbook"
 EPOCH = np.datetime64(0, "s")  # 1970
 TIMELESS = "no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
@@ -110,7 +110,7 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     return table
 
 
-def _table(file: Path, kind: str, package: str, read: Callable[[], Found]) -> DataTable:
+def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) -> DataTable:
     check_size(file)
 
     def table() -> DataTable:
@@ -121,7 +121,7 @@ def _table(file: Path, kind: str, package: str, read: Callable[[], Found]) -> Da
     return read_whole
 
 
-def _foreign(file: Path, read: Reader) -> Found:
+def _foreign(file: Path, read: Reader) -> Contents:
     return read(file).items(), {}
 
 
@@ -139,7 +139,7 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
         raise InputError(f"not readable as {kind}: {first}", str(file), f"a file that is really {kind}") from None
 
 
-def _xlsx(file: Path, worksheet: str) -> Found:
+def _xlsx(file: Path, worksheet: str) -> Contents:
     header, *rows = workbook_rows(file, worksheet) or [[]]
     names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
     return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True), {}
@@ -196,7 +196,7 @@ def _rows(sheet: Any, file: Path) -> list[list[Any]]:
     return [[*row, *[None] * width][:width] for row in rows]
 
 
-def _parquet(file: Path) -> Found:
+def _parquet(file: Path) -> Contents:
     import pyarrow
     from pyarrow.parquet import ParquetFile
 
@@ -209,7 +209,7 @@ def _parquet(file: Path) -> Found:
     return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)], {}
 
 
-def _tdms(file: Path, group: str) -> Found:
+def _tdms(file: Path, group: str) -> Contents:
     """Units and the start of the clock are properties of the channels."""
     from nptdms import TdmsFile
 
@@ -231,12 +231,12 @@ def _tdms(file: Path, group: str) -> Found:
                     "a time from row to row above 0",
                 )
         names = Counter(c.name for _, c in channels if len(c))
-        named = [(c.name if names[c.name] == 1 else f"{g}/{c.name}", c) for g, c in channels if len(c)]
-        columns = joined((name, *_tdms_signal(c)) for name, c in timed(named, file))
+        by_name = [(c.name if names[c.name] == 1 else f"{g}/{c.name}", c) for g, c in channels if len(c)]
+        columns = joined((name, *_tdms_signal(c)) for name, c in timed(by_name, file))
         starts = [c.properties["wf_start_time"] for _, c in channels if "wf_start_time" in c.properties]
         timeless = all("wf_increment" not in c.properties for _, c in channels)
         return columns, {
-            "units": {name: str(c.properties.get("unit_string", "")) for name, c in named},
+            "units": {name: str(c.properties.get("unit_string", "")) for name, c in by_name},
             "start": _since_1970(starts[0]) if starts else None,
             "notes": (f"{file.name}: {TIMELESS}",) * timeless,
         }
@@ -250,7 +250,7 @@ def _tdms_signal(signal: Any) -> tuple[Array, Array]:
     return (offset + step * time if step else time), values
 
 
-def _mf4(file: Path) -> Found:
+def _mf4(file: Path) -> Contents:
     """A group whose rows are not all there is refused: they would be read as zeros."""
     from asammdf import MDF
 
@@ -259,10 +259,10 @@ def _mf4(file: Path) -> Found:
             about = group.channel_group
             check_shape(about.cycles_nr, len(group.channels), file)
             width = about.samples_byte_nr + getattr(about, "invalidation_bytes_nr", 0)
-            held = sum(block.original_size or 0 for block in group.get_data_blocks())
-            BYTES.check(held, file, "holds")
-            if width * about.cycles_nr > held:
-                what = f"a group claims {about.cycles_nr:,} rows and holds {held // width:,}"
+            there = sum(block.original_size or 0 for block in group.get_data_blocks())
+            BYTES.check(there, file, "holds")
+            if width * about.cycles_nr > there:
+                what = f"a group claims {about.cycles_nr:,} rows and holds {there // width:,}"
                 raise InputError(what, str(file), "a file that was closed by its recorder: save it again")
         signals = [
             (s.name, np.asarray(s.timestamps, float), np.asarray(s.samples))
