@@ -5,10 +5,11 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeVar
 
 from geom.limits import BYTES, CELLS, COLUMNS, ROWS, ReadingTime
 
+Piece = TypeVar("Piece")
 CHUNK = 2**24  # bytes
 DELIMITERS = (b",", b";", b"\t", b"|")
 
@@ -44,15 +45,20 @@ def check_shape(rows: int, columns: int, where: object) -> None:
     CELLS.check(rows * columns, where, "holds")
 
 
+def timed(pieces: Iterable[Piece], where: object) -> Iterator[Piece]:
+    """Pieces of a file as they are read; InputError once that has taken too long."""
+    clock = ReadingTime(where)
+    for piece in pieces:
+        clock.check()
+        yield piece
+
+
 def counted_rows(rows: Iterable[tuple[Any, ...]], where: object) -> Iterator[tuple[Any, ...]]:
     """Rows of a sheet as they come, empty ones at their end cut off; InputError at the first that is too much."""
-    clock, cells = ReadingTime(where), 0
-    most_rows, most_columns, most_cells = ROWS.most, COLUMNS.most, CELLS.most
-    for number, row in enumerate(rows, 1):
+    cells, most_rows, most_columns, most_cells = 0, ROWS.most, COLUMNS.most, CELLS.most
+    for number, row in enumerate(timed(rows, where), 1):
         cells += len(row)
         if number > most_rows or len(row) > most_columns or cells > most_cells:
             check_shape(number, len(row), where)
             CELLS.check(cells, where, "holds at least")
-        if number % 1000 == 0:
-            clock.check()
         yield row

@@ -6,18 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.errors import InputError
 from measured.importing.clock import Clock
 from measured.importing.guess import Guess
 from measured.importing.source import Source
+from measured.recordings.alignment import column_onset
 
-Array = NDArray[np.float64]
-EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
-NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble
 WHOLE_S = 10.0  # from where on a test is cut at whole seconds
-STILL = 5  # readings that say where a column starts
 
 
 @dataclass(frozen=True)
@@ -103,32 +99,6 @@ def onset(record: Recording) -> tuple[float, str]:
         )
     column = min(onsets, key=lambda c: onsets[c])
     return onsets[column], column
-
-
-def column_onset(time: Array, values: Array) -> float | None:
-    """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
-    finite = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
-    t, y = time[finite], values[finite]
-    if y.size < 4 * STILL:
-        return None
-    away = np.abs(y - np.median(y[:STILL]))
-    noise = 1.4826 * float(np.median(np.abs(np.diff(y)))) / np.sqrt(2.0)
-    reach = float(away.max())
-    if reach <= NOISE_TIMES * noise or reach == 0.0:
-        return None
-    early, later = (_crossing(t, away, max(share * reach, NOISE_TIMES * noise)) for share in (EARLY, LATER))
-    if early <= t[STILL - 1]:
-        return None
-    return max(float(t[0]), early - max(0.0, later - early) * EARLY / (LATER - EARLY))
-
-
-def _crossing(t: Array, away: Array, level: float) -> float:
-    """The first instant at which a column is beyond a level; between two readings by a line, unless it jumps."""
-    i = int(np.flatnonzero(away >= level)[0])
-    if i == 0:
-        return float(t[0])
-    share = (level - away[i - 1]) / (away[i] - away[i - 1])
-    return float(t[i - 1] + share * (t[i] - t[i - 1]))
 
 
 def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> list[list[Recording]]:

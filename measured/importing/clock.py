@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from measured.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.importing.source import BINARY, EPOCH, Source
+from measured.importing.source import BINARY, Source
 from measured.importing.words import CLOCKS, VOCABULARY, is_time, tokens
-from measured.recordings.formats import TIME
+from measured.recordings.formats import EPOCH, TIME
 from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]

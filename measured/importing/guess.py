@@ -41,37 +41,19 @@ LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
-PINT_UNITS = {
-    "mW": "power",
-    "MW": "power",
-    "hp": "power",
-    "metric_horsepower": "power",
-    "mN*m": "torque",
-    "cN*m": "torque",
-    "lbf*ft": "torque",
-    "krpm": "speed",
-    "deg/s": "speed",
-    "l/h": "water_flow",
-    "gallon/min": "water_flow",
-    "ml/min": "water_flow",
-    "ml/s": "water_flow",
-    "ft**3/min": "air_flow",
-}  # units of loggers that no table of a sheet lists, for pint
+OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
+    "power": ("mW", "MW", "hp", "metric_horsepower"),
+    "torque": ("mN*m", "cN*m", "lbf*ft"),
+    "speed": ("krpm", "deg/s"),
+    "water_flow": ("l/h", "gallon/min", "ml/min", "ml/s"),
+    "air_flow": ("ft**3/min",),
+}
 SUREST = "unit and name"  # by which a column was told: such a one goes before others
 WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
 FIRST = (
-    "temperature",
-    "current",
-    "speed",
-    "torque",
-    "power",
-    "vehicle_speed",
-    "voltage",
-    "share",
-    "water_flow",
-    "air_flow",
-    "frequency",
-)
+    *("temperature", "current", "speed", "torque", "power", "vehicle_speed"),
+    *("voltage", "share", "water_flow", "air_flow", "frequency"),
+)  # of several quantities that have a unit, the likelier before the others
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
@@ -106,7 +88,10 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     every = [guess(source, c, target) for c in source.cells if c not in clock]
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
-    every = [_component(g, axis_of(source.labels[g.column]), axes, target) for g in every]
+    both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
+    for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
+        if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
+            every[i] = replace(g, feeds=f"{axis}_A")
     return single(every if kelvin else _in_fahrenheit(source, every), target)
 
 
@@ -164,12 +149,6 @@ def _impossible(source: Source, g: Guess) -> str:
     return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} that can be"
 
 
-def _component(g: Guess, axis: str, axes: set[str], target: Target) -> Guess:
-    """A component of a current, where both are there, has an input of its own: the current is their root sum square."""
-    both = any(axis in pair and pair <= axes for pair in AXES) and not any(axis_of(n) == axis for n in target.inputs)
-    return replace(g, feeds=f"{axis}_A") if g.feeds and both else g
-
-
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
     """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
     hot = {g.column: g for g in every if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}
@@ -201,11 +180,7 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
 
     Quantity, what it was told by, and a doubt.
     """
-    of_unit = (
-        [q for q in FIRST if unit in QUANTITIES[q].units or (unit in PINT_UNITS and q == PINT_UNITS[unit])]
-        if unit
-        else []
-    )
+    of_unit = [q for q in FIRST if unit and (unit in QUANTITIES[q].units or unit in OTHER_UNITS.get(q, ()))]
     by_name = quantities_of(label)
     both = [q for q in by_name if q in of_unit]
     if of_unit:
@@ -217,14 +192,11 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
         return "temperature", "name of a part", "by its letters alone" if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
-        return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not _worded(label) else ""
+        worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
+        return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not worded else ""
     place, _ = target.place_of(label)
     alike = label in target.places_by_header or {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
     return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
-
-
-def _worded(label: str) -> bool:
-    return any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
 
 
 def _by_values(source: Source, column: str) -> tuple[str, str, str]:

@@ -80,7 +80,7 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     block: list[int] = []
     for i in reversed(range(max(0, first - TALLEST), first)):
         count = sum(bool(str(c).strip()) for c in rows[i] if c is not None)
-        if count and (count < 0.5 * width or _all_readings(rows[i])):
+        if count and (count < 0.5 * width or all(is_reading(c) for c in rows[i] if c is not None and str(c).strip())):
             break
         if count:
             block.insert(0, i)
@@ -121,10 +121,6 @@ def _readings(row: Row) -> bool:
     cells = [c for c in row if c is not None and str(c).strip()]
     good = sum(is_reading(c) for c in cells)
     return good > 0 and good >= LEAST * len(cells) and any(np.isfinite(number(c)) for c in cells)
-
-
-def _all_readings(row: Row) -> bool:
-    return all(is_reading(c) for c in row if c is not None and str(c).strip())
 
 
 def _first(rows: Sequence[Row], width: int, where: str) -> int:

@@ -8,8 +8,6 @@ import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -24,13 +22,13 @@ from measured.importing.rows import Layout, layout
 from measured.importing.text import text_table
 from measured.importing.words import is_time, quantities_of, roles_of
 from measured.recordings.csv_file import CHUNK
-from measured.recordings.formats import READERS, TIME, guarded, read_recording, workbook, worksheet_rows
+from measured.recordings.data_table import DataTable
+from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, workbook_rows
 from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
-EPOCH = np.datetime64(0, "s")  # 1970
 UNNAMED = re.compile(r"column \d+")
 UNIT_NAMES = ("unit", "einheit", "unité", "unità")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
@@ -39,26 +37,18 @@ UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
 @dataclass(frozen=True)
-class Source:
-    """cells : column -> its cells, numbers where the file has numbers;  units : column -> unit as the file writes it
+class Source(DataTable):
+    """A table with a number or a word in every cell, as its file has them, and what each column is called.
 
-    labels : column -> its name without the unit;  start : of its clock, where the format keeps one (s since 1970)
-    notes : what was done to read it;  unnamed : the file has no header;  period_s : between rows, by its preamble
+    labels : column -> its name without the unit;  units : also those that stand in the names
+    unnamed : the file has no header;  period_s : between rows, by its preamble
     """
 
-    file: Path
-    cells: Mapping[str, Sequence[Any]]
-    units: Mapping[str, str]
-    labels: Mapping[str, str]
-    notes: tuple[str, ...] = ()
-    start: float | None = None
+    file: Path = Path()
+    labels: Mapping[str, str] = field(default_factory=dict)
     unnamed: bool = False
     period_s: float | None = None
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
-
-    @property
-    def rows(self) -> int:
-        return len(next(iter(self.cells.values())))
 
     def numbers(self, column: str) -> Array:
         """(rows,) readings, nan where there is none or no number; on and off are 1 and 0."""
@@ -87,28 +77,10 @@ def as_numbers(cells: Sequence[Any]) -> Array:
     """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
         return np.asarray(cells, float)
-    quick = np.fromiter(map(_quick, cells), float, len(cells))
-    for i in np.flatnonzero(~np.isfinite(quick)):
-        quick[i] = _number(cells[int(i)])
-    return quick
-
-
-def _quick(cell: Any) -> float:
-    """By Python's own reader, which takes nearly all cells; it would also take 1_000."""
-    try:
-        return float("nan") if isinstance(cell, str) and "_" in cell else float(cell)
-    except (TypeError, ValueError):
-        return float("nan")
-
-
-def _number(cell: Any) -> float:
-    return float("nan") if cell is None else _of_word(str(cell))
-
-
-@lru_cache(maxsize=2**16)
-def _of_word(cell: str) -> float:
-    value = number(cell)
-    return SWITCH.get(cell.strip().lower(), value) if np.isnan(value) else value
+    cells = [None if isinstance(cell, list | dict | np.ndarray) else cell for cell in cells]  # as Parquet may hold
+    meaning = {cell: number(cell) for cell in set(cells)}
+    meaning |= {c: SWITCH[word] for c in meaning if isinstance(c, str) and (word := c.strip().lower()) in SWITCH}
+    return np.fromiter(map(meaning.__getitem__, cells), float, len(cells))
 
 
 def read_source(file: Path) -> Source:
@@ -117,8 +89,17 @@ def read_source(file: Path) -> Source:
         raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
-        return _of_rows(file, _book(file), _formulas(file))
-    return _of_frame(file) if suffix in BINARY else _of_table(file, *text_table(file))
+        rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))
+        plan = layout(rows, str(file))
+        body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+        columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
+        return _of_table(file, plan, columns, _formulas(file))
+    if suffix not in BINARY:
+        return _of_table(file, *text_table(file))
+    table = read_recording(file)
+    names = _once(_plain(table.columns))
+    units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
+    return _source(file, names, [*table.cells.values()], units, table.notes, table.start)
 
 
 def _formulas(file: Path) -> list[str]:
@@ -130,24 +111,6 @@ def _formulas(file: Path) -> list[str]:
         heads = [book.open(sheet).read(CHUNK) for sheet in sheets]  # of a huge sheet its beginning tells enough
     count = sum(len(UNCALCULATED.findall(head)) for head in heads)
     return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
-
-
-def _book(file: Path) -> list[list[Any]]:
-    """The rows of the worksheet with the most cells."""
-
-    def read() -> list[list[Any]]:
-        with workbook(file) as book:
-            sheets = [worksheet_rows(sheet, file) for sheet in book.worksheets]
-        return max(sheets, key=lambda rows: len(rows) * len(rows[0]) if rows else 0)
-
-    rows: list[list[Any]] = guarded(file, "an Excel workbook", "openpyxl", read)
-    return rows
-
-
-def _of_rows(file: Path, rows: list[Any], notes: Sequence[str] = ()) -> Source:
-    plan = layout(rows, str(file))
-    body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-    return _of_table(file, plan, [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)], notes)
 
 
 def _of_table(
@@ -162,14 +125,6 @@ def _of_table(
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
     return replace(source, unnamed=unnamed, period_s=period_s)
-
-
-def _of_frame(file: Path) -> Source:
-    table = read_recording(file)
-    units, start, notes = _described(file)
-    names = _once(_plain(table.columns))
-    units = {name: units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
-    return _source(file, names, list(table.cells.values()), units, notes, start)
 
 
 def _plain(names: Sequence[str]) -> list[str]:
@@ -199,7 +154,7 @@ def _source(
         if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
             unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(file, cells, unit_texts, labels, tuple(notes), start)
+    return Source(cells, unit_texts, start, tuple(notes), file, labels)
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
@@ -234,38 +189,6 @@ def _once(names: Sequence[str]) -> list[str]:
         count[name] += 1
         out.append(name if count[name] == 1 else f"{name} {count[name]}")
     return out
-
-
-def _described(file: Path) -> tuple[dict[str, str], float | None, list[str]]:
-    """Units, and the start of the clock (s since 1970), of formats that keep them; a doubt where they lack a clock."""
-    if file.suffix.lower() == ".tdms":
-        from nptdms import TdmsFile
-
-        channels = [c for group in TdmsFile.read_metadata(file).groups() for c in group.channels()]
-        starts = [c.properties.get("wf_start_time") for c in channels]
-        units = {c.name: str(c.properties.get("unit_string", "")) for c in channels}
-        timeless = all("wf_increment" not in c.properties for c in channels)
-        notes = [
-            f"{file.name}: no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
-        ] * timeless
-        return units, _seconds(next((s for s in starts if s is not None), None)), notes
-    if file.suffix.lower() == ".mf4":
-        from asammdf import MDF
-
-        with MDF(file) as mdf:
-            return {c.name: c.unit or "" for g in mdf.groups for c in g.channels}, _seconds(mdf.start_time), []
-    return {}, None, []
-
-
-def _seconds(instant: Any) -> float | None:
-    """Seconds since 1970, of a datetime or a NumPy instant."""
-    if instant is None:
-        return None
-    if isinstance(instant, datetime):
-        stamp = (instant if instant.tzinfo else instant.replace(tzinfo=UTC)).timestamp()
-    else:
-        stamp = float((np.datetime64(instant) - EPOCH) / np.timedelta64(1, "s"))
-    return stamp if np.isfinite(stamp) and stamp > 0 else None
 
 
 def signature(source: Source) -> frozenset[str]:

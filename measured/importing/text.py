@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -151,11 +150,8 @@ def _split(lines: list[str], sign: str) -> list[list[str]]:
     """Cells of lines."""
     if sign in BLANKS:
         return [re.split(BLANKS[sign], line.strip()) if line.strip() else [] for line in lines]
+    text = io.StringIO("".join(lines), newline="")
     try:
-        return [[cell.strip() for cell in row] for row in _rows("".join(lines), sign)]
+        return [[cell.strip() for cell in row] for row in csv.reader(text, delimiter=sign, skipinitialspace=True)]
     except csv.Error:
         return [[cell.strip() for cell in line.split(sign)] for line in lines]
-
-
-def _rows(text: str, sign: str) -> Iterator[list[str]]:
-    return csv.reader(io.StringIO(text, newline=""), delimiter=sign, skipinitialspace=True)

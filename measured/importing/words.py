@@ -38,14 +38,12 @@ def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
     out: list[str] = []
     for word in WORD.findall(name):
-        low = _singular(word.lower())
+        low = word.lower()
+        if len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss"):
+            low = low[:-1]  # the singular
         joint = len(low) > 2 and low[0] == "t" and low not in PARTS and low[1:] in PARTS
         out += ["t", low[1:]] if joint else [low]
     return tuple(out)
-
-
-def _singular(word: str) -> str:
-    return word[:-1] if len(word) > SHORTEST and word.endswith("s") and not word.endswith("ss") else word
 
 
 PARTS = frozenset().union(*ROLES.values())

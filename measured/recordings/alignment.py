@@ -1,4 +1,4 @@
-"""Two recorders, two clocks: how far the second has to be moved so that a quantity both recorded coincides."""
+"""Two recorders, two clocks: by what both recorded, or by the instant at which something begins to change in each."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from measured.recordings.data_table import Column, DataTable
 
 Array = NDArray[np.float64]
 AGREE = 0.8  # correlation below which the records do not show the same thing
+EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
+NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble
+STILL = 5  # readings that say where a column starts
 EMPTY: Mapping[str, Any] = {"f": np.nan, "M": "NaT", "m": "NaT"}  # of what kinds a column may be; others hold None
 
 
@@ -49,6 +52,32 @@ def _agreement(time: Array, values: Array, other_time: Array, other: Array) -> f
         return 0.0
     a, b = values[inside], np.interp(time[inside], other_time, other)
     return float(np.corrcoef(a, b)[0, 1]) if np.ptp(a) and np.ptp(b) else 0.0
+
+
+def column_onset(time: Array, values: Array) -> float | None:
+    """Where a column leaves its first readings (s); None where it never does, or was moving from the start."""
+    finite = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
+    t, y = time[finite], values[finite]
+    if y.size < 4 * STILL:
+        return None
+    away = np.abs(y - np.median(y[:STILL]))
+    noise = 1.4826 * float(np.median(np.abs(np.diff(y)))) / np.sqrt(2.0)
+    reach = float(away.max())
+    if reach <= NOISE_TIMES * noise or reach == 0.0:
+        return None
+    early, later = (_crossing(t, away, max(share * reach, NOISE_TIMES * noise)) for share in (EARLY, LATER))
+    if early <= t[STILL - 1]:
+        return None
+    return max(float(t[0]), early - max(0.0, later - early) * EARLY / (LATER - EARLY))
+
+
+def _crossing(t: Array, away: Array, level: float) -> float:
+    """The first instant at which a column is beyond a level; between two readings by a line, unless it jumps."""
+    i = int(np.flatnonzero(away >= level)[0])
+    if i == 0:
+        return float(t[0])
+    share = (level - away[i - 1]) / (away[i] - away[i - 1])
+    return float(t[i - 1] + share * (t[i] - t[i - 1]))
 
 
 def merged(table: DataTable, time: str, others: Mapping[str, tuple[DataTable, str, float]], where: str) -> DataTable:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
-from measured.recordings.data_table import cell
-from measured.recordings.duplicates import twice
+from measured.recordings.data_table import cell, twice
 from measured.recordings.sheet import Column, Sheet
 from measured.recordings.tables import Samples
 from measured.recordings.units import QUANTITIES

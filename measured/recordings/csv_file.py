@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from geom.limits import COLUMNS, ReadingTime
-from geom.recording_bounds import CHUNK, check_text
+from geom.limits import COLUMNS
+from geom.recording_bounds import CHUNK, check_text, timed
 from measured.recordings.data_table import Column, DataTable, as_number, is_missing
 
 COMMA, QUOTE, LF, CR = b',"\n\r'
@@ -58,9 +58,7 @@ class Body:
     def columns(self, content: bytes, start: int) -> list[Any]:
         """The cells from a byte on, column by column: numbers, or all cells of a column that has a word in it."""
         parts: list[Sequence[Any]] = []
-        clock = ReadingTime(self.file)
-        for at, block in _blocks(content, start):
-            clock.check()
+        for at, block in timed(_blocks(content, start), self.file):
             if (part := self._quick(block)) is None and (part := self._slow(block, content, at)) is None:
                 return _parsed(content[start:], len(self.header))
             parts.append(part)

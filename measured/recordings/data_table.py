@@ -7,7 +7,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from decimal import Decimal
 from numbers import Real
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
+from lumped.schemas.reader import suggestion
 
 Array = NDArray[np.float64]
 Column = NDArray[Any]
@@ -25,23 +26,8 @@ HEADER = 2  # line of the first row of numbers
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
 # As loggers, spreadsheets and statistics programs write that nothing was read.
 MISSING = frozenset(
-    {
-        "",
-        "#n/a",
-        "#n/a n/a",
-        "#na",
-        "-1.#ind",
-        "1.#ind",
-        "-1.#qnan",
-        "1.#qnan",
-        "-nan",
-        "nan",
-        "<na>",
-        "n/a",
-        "na",
-        "null",
-        "none",
-    }
+    {"", "na", "n/a", "#na", "#n/a", "#n/a n/a", "<na>", "null", "none"}
+    | {"nan", "-nan", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan"}
 )
 SWITCH = {"true": True, "false": False}
 
@@ -49,21 +35,27 @@ SWITCH = {"true": True, "false": False}
 @dataclass(frozen=True)
 class DataTable:
     """cells : name -> (rows,) float with NaN where nothing was read; datetime64 and timedelta64; bool; or objects of
-    any kind with None where nothing was read"""
+    any kind with None where nothing was read
 
-    cells: Mapping[str, Column]
+    units : column -> unit as the file keeps it, apart from the name;  start : of its clock (s since 1970), if known
+    notes : what is doubtful in the file
+    """
+
+    cells: Mapping[str, Any]
+    units: Mapping[str, str] = field(default_factory=dict)
+    start: float | None = None
+    notes: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, columns: Iterable[tuple[object, Any]], file: Path) -> DataTable:
+    def of(cls, columns: Iterable[tuple[object, Any]], file: Path, **about: Any) -> DataTable:
         """Of pairs (name, values) in the order of the file. InputError for a name that comes twice."""
         pairs = [(str(name).strip(), values) for name, values in columns]
-        twice = [name for name, count in Counter(name for name, _ in pairs).items() if count > 1]
-        if twice:
-            raise InputError(f"column '{twice[0]}' stands twice in the header", str(file), "a name of its own for each")
+        for repeated in twice(name for name, _ in pairs):
+            raise InputError(f"column '{repeated}' stands twice in the header", str(file), "a name of its own for each")
         cells = {name: _typed(values) for name, values in pairs}
         if len(rows := {column.size for column in cells.values()}) > 1:
             raise InputError(f"columns have from {min(rows)} to {max(rows)} rows", str(file), "columns of equal length")
-        return cls(cells)
+        return cls(cells, **about)
 
     @property
     def columns(self) -> list[str]:
@@ -75,6 +67,12 @@ class DataTable:
 
     def __getitem__(self, name: str) -> Column:
         return self.cells[name]
+
+    def require(self, names: Iterable[str], where: str) -> None:
+        """InputError for a column that is not there."""
+        for name in names:
+            if name not in self.cells:
+                raise InputError(f"column '{name}' is not in the file", where, suggestion(name, self.columns))
 
     def with_columns(self, **columns: Column) -> DataTable:
         """With these columns, in place of those of the same name."""
@@ -97,7 +95,7 @@ def _typed(values: Any) -> Column:
     if kinds <= {int, float}:
         return np.array(cells, float)  # None is NaN
     if kinds == {datetime}:
-        return np.array([cell and _utc(cell) for cell in cells], "datetime64[us]")
+        return np.array([c and (c.astimezone(UTC).replace(tzinfo=None) if c.tzinfo else c) for c in cells], "M8[us]")
     if kinds == {timedelta}:
         return np.array(cells, "timedelta64[us]")
     return np.array(cells, bool) if kinds == {bool} and None not in cells else np.fromiter(cells, object, len(cells))
@@ -112,9 +110,9 @@ def _of_words(words: Sequence[str]) -> Column:
     return cells.astype(bool) if set(meaning.values()) <= {True, False} else cells
 
 
-def _utc(instant: datetime) -> datetime:
-    """Without its zone, in that of Greenwich."""
-    return instant if instant.tzinfo is None else instant.astimezone(UTC).replace(tzinfo=None)
+def twice(names: Iterable[str]) -> list[str]:
+    """The names that come more than once."""
+    return [name for name, count in Counter(names).items() if count > 1]
 
 
 def is_missing(cell: object) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
-from lumped.schemas.reader import Table, excerpt, suggestion
+from lumped.schemas.reader import Table, excerpt
 from measured.recordings.data_table import as_number, is_missing, numbers
 
 Array = NDArray[np.float64]
@@ -68,17 +68,11 @@ def _of_file(path: Path, name: str) -> tuple[list[float], list[float]]:
     from measured.recordings.formats import read_recording, recording
 
     table = read_recording(recording(path), least=1)
-    for column in ("time_s", name):
-        if column not in table.columns:
-            raise InputError(f"column '{column}' is not in the file", str(path), suggestion(column, table.columns))
+    table.require(("time_s", name), str(path))
     rows = [(t, v) for t, v in zip(numbers(table, "time_s", path), table[name], strict=True) if not is_missing(v)]
-    return [float(t) for t, _ in rows], [_value(_plain(v), str(path)) for _, v in rows]
-
-
-def _plain(cell: Any) -> Any:
-    """A cell of a column that holds words and numbers."""
-    number = as_number(cell)
-    return cell if number is None else number
+    return [float(t) for t, _ in rows], [
+        _value(v if (plain := as_number(v)) is None else plain, str(path)) for _, v in rows
+    ]
 
 
 def _checked(at: list[float], values: list[float], where: str) -> Events:

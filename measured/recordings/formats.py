@@ -6,8 +6,10 @@ Channels of several rates share one time column and are empty where they were no
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, MissingDependency
 from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
-from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows
+from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.recordings.csv_file import read_csv
 from measured.recordings.data_table import DataTable
@@ -33,6 +35,10 @@ SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
 GRAIN = 1e-6  # s, below which two instants are one
 Signal = tuple[str, Array, Array]
+Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
+BOOK = "an Excel workbook"
+EPOCH = np.datetime64(0, "s")  # 1970
+TIMELESS = "no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
 
 
 def recording(path: Path) -> Path:
@@ -81,11 +87,14 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     readers: dict[str, Callable[[], DataTable]] = {
         ".csv": lambda: read_csv(file),
         ".csv.gz": lambda: read_csv(file),
-        ".xlsx": lambda: _table(file, "an Excel workbook", "openpyxl", lambda: _xlsx(file, worksheet)),
+        ".xlsx": lambda: _table(file, BOOK, "openpyxl", lambda: _xlsx(file, worksheet)),
         ".tdms": lambda: _table(file, "TDMS", "nptdms", lambda: _tdms(file, worksheet)),
         ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
         ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
-        **{f".{name}": partial(_foreign, file, name, read) for name, read in READERS.items()},
+        **{
+            f".{n}": partial(_table, file, f"a .{n} file", n, partial(_foreign, file, read))
+            for n, read in READERS.items()
+        },
     }
     if suffix not in readers:
         raise InputError(f"files ending in '{file.suffix}' are not read", str(file), f"one of {', '.join(SUFFIXES)}")
@@ -101,15 +110,19 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     return table
 
 
-def _table(file: Path, kind: str, package: str, read: Callable[[], Columns]) -> DataTable:
+def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) -> DataTable:
     check_size(file)
-    table: DataTable = guarded(file, kind, package, lambda: DataTable.of(read(), file))
-    return table
+
+    def table() -> DataTable:
+        columns, about = read()
+        return DataTable.of(columns, file, **about)
+
+    read_whole: DataTable = guarded(file, kind, package, table)
+    return read_whole
 
 
-def _foreign(file: Path, name: str, read: Reader) -> DataTable:
-    """By the reader of another package."""
-    return _table(file, f"a .{name} file", name, lambda: read(file).items())
+def _foreign(file: Path, read: Reader) -> Contents:
+    return read(file).items(), {}
 
 
 def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:
@@ -126,18 +139,27 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
         raise InputError(f"not readable as {kind}: {first}", str(file), f"a file that is really {kind}") from None
 
 
-def _xlsx(file: Path, worksheet: str) -> Columns:
-    with workbook(file) as book:
+def _xlsx(file: Path, worksheet: str) -> Contents:
+    header, *rows = workbook_rows(file, worksheet) or [[]]
+    names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
+    return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True), {}
+
+
+def workbook_rows(file: Path, worksheet: str | None) -> list[list[Any]]:
+    """Rows of a worksheet: of the first where its name is "", of the one with the most cells where it is None."""
+    with _workbook(file) as book:
         sheets = {sheet.title: sheet for sheet in book.worksheets}
+        if worksheet is None:
+            return max(
+                (_rows(s, file) for s in sheets.values()), key=lambda rows: len(rows) * len(rows[0]) if rows else 0
+            )
         if worksheet and worksheet not in sheets:
             raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
-        header, *rows = worksheet_rows(sheets[worksheet or next(iter(sheets))], file) or [[]]
-    names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
-    return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)
+        return _rows(sheets[worksheet or next(iter(sheets))], file)
 
 
 @contextmanager
-def workbook(file: Path) -> Iterator[Any]:
+def _workbook(file: Path) -> Iterator[Any]:
     """A workbook's values, not its formulas."""
     from openpyxl.reader.excel import ExcelReader
 
@@ -159,7 +181,7 @@ def workbook(file: Path) -> Iterator[Any]:
         book.close()
 
 
-def worksheet_rows(sheet: Any, file: Path) -> list[list[Any]]:
+def _rows(sheet: Any, file: Path) -> list[list[Any]]:
     """Cells row by row, as wide as the widest row; None for empty cells and for errors such as #DIV/0!."""
     from openpyxl.cell.cell import ERROR_CODES
 
@@ -174,19 +196,21 @@ def worksheet_rows(sheet: Any, file: Path) -> list[list[Any]]:
     return [[*row, *[None] * width][:width] for row in rows]
 
 
-def _parquet(file: Path) -> Columns:
+def _parquet(file: Path) -> Contents:
+    import pyarrow
     from pyarrow.parquet import ParquetFile
 
     with ParquetFile(file) as parquet:
         about = parquet.metadata
         check_shape(about.num_rows, about.num_columns, file)
         BYTES.check(sum(about.row_group(i).total_byte_size for i in range(about.num_row_groups)), file, "holds")
-        table = parquet.read()
+        table = pyarrow.Table.from_batches(timed(parquet.iter_batches(), file), parquet.schema_arrow)
     columns = zip(table.column_names, table.columns, strict=True)
-    return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)]
+    return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)], {}
 
 
-def _tdms(file: Path, group: str) -> Columns:
+def _tdms(file: Path, group: str) -> Contents:
+    """Units and the start of the clock are properties of the channels."""
     from nptdms import TdmsFile
 
     with TdmsFile.read_metadata(file) as about:
@@ -194,12 +218,11 @@ def _tdms(file: Path, group: str) -> Columns:
         check_shape(max(sizes, default=0), len(sizes), file)
     with TdmsFile.read(file) as tdms:
         groups = [g for g in tdms.groups() if not group or g.name == group]
+        channels = [(g.name, c) for g in groups for c in g.channels()]
         if not groups and group:
             raise InputError(f"no group '{group}'", str(file), suggestion(group, [g.name for g in tdms.groups()]))
         if not groups:
             raise InputError("holds no channels", str(file), "a TDMS file with readings")
-        channels = [(g.name, c) for g in groups for c in g.channels() if len(c)]
-        names = [c.name for _, c in channels]
         for _, channel in channels:
             if (step := channel.properties.get("wf_increment", 0.0)) < 0:
                 raise InputError(
@@ -207,7 +230,16 @@ def _tdms(file: Path, group: str) -> Columns:
                     f"{file} channel '{channel.name}'",
                     "a time from row to row above 0",
                 )
-        return joined((c.name if names.count(c.name) == 1 else f"{g}/{c.name}", *_tdms_signal(c)) for g, c in channels)
+        names = Counter(c.name for _, c in channels if len(c))
+        by_name = [(c.name if names[c.name] == 1 else f"{g}/{c.name}", c) for g, c in channels if len(c)]
+        columns = joined((name, *_tdms_signal(c)) for name, c in timed(by_name, file))
+        starts = [c.properties["wf_start_time"] for _, c in channels if "wf_start_time" in c.properties]
+        timeless = all("wf_increment" not in c.properties for _, c in channels)
+        return columns, {
+            "units": {name: str(c.properties.get("unit_string", "")) for name, c in by_name},
+            "start": _since_1970(starts[0]) if starts else None,
+            "notes": (f"{file.name}: {TIMELESS}",) * timeless,
+        }
 
 
 def _tdms_signal(signal: Any) -> tuple[Array, Array]:
@@ -218,14 +250,36 @@ def _tdms_signal(signal: Any) -> tuple[Array, Array]:
     return (offset + step * time if step else time), values
 
 
-def _mf4(file: Path) -> Columns:
+def _mf4(file: Path) -> Contents:
+    """A group whose rows are not all there is refused: they would be read as zeros."""
     from asammdf import MDF
 
     with MDF(file) as mdf:
         for group in mdf.groups:
-            check_shape(group.channel_group.cycles_nr, len(group.channels), file)
-        signals = [s for s in mdf.iter_channels(skip_master=True) if len(s.samples) and s.samples.ndim == 1]
-        return joined((s.name, np.asarray(s.timestamps, float), np.asarray(s.samples)) for s in signals)
+            about = group.channel_group
+            check_shape(about.cycles_nr, len(group.channels), file)
+            width = about.samples_byte_nr + getattr(about, "invalidation_bytes_nr", 0)
+            there = sum(block.original_size or 0 for block in group.get_data_blocks())
+            BYTES.check(there, file, "holds")
+            if width * about.cycles_nr > there:
+                what = f"a group claims {about.cycles_nr:,} rows and holds {there // width:,}"
+                raise InputError(what, str(file), "a file that was closed by its recorder: save it again")
+        signals = [
+            (s.name, np.asarray(s.timestamps, float), np.asarray(s.samples))
+            for s in timed(mdf.iter_channels(skip_master=True), file)
+            if len(s.samples) > 0 and s.samples.ndim == 1
+        ]
+        units = {c.name: c.unit or "" for g in mdf.groups for c in g.channels}
+        return joined(signals), {"units": units, "start": _since_1970(mdf.start_time)}
+
+
+def _since_1970(instant: Any) -> float | None:
+    """Seconds, of a datetime or a NumPy instant; None for one that a recorder left out."""
+    if isinstance(instant, datetime):
+        stamp = (instant if instant.tzinfo else instant.replace(tzinfo=UTC)).timestamp()
+    else:
+        stamp = float((np.datetime64(instant) - EPOCH) / np.timedelta64(1, "s"))
+    return stamp if np.isfinite(stamp) and stamp > 0 else None
 
 
 def joined(signals: Iterable[Signal]) -> Columns:

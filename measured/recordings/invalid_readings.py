@@ -7,32 +7,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Open or broken sensor, overrange, no answer: thermocouple cards (1370, 1372, 1820), DS18B20 (-127), meters (9.9e37),
-# 16-bit registers (32767, 65535 and their tenths), and the nines of loggers.
-CODES = np.array(
-    [
-        9999.0,
-        9999.9,
-        99999.0,
-        999.9,
-        999.0,
-        -999.0,
-        -999.9,
-        -9999.0,
-        1370.0,
-        1372.0,
-        1820.0,
-        -127.0,
-        -200.0,
-        -270.0,
-        32767.0,
-        -32768.0,
-        65535.0,
-        3276.7,
-        -3276.8,
-        6553.5,
-    ]
-)
+KINDS = {
+    "nines of loggers": (9999.0, 9999.9, 99999.0, 999.9, 999.0, -999.0, -999.9, -9999.0),
+    "open or broken thermocouples": (1370.0, 1372.0, 1820.0, -200.0, -270.0),
+    "DS18B20 without an answer": (-127.0,),
+    "16-bit registers and their tenths": (32767.0, -32768.0, 65535.0, 3276.7, -3276.8, 6553.5),
+}
+CODES = np.concatenate([*KINDS.values()])
 ENDLESS = 1e30  # and beyond: 9.9e37 and its kin
 LARGEST_THERMOCOUPLE = 1820.0  # codes up to it are limits of thermocouples, and may be speeds
 FAR = 5.0  # times the spread of the other readings, from their median: nearer, a reading may be what it says

@@ -15,7 +15,8 @@ from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
-from measured.recordings.duplicates import declared_once
+from lumped.transfer.laws import CLOCK
+from measured.recordings.data_table import twice
 from measured.recordings.electrical import QUANTITIES as ELECTRICAL
 from measured.recordings.electrical import Electrical, read_electrical
 from measured.recordings.events import Events, read_events
@@ -175,8 +176,24 @@ def read_sheet(data: Mapping[str, Any], where: str, folder: Path = Path(), head:
     test.close()
     if not sheet.columns:
         raise InputError("no columns", where, "[columns.NAME] with quantity, unit and place")
-    declared_once(sheet)
+    _declared_once(sheet)
     return sheet
+
+
+def _declared_once(sheet: Sheet) -> None:
+    """InputError for an input fed twice, a sensor declared twice, a mean that takes a column's name."""
+    inputs = [c.feeds for c in sheet.columns if c.feeds]
+    if CLOCK in (*inputs, *sheet.inputs, *sheet.squares, *sheet.events):
+        raise InputError(f"input '{CLOCK}' is the clock of the test itself", sheet.where, "another name for it")
+    for name in twice([*inputs, *sheet.inputs, *sheet.squares, *sheet.events]):
+        raise InputError(
+            f"input '{name}' is fed twice", sheet.where, "one column or constant per input: use = false for the others"
+        )
+    for header in twice(c.header for c in sheet.columns if c.is_temperature):
+        tables = " and ".join(f"[columns.{c.name}]" for c in sheet.columns if c.header == header and c.is_temperature)
+        raise InputError(f"{tables} are one column, '{header}'", sheet.where, "one table per sensor")
+    for name in twice([*(c.name for c in sheet.columns), *(m.name for m in sheet.means)]):
+        raise InputError(f"'{name}' is a column and a mean", sheet.where, "a name of its own for the mean")
 
 
 def _window(test: Table) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,19 +13,20 @@ from numpy.typing import NDArray
 from geom.constants import ZERO_C
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from lumped.schemas.reader import suggestion
 from measured.recordings.alignment import clock_shift, merged
 from measured.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
 from measured.recordings.formats import TIME, read_recording, recording
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from measured.recordings.sheet import Column, Recorder, Sheet
 from measured.recordings.units import converted
+from measured.sensors.faults import longest_run
 
 Array = NDArray[np.float64]
 GAP = 3.5  # times the usual step
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
+IN_GAPS = "inputs are drawn straight across, nothing is compared there"
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
 
@@ -50,19 +51,16 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     """The columns the sheet uses, checked and converted."""
     file = recording(path)
     table = _merged(file, sheet)
-    for name in [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)]:
-        if name not in table.columns:
-            raise InputError(
-                f"column '{name}' is not in the file",
-                f"{file} (asked for by {sheet.where})",
-                suggestion(name, table.columns),
-            )
+    table.require(
+        [*([sheet.time] if sheet.time else []), *(c.header for c in sheet.columns)],
+        f"{file} (asked for by {sheet.where})",
+    )
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
     time = time[rows]
     start, time = float(time[0]), time - time[0]
     gaps = _gaps(time)
-    values, sigma, notes = {}, {}, [_gap_note(file, a, b) for a, b in gaps]
+    values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
         codes = coded(raw) & (column.is_temperature | (np.abs(raw) > LARGEST_THERMOCOUPLE))
@@ -110,8 +108,8 @@ def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, 
     """Table, time column and shift (s) of a second recorder."""
     file = recording(recorder.file)
     table, shift = read_recording(file, recorder.worksheet), recorder.shift_s
-    _has(table, [recorder.time, *recorder.align[1:]], recorder.where)
-    _has(main, recorder.align[:1], recorder.where)
+    table.require([recorder.time, *recorder.align[1:]], recorder.where)
+    main.require(recorder.align[:1], recorder.where)
     seconds = converted(numbers(table, recorder.time, file), "time", recorder.time_unit)
     _rising(seconds, table[recorder.time], recorder.time, file)
     if recorder.align:
@@ -127,12 +125,6 @@ def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, 
         if there == here:
             table = DataTable({name: column for name, column in table.cells.items() if name != there})
     return table.with_columns(**{recorder.time: seconds}), recorder.time, shift
-
-
-def _has(table: DataTable, names: Sequence[str], where: str) -> None:
-    for name in names:
-        if name not in table.columns:
-            raise InputError(f"column '{name}' is not in the file", where, suggestion(name, table.columns))
 
 
 def _times(table: DataTable, sheet: Sheet, file: Path) -> Array:
@@ -187,10 +179,6 @@ def _gaps(time: Array) -> tuple[tuple[float, float], ...]:
     return tuple((float(time[i]), float(time[i + 1])) for i in long)
 
 
-def _gap_note(file: Path, a: float, b: float) -> str:
-    return f"{file.name}: no rows from {a:g} s to {b:g} s; inputs are drawn straight across, nothing is compared there"
-
-
 def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     """The rows from from_s to to_s."""
     inside = np.flatnonzero((time >= sheet.from_s) & (time <= sheet.to_s))
@@ -231,7 +219,8 @@ def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str
     hot = [c.name for c in columns if c.is_temperature]
     doubts, time, values = {}, samples.time, samples.values
     for name in hot:
-        a, b = _longest_run(values[name])
+        a, last = longest_run(values[name])
+        b = last + 1
         others = [
             np.nanmax(v[a:b]) - np.nanmin(v[a:b]) for o in hot if o != name and np.isfinite(v := values[o])[a:b].any()
         ]
@@ -240,10 +229,3 @@ def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str
             where = f"{samples.file.name} column '{name}'"
             doubts[name] = f"{where}: {stands} while the others move; is the sensor frozen?"
     return doubts
-
-
-def _longest_run(v: Array) -> tuple[int, int]:
-    """Start and end of the longest run of equal values."""
-    edges = np.concatenate([[0], np.flatnonzero(np.diff(v) != 0) + 1, [v.size]])
-    longest = int(np.argmax(np.diff(edges)))
-    return int(edges[longest]), int(edges[longest + 1])

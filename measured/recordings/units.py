@@ -6,7 +6,7 @@ Units in the table are known by heart; any other goes to pint, which refuses one
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from math import isfinite, pi
 from typing import Any
@@ -64,25 +64,16 @@ def checked_unit(of: str, unit: Any, where: str) -> str:
     """The unit, if it was given and belongs to the quantity."""
     units = QUANTITIES[of].units
     if unit is None or unit == "":
-        raise InputError("the unit is missing", where, f"write {_choices(units)}")
+        first, *others = units
+        more = f" (or {', '.join(others)})" if others else ""
+        raise InputError("the unit is missing", where, f'write unit = "{first}"{more}')
     if not isinstance(unit, str):
         raise InputError(f"unit = {excerpt(unit)} is no unit", where, f"one of {', '.join(units)}, in quotes")
     if unit not in units and _by_pint(of, unit) is None:
-        raise InputError(
-            f"unknown unit {excerpt(unit)} of a {of}", where, f"{_belongs(of, unit)}{suggestion(unit, units)}"
-        )
+        others = [f'"{name}"' for name, quantity in QUANTITIES.items() if name != of and unit in quantity.units]
+        belongs = f"quantity = {' or '.join(others)} has it; " if others else ""
+        raise InputError(f"unknown unit {excerpt(unit)} of a {of}", where, f"{belongs}{suggestion(unit, units)}")
     return unit
-
-
-def _choices(units: Iterable[str]) -> str:
-    first, *others = units
-    return f'unit = "{first}"' + (f" (or {', '.join(others)})" if others else "")
-
-
-def _belongs(of: str, unit: str) -> str:
-    """'quantity = "vehicle_speed" has it; ' where another quantity has that unit."""
-    others = [f'"{name}"' for name, quantity in QUANTITIES.items() if name != of and unit in quantity.units]
-    return f"quantity = {' or '.join(others)} has it; " if others else ""
 
 
 def checked_input(of: str, name: str, where: str) -> str:

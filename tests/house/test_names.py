@@ -60,7 +60,6 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/commands/use/simulate_readings.py": "inputs that lumped.drives.coupled names itself",
     "lumped/build/crosscheck.py": "links by their own name, contact:A|B",
     "measured/importing/target.py": "inputs by the unit that their name says, NAME_W: a guess that is shown",
-    "measured/importing/words.py": "words of headers in other people's files: a guess that is shown",
     "measured/importing/draft.py": "files by their own name, NAME.csv",
     "thermoscope/commands/test/new.py": "options, NAME=VALUE",
     "thermoscope/case_folder/history.py": "effects by their own name, KIND@PLACE",

@@ -108,7 +108,8 @@ def _lines(part: Grid | str, width: int, most: int | None) -> list[tuple[str, st
         return lines if most is None or len(lines) <= most else []
     if most is not None and most < TITLE + 2:
         return []
-    rows, lines = part.rows, grid(part, part.rows, width)
+    rows = part.rows[:most]  # a row is a line at least: of thousands of rows most are not even laid out
+    lines = grid(part, rows, width)
     while (
         most is not None
         and len(rows) > 1

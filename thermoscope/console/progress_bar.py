@@ -46,7 +46,7 @@ class ProgressBar:
     shortest_s : work that took less the last time has no share and no time left (s)
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
-    counted_s : how long the stage ran up to its last count (s)
+    counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
     """
 
     last: dict[str, float]
@@ -60,6 +60,7 @@ class ProgressBar:
     piece: float = 0.0
     counted_s: float = 0.0
     share: float = 0.0
+    same_case: bool = True
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage."""
@@ -96,13 +97,14 @@ class ProgressBar:
         before, order = self.took.get(self.now, 0.0), list(self.last)
         earlier = [s for s in self.took if s in self.last and s != self.now]
         usual = sum(self.last[s] for s in earlier)
-        pace = sum(self.took[s] for s in earlier) / usual if usual > PACED_S else 1.0
-        whole = max(pace * self.last.get(self.now, 0.0) - before, here)
-        if self.part * here > 0.0:
-            whole = here / self._done(here)
+        pace = self._pace(sum(self.took[s] for s in earlier), usual) if usual > PACED_S else 1.0
+        expected = pace * self.last.get(self.now, 0.0) - before
+        whole, late = max(expected, here), here > expected and not self.same_case
+        if self.part * here > 0.0 or late:
+            whole = whole if late and not self.part else here / self._done(here)
             if self.now in self.last:
                 usual += self.last[self.now]
-                pace = (sum(self.took[s] for s in earlier) + before + whole) / max(usual, 1e-9)
+                pace = self._pace(sum(self.took[s] for s in earlier) + before + whole, usual)
         after = order.index(self.now) + 1 if self.now in self.last else 0
         later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
         spent, rest = here + sum(self.took.values()), whole - here + pace * later
@@ -110,6 +112,15 @@ class ProgressBar:
             return None
         self.share = max(self.share, min(spent / max(spent + rest, 1e-9), 0.99))
         return self.share, rest
+
+    def _pace(self, took: float, usual: float) -> float:
+        """What is still to come over what it took the last time.
+
+        Of this very case it is that of the stages so far. Of another they say only as much as they were of its work:
+        a long file is read forty times as long, and the yardstick after it takes twice as long.
+        """
+        share = 1.0 if self.same_case else min(usual / max(sum(self.last.values()), 1e-9), 1.0)
+        return float((took / max(usual, 1e-9)) ** share)
 
     def _done(self, here: float) -> float:
         """Part of the stage, as it grows between two counts: as if the next piece took as long as those before it."""
@@ -165,7 +176,8 @@ def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]
     """Stages that know how long they took the last time, of this very case where they can."""
     durations, keys = _remembered(), [f"{key}{_case()}", key]
     memory = next((durations[k] for k in keys if durations.get(k)), None)
-    stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s)
+    same_case = bool(durations.get(keys[0]))
+    stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s, same_case=same_case)
     try:
         yield stages
         stages.leave()

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import Column, Sheet, converted, suggestion
+from thermoscope.plugin import Column, Sheet, as_number, converted, suggestion
 
 Array = NDArray[np.float64]
 TOGETHER = 500  # rows of a file that are read at once
@@ -117,13 +117,11 @@ class LiveTable:
         return np.asarray(read if c.electrical is None else c.electrical.temperature(read), float)
 
     def _number(self, line: Sequence[str], at: int, name: str, number: int) -> float:
-        text = line[at].strip() if at < len(line) else ""
-        try:
-            return float(text) if text else np.nan
-        except ValueError:
-            raise InputError(
-                f"'{text[:40]}' is no number", f"{self.where} line {number}, column '{name}'", "a number, or nothing"
-            ) from None
+        value = as_number(line[at]) if at < len(line) else np.nan
+        if value is None:
+            where = f"{self.where} line {number}, column '{name}'"
+            raise InputError(f"'{line[at].strip()[:40]}' is no number", where, "a number, or nothing")
+        return value
 
     def _forward_fill(self, name: str, values: Array, first: int) -> Array:
         if not np.isfinite(values[0]):

@@ -90,6 +90,16 @@ def test_channels_of_two_rates_share_the_time(tmp_path):
         read_recording(tmp_path / "a.tdms", "X")
 
 
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_seconds_are_counted_inside_every_reader(tmp_path, monkeypatch, suffix):
+    """Between pieces that the format's own reader hands over."""
+    instants = iter(range(0, 10**6, 400))
+    WRITERS[suffix](tmp_path / f"a.{suffix}")
+    monkeypatch.setattr("geom.limits.time.monotonic", lambda: next(instants))
+    with pytest.raises(InputError, match="limit 'seconds'"):
+        read_recording(tmp_path / f"a.{suffix}")
+
+
 @pytest.mark.parametrize("suffix", [".xlsx", ".tdms", ".mf4", ".parquet"])
 def test_a_file_that_is_something_else(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
@@ -268,10 +278,10 @@ def test_a_workbook_of_charts_alone_is_told(tmp_path, drawn):
             read(tmp_path / "x.xlsx")
 
 
-@pytest.mark.parametrize("claimed", [10**8, 10**12, 2**63 - 1])
+@pytest.mark.parametrize("claimed", [78, 10**6, 10**8, 10**12, 2**63 - 1])
 @pytest.mark.parametrize("ending", ["tdms", "mf4"])
 def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending, claimed):
-    """77 rows that call themselves more are 77, or beyond a limit that says its name."""
+    """77 rows that call themselves more are 77, or refused: rows that are not there are never read as zeros."""
     file, t = tmp_path / f"a.{ending}", np.arange(77.0)
     if ending == "tdms":
         nptdms = pytest.importorskip("nptdms")
@@ -288,5 +298,6 @@ def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending
     if ending == "tdms":
         assert read_source(file).rows == 77
     else:
-        with pytest.raises(InputError, match="the limit 'rows'"):
+        words = "the limit 'rows'" if claimed > 10**7 else f"claims {claimed:,} rows and holds 77"
+        with pytest.raises(InputError, match=words):
             read_source(file)

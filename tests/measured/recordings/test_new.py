@@ -13,12 +13,12 @@ from small_case import HEADER, NETWORK, measured
 
 from geom.errors import InputError, MissingDependency
 from lumped.declarations.network import load_network
-from measured.importing.aligned import column_onset
 from measured.importing.cells import number, split_unit
 from measured.importing.clock import clock_of
 from measured.importing.guess import guesses
 from measured.importing.source import read_source
 from measured.importing.target import target_of
+from measured.recordings.alignment import column_onset
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.new import Wishes, new, settings
 from validation.comparison.compare import compare

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_case import small_case
 
+from thermoscope.console import answer
 from thermoscope.console.answer import LINES, Answer, Grid, folded, lay_out
 from thermoscope.console.terminal import notes, notes_once
 
@@ -118,3 +119,14 @@ def test_commands_in_a_row_say_each_note_once(capsys):
         notes(["b", "a", "c"])
     notes(["a"])
     assert capsys.readouterr().err.split() == ["note:", "a", "note:", "a", "note:", "b", "note:", "c", "note:", "a"]
+
+
+def test_a_table_of_thousands_of_rows_is_laid_out_a_few_times(monkeypatch):
+    """Row by row it took most of a minute to shorten 1600 rows to twenty."""
+    usual, calls = answer.grid, []
+    monkeypatch.setattr(answer, "grid", lambda *given: calls.append(1) or usual(*given))
+    table = Grid("", ["sensor", "rms (K)"], [[f"T{i}", 1.0 * i] for i in range(5000)])
+    lines = lay_out(Answer("All.", [table], "more"), 80, 20)
+    assert len(calls) < 10
+    assert len(lines) == 21
+    assert "and 4983 more" in lines[-2][0]

@@ -71,6 +71,25 @@ def test_time_left_follows_the_pace_of_this_run():
     assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
 
 
+@pytest.mark.parametrize(("reads", "rest"), [(40.0, 20.0), (1.0, 10.0), (3.0, 30.0)])
+def test_stages_of_another_case_tell_little_by_one_of_them(reads, rest):
+    """A file of a million rows is read forty times as long; what comes after takes twice as long, not forty times."""
+    clock = Clock()
+    stages = ProgressBar({"reading": 1.0, "running": 4.0, "learning": 6.0}, clock, same_case=False)
+    worked(stages, clock, [("reading", reads), ("running", 0.0)])
+    assert 0.3 * rest < stages.left()[1] < 3.0 * rest
+
+
+def test_a_stage_of_another_case_that_takes_long_says_that_the_others_will(tmp_path):
+    clock, shares = Clock(), []
+    stages = ProgressBar({"reading": 1.0, "running": 9.0}, clock, same_case=False)
+    for _ in range(30):
+        worked(stages, clock, [("reading", 1.0)])
+        shares.append(stages.left()[0])
+    assert shares[-1] < 0.75
+    assert stages.left()[1] > 9.0
+
+
 def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
     monkeypatch.setattr("sys.argv", ["thermoscope", "demo", "--out", "x"])

@@ -1,9 +1,10 @@
-"""A comparison that the user stops gives what is known, and says what was kept."""
+"""A comparison or a fit that the user stops gives what is known, and says what was kept."""
 
 import pytest
 
 from tests.shared.command_line import answered
 from tests.shared.small_case import small_case
+from thermoscope.commands.model import calibrate
 from validation.comparison import compare as comparison
 
 
@@ -44,3 +45,26 @@ def test_nothing_known_is_said_too(case, monkeypatch):
     assert done.code == 130
     assert "stopped: inputs are as they were" in done.err
     assert "Traceback" not in done.err
+
+
+def test_a_stopped_fit_shows_the_values_it_reached_and_goes_on_from_them(tmp_path, monkeypatch):
+    case = small_case(tmp_path)
+    before = (case / "model.toml").read_bytes() if (case / "model.toml").exists() else None
+    usual, kept = calibrate.Unfinished.keep, []
+
+    def keep(self, values):
+        usual(self, values)
+        kept.append(dict(values))
+        if len(kept) == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(calibrate.Unfinished, "keep", keep)
+    done = answered("model", "calibrate", case, "--json", tmp_path / "a.json")
+    assert done.code == 130
+    assert "As far as the fit came" in done.out
+    assert any(name in done.out for name in kept[-1])
+    assert f"kept in {case / 'out' / calibrate.NAME}" in " ".join(done.err.split())
+    assert not (tmp_path / "a.json").exists()
+    assert ((case / "model.toml").read_bytes() if (case / "model.toml").exists() else None) == before
+    monkeypatch.undo()
+    assert "going on with the calibration" in answered("model", "calibrate", case).err

@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
 from lumped.schemas.reader import suggestion
+from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
 from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
-from thermoscope.console.terminal import Progress
+from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.terminal import Progress, give, notes
 
 if TYPE_CHECKING:
     from validation.revision.revise import Revision
@@ -41,7 +44,11 @@ def calibrate(
         many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed
         _profilable(folder, profile)
         search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
-        result = fitted(folder.case, progress=tell, profiled=profile, search=search)
+        try:
+            result = fitted(folder.case, progress=tell, profiled=profile, search=search)
+        except KeyboardInterrupt:
+            unfinished.show(folder, case)
+            raise
         unfinished.done()
         return result
 
@@ -78,6 +85,26 @@ class Unfinished:
     def keep(self, values: Mapping[str, float]) -> None:
         self.reached |= values
         store(self.path, {"fingerprint": self.of, "values": self.reached})
+
+    def show(self, folder: Folder, called: str) -> None:
+        """What is known of a fit that the user stopped, and where it is kept; no document, which is of a whole fit."""
+        from validation.parameters.unknowns import working
+
+        parameters = [p for p in working(folder.case)[1].parameters if p.name in self.reached and not of_measurement(p)]
+        values = {p: (folder.case.model.values.get(p.name, p.value), self.reached[p.name]) for p in parameters}
+        farthest_first = sorted(
+            parameters, key=lambda p: -abs(values[p][1] - values[p][0]) / max(abs(values[p][0]), 1e-300)
+        )
+        rows = [[p.name, *values[p], "" if p.unit == "1" else p.unit] for p in farthest_first]
+        if not rows:
+            return
+        grid = Grid(
+            "As far as the fit came", ["parameter", "before", "now", "unit"], rows, keep=["before", "now", "unit"]
+        )
+        sentence = f"Stopped before the fit converged: {len(rows)} parameters had moved; model.toml is as it was."
+        more = f"thermoscope model calibrate {quote(called)} goes on from there"
+        give({}, None, lambda: Answer(sentence, [grid], more))
+        notes([f"stopped: the values reached so far are kept in {self.path}, and the same command goes on from them"])
 
     def done(self) -> None:
         self.path.unlink(missing_ok=True)

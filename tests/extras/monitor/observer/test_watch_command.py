@@ -170,3 +170,15 @@ def test_an_exported_observer_says_what_it_takes(thermoscope, case, tmp_path):
     assert done.document["inputs"] == ["current_A", "ambient"]
     assert done.document["state_bytes"] < 10_000
     assert "Sensors y (degC, NAN" in (tmp_path / "thermal_observer_sizes.h").read_text()
+
+
+def test_cells_that_say_that_nothing_was_read_are_empty_as_in_a_test(thermoscope, case, rows, tmp_path):
+    header, *lines = rows.read_text().splitlines()[:60]
+    at = header.split(",").index("T_winding")
+    cells = [line.split(",") for line in lines]
+    for row, word in zip(cells[5:9], ("n/a", "NaN", "#N/A", ""), strict=True):
+        row[at] = word
+    (tmp_path / "live.csv").write_text("\n".join([header, *map(",".join, cells)]))
+    done = thermoscope("use", "watch", case, "--follow", "live.csv", "--json", "-", cwd=tmp_path)
+    assert done.code == 0, done.err
+    assert done.document["samples"] == 59
