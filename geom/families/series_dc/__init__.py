@@ -11,8 +11,8 @@ from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
-from geom.families.series_dc.brushes import brush_gear
 from geom.families.series_dc.checks import check
+from geom.families.series_dc.commutator import brush_gear
 from geom.families.series_dc.features import features
 from geom.families.series_dc.housing import enclosure
 from geom.families.series_dc.jacket import coolant, ports

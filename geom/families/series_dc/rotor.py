@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
-from geom.description.part import Part, extrude
+from geom.description.part import Part, Prism, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.series_dc.commutator import commutator
@@ -23,32 +23,22 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
         _shaft(g, z),
         Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
-        Part(
-            "winding.armature",
-            "winding",
-            extrude(wires, z.core0, z.core1),
-            (g.rotor.fill, g.rotor.impregnation),
-            role=Role.WINDING,
-            turns=True,
+        _winding("winding.armature", "winding", extrude(wires, z.core0, z.core1), (g.rotor.fill, g.rotor.impregnation)),
+        _winding(
+            "winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)), loose
         ),
-        Part(
-            "winding.armature.left",
-            "end-winding",
-            (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)),
-            loose,
-            role=Role.WINDING,
-            turns=True,
-        ),
-        Part(
+        _winding(
             "winding.armature.right",
             "end-winding",
             (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1)),
             loose,
-            role=Role.WINDING,
-            turns=True,
         ),
         *commutator(g, z, r),
     )
+
+
+def _winding(name: str, material: str, prisms: tuple[Prism, ...], filling: tuple[float, float]) -> Part:
+    return Part(name, material, prisms, filling, role=Role.WINDING, turns=True)
 
 
 def _lamination(g: Geometry, r: Radii, angles: list[float]) -> Profile:
