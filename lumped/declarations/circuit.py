@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
 from lumped.circuits.hydraulics import Duct
-from lumped.declarations.coolant import read_coolant
+from lumped.declarations.films import read_coolant
 from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
 from lumped.transfer.properties import air
