@@ -19,20 +19,20 @@ class Fit:
 
     def need(self, holds: bool, key: str, right: str, unit: str = "mm") -> None:
         """unit : of the key in the machine file, "" for a count or a share"""
-        group, attribute = key.split(".")
         if not holds:
-            value = getattr(getattr(self.geometry, group), attribute) * (mm if unit else 1)
+            group, attribute = key.split(".")
             place = f"[geometry.{group}] {attribute}{'_' * bool(unit)}{unit}"
+            value = self._value(key) * (mm if unit else 1)
             raise InputError(f"{value:.4g} does not fit", place, f"must be {right}")
 
     def below(self, limit: float, key: str, why: str = "") -> None:
         """A length below a limit."""
-        self.need(self._length(key) < limit, key, f"less than {limit * mm:.4g} mm{why}")
+        self.need(self._value(key) < limit, key, f"less than {limit * mm:.4g} mm{why}")
 
     def above(self, limit: float, key: str, why: str = "") -> None:
         """A length above a limit."""
-        self.need(self._length(key) > limit, key, f"more than {limit * mm:.4g} mm{why}")
+        self.need(self._value(key) > limit, key, f"more than {limit * mm:.4g} mm{why}")
 
-    def _length(self, key: str) -> float:
+    def _value(self, key: str) -> float:
         group, attribute = key.split(".")
         return float(getattr(getattr(self.geometry, group), attribute))

@@ -8,6 +8,7 @@ WHOLE = {"startswith", "endswith"}
 PIECES = {"split", "partition", "rpartition", "rsplit"}
 ALLOWED = {  # file -> what its strings are, none of them a user's name for a part, an input or a test
     "geom/description/parameters.py": "keys of geometry, GROUP.NAME",
+    "geom/families/fit.py": "keys of geometry, GROUP.NAME",
     "geom/drawings/gallery.py": "a choice of the family",
     "geom/description/reading.py": "keys of geometry, NAME_mm and NAME_ratio",
     "lumped/schemas/schema.py": "keywords of JSON Schema",

@@ -4,55 +4,50 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from geom.description.parameters import Parameter, choice, length
+from geom.description.parameters import Parameter, choice
+from geom.description.parameters import length as mm
 from geom.families.radial_flux import scales as of
 from geom.families.shaft_fan import fan_parameters
 
 P = Parameter
 COMMON = (
-    length("frame.length", 290, 50, 3000, of.content(1.05, 1.6), "outer face to outer face of the end-caps"),
-    length("frame.cap", 20, 2, 200, of.outer(0.03, 0.12), "thickness of the end-caps; the bearings are as wide"),
-    length(
-        "frame.skirt", 8, 1, 100, of.yoke(0.1, 0.8), "without a housing: wall of the end-caps that rests on the stator"
-    ),
-    length("shaft.diameter", 50, 5, 500, of.bore(0.2, 0.5), "shaft"),
-    length("shaft.extension", 60, 0, 500, of.shaft(0.2, 3.0), "shaft beyond the right end-cap"),
-    length("bearing.outer_diameter", 90, 10, 700, of.shaft(1.3, 2.3), "bearing seat"),
-    length("stator.outer_diameter", 270, 30, 3000, None, "laminations", like="stator.bore_diameter_mm"),
-    length("stator.bore_diameter", 174, 20, 2500, of.outer(0.4, 0.8), "bore"),
-    length("stator.stack_length", 150, 10, 2000, of.bore(0.2, 2.5), "laminations, stator and rotor"),
+    mm("frame.length", 290, 50, 3000, of.content(1.05, 1.6), "outer face to outer face of the end-caps"),
+    mm("frame.cap", 20, 2, 200, of.outer(0.03, 0.12), "thickness of the end-caps; the bearings are as wide"),
+    mm("frame.skirt", 8, 1, 100, of.yoke(0.1, 0.8), "without a housing: wall of the end-caps that rests on the stator"),
+    mm("shaft.diameter", 50, 5, 500, of.bore(0.2, 0.5), "shaft"),
+    mm("shaft.extension", 60, 0, 500, of.shaft(0.2, 3.0), "shaft beyond the right end-cap"),
+    mm("bearing.outer_diameter", 90, 10, 700, of.shaft(1.3, 2.3), "bearing seat"),
+    mm("stator.outer_diameter", 270, 30, 3000, None, "laminations", like="stator.bore_diameter_mm"),
+    mm("stator.bore_diameter", 174, 20, 2500, of.outer(0.4, 0.8), "bore"),
+    mm("stator.stack_length", 150, 10, 2000, of.bore(0.2, 2.5), "laminations, stator and rotor"),
     P("stator.slots", 18, 3, 200, "number of slots"),
-    length("stator.tooth", 15, 0.5, 200, of.pitch(0.3, 0.6), "width of the parallel-sided teeth"),
-    length("stator.slot_depth", 26, 2, 200, of.build(0.35, 0.8), "bore to slot bottom"),
+    mm("stator.tooth", 15, 0.5, 200, of.pitch(0.3, 0.6), "width of the parallel-sided teeth"),
+    mm("stator.slot_depth", 26, 2, 200, of.build(0.35, 0.8), "bore to slot bottom"),
     choice(
         "stator.slot_shape",
         ("tapered", "parallel"),
         "slots between parallel-sided teeth, or with parallel sides themselves",
     ),
-    length("stator.slot_width", 12, 0.5, 200, of.pitch(0.3, 0.65), "width of a slot with parallel sides"),
-    length(
-        "stator.tip", 3, 0.2, 30, of.depth(0.03, 0.15), "radial thickness of the tooth tips, depth of the slot opening"
-    ),
-    length("stator.opening", 3, 0.2, 30, of.mouth(0.1, 0.6), "width of the slot opening"),
-    length("stator.wedge", 0, 0, 30, of.tip(0.3, 0.95), "wedge that closes the slot opening; 0 is none", off=True),
-    length("stator.liner", 0.3, 0.05, 3, of.lining(0.005, 0.04), "thickness of the slot liner"),
-    length(
-        "stator.liner_gap", 0, 0, 5, of.lining(0.01, 0.06), "layer between liner and laminations; 0 is none", off=True
-    ),
-    length("stator.air_gap", 1, 0.2, 20, of.bore(0.002, 0.02), "rotor to bore"),
+    mm("stator.slot_width", 12, 0.5, 200, of.pitch(0.3, 0.65), "width of a slot with parallel sides"),
+    mm("stator.tip", 3, 0.2, 30, of.depth(0.03, 0.15), "radial thickness of the tooth tips, depth of the slot opening"),
+    mm("stator.opening", 3, 0.2, 30, of.mouth(0.1, 0.6), "width of the slot opening"),
+    mm("stator.wedge", 0, 0, 30, of.tip(0.3, 0.95), "wedge that closes the slot opening; 0 is none", off=True),
+    mm("stator.liner", 0.3, 0.05, 3, of.lining(0.005, 0.04), "thickness of the slot liner"),
+    mm("stator.liner_gap", 0, 0, 5, of.lining(0.01, 0.06), "layer between liner and laminations; 0 is none", off=True),
+    mm("stator.air_gap", 1, 0.2, 20, of.bore(0.002, 0.02), "rotor to bore"),
     choice("winding.kind", ("distributed", "concentrated"), "end windings as a ring, or as one arch on every tooth"),
     P("winding.fill", 0.45, 0.05, 0.9, "share of conductor in the slot, inside the liner"),
     P("winding.end_fill", 0.35, 0.05, 0.9, "share of conductor in the end winding"),
     P("winding.impregnation", 1.0, 0.0, 1.0, "share of the space between wires in the slot that resin fills"),
     P("winding.end_impregnation", 1.0, 0.0, 1.0, "the same in the end winding"),
-    length("winding.straight", 5, 0.5, 100, of.bore(0.01, 0.1), "straight length of the coils outside the stack"),
-    length("winding.end", 25, 2, 300, of.bore(0.05, 0.5), "axial length of the end-winding ring"),
+    mm("winding.straight", 5, 0.5, 100, of.bore(0.01, 0.1), "straight length of the coils outside the stack"),
+    mm("winding.end", 25, 2, 300, of.bore(0.05, 0.5), "axial length of the end-winding ring"),
     choice("housing.kind", ("none", "plain", "axial-fins", "radial-fins", "spiral"), "what surrounds the laminations"),
-    length("housing.thickness", 8, 1, 100, of.outer(0.01, 0.08), "wall of the housing"),
+    mm("housing.thickness", 8, 1, 100, of.outer(0.01, 0.08), "wall of the housing"),
     P("housing.fins", 40, 1, 200, "number of fins"),
-    length("housing.fin_height", 20, 1, 150, of.outer(0.02, 0.15), "radial height of a fin"),
-    length("housing.fin_thickness", 4, 0.5, 40, of.fin_pitch(0.1, 0.65), "thickness of a fin"),
-    length(
+    mm("housing.fin_height", 20, 1, 150, of.outer(0.02, 0.15), "radial height of a fin"),
+    mm("housing.fin_thickness", 4, 0.5, 40, of.fin_pitch(0.1, 0.65), "thickness of a fin"),
+    mm(
         "housing.fin_spacing",
         0,
         0,
@@ -62,31 +57,31 @@ COMMON = (
         off=True,
     ),
     P("housing.turns", 6, 1, 40, "turns of a spiral jacket; rings in the mesh, a helix in CAD files"),
-    length("housing.channel", 10, 1, 80, of.outer(0.02, 0.08), "radial height of the jacket's channel"),
-    length("housing.rib", 5, 0.5, 80, of.turn(0.1, 0.4), "wall between turns, and at the ends"),
-    length("housing.wall", 5, 0.5, 60, of.outer(0.01, 0.05), "outer wall of the jacket"),
-    length("housing.port", 10, 1, 100, of.channel(0.15, 0.6), "bore of the jacket's inlet and outlet"),
+    mm("housing.channel", 10, 1, 80, of.outer(0.02, 0.08), "radial height of the jacket's channel"),
+    mm("housing.rib", 5, 0.5, 80, of.turn(0.1, 0.4), "wall between turns, and at the ends"),
+    mm("housing.wall", 5, 0.5, 60, of.outer(0.01, 0.05), "outer wall of the jacket"),
+    mm("housing.port", 10, 1, 100, of.channel(0.15, 0.6), "bore of the jacket's inlet and outlet"),
     choice("base.kind", ("none", "plate"), "what the machine stands on"),
-    length("base.width", 300, 20, 5000, of.outer(0.9, 2.5), "base plate, across the axis"),
-    length("base.length", 1000, 20, 5000, of.length(1.0, 4.0), "base plate, along the axis, centred on the stack"),
-    length("base.thickness", 10, 1, 300, of.outer(0.02, 0.15), "base plate"),
-    length("foot.width", 120, 5, 2000, of.outer(0.2, 0.8), "pad between machine and base plate, across the axis"),
-    length("foot.length", 100, 5, 2000, of.stack(0.2, 0.9), "pad, along the axis, centred on the stack"),
-    length("foot.height", 40, 1, 500, of.outer(0.02, 0.3), "lowest point of the machine's body to the base plate"),
+    mm("base.width", 300, 20, 5000, of.outer(0.9, 2.5), "base plate, across the axis"),
+    mm("base.length", 1000, 20, 5000, of.length(1.0, 4.0), "base plate, along the axis, centred on the stack"),
+    mm("base.thickness", 10, 1, 300, of.outer(0.02, 0.15), "base plate"),
+    mm("foot.width", 120, 5, 2000, of.outer(0.2, 0.8), "pad between machine and base plate, across the axis"),
+    mm("foot.length", 100, 5, 2000, of.stack(0.2, 0.9), "pad, along the axis, centred on the stack"),
+    mm("foot.height", 40, 1, 500, of.outer(0.02, 0.3), "lowest point of the machine's body to the base plate"),
 )
 MAGNETS = (
     P("rotor.poles", 16, 2, 80, "number of magnet poles"),
     choice("rotor.magnet_shape", ("flat", "v"), "one magnet per pole, or two in a V"),
-    length("rotor.magnet_width", 22, 1, 300, of.magnet(0.4, 0.95), "width of a magnet in the plane"),
-    length("rotor.magnet_thickness", 5, 0.5, 60, of.pole(0.05, 0.2), "thickness of a magnet in the plane"),
-    length("rotor.bridge", 2, 0.2, 60, of.pole(0.02, 0.1), "least iron between magnet and rotor surface"),
+    mm("rotor.magnet_width", 22, 1, 300, of.magnet(0.4, 0.95), "width of a magnet in the plane"),
+    mm("rotor.magnet_thickness", 5, 0.5, 60, of.pole(0.05, 0.2), "thickness of a magnet in the plane"),
+    mm("rotor.bridge", 2, 0.2, 60, of.pole(0.02, 0.1), "least iron between magnet and rotor surface"),
     P("rotor.v_deg", 16.0, 0.0, 60.0, "tilt of each magnet of a V against the flat position"),
 )
 CAGE = (
     P("rotor.bars", 28, 5, 120, "number of cage bars"),
-    length("rotor.bar_width", 5, 0.5, 60, of.bar_pitch(0.25, 0.7), "parallel-sided bar, open to the air gap"),
-    length("rotor.bar_depth", 18, 1, 120, of.iron(0.15, 0.6), "rotor surface to bar bottom"),
-    length("rotor.ring", 14, 1, 100, of.end_space(0.1, 0.8), "axial thickness of the cage's end rings"),
+    mm("rotor.bar_width", 5, 0.5, 60, of.bar_pitch(0.25, 0.7), "parallel-sided bar, open to the air gap"),
+    mm("rotor.bar_depth", 18, 1, 120, of.iron(0.15, 0.6), "rotor surface to bar bottom"),
+    mm("rotor.ring", 14, 1, 100, of.end_space(0.1, 0.8), "axial thickness of the cage's end rings"),
 )
 FAN = fan_parameters(
     "end-cap",
