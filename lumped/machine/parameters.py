@@ -11,19 +11,15 @@ from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
 from lumped.sources.loss_laws import EDDY
 
-LOSS_SPREAD = {  # log-sd by kind
-    **{"copper": 0.05, "map": 0.1, "measured": 0.1, "brush": 0.15, "inverter": 0.15},
-    **{
-        "iron": 0.25,
-        "friction": 0.25,
-        "bearing": 0.25,
-        "windage": 0.3,
-        "switching": 0.3,
-        "constant": 0.3,
-        "ripple": 0.3,
-    },
-    **{"magnet": 0.5, "stray": 0.5, "pwm": 0.5},
-}
+SPREADS = (  # log-sd, kinds of losses
+    (0.05, "copper"),
+    (0.1, "map measured"),
+    (0.15, "brush inverter"),
+    (0.25, "iron friction bearing"),
+    (0.3, "windage switching constant ripple"),
+    (0.5, "magnet stray pwm"),
+)
+LOSS_SPREAD = {kind: sd for sd, kinds in SPREADS for kind in kinds.split()}
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
 
