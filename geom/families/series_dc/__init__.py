@@ -48,17 +48,10 @@ def _fluids(g: Geometry, z: Axial) -> tuple[Part, ...]:
 
 
 _SIDES = ("jacket.left", "jacket.right")
-FAMILY = Family(
-    "series-dc",
-    "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets",
-    PARAMETERS,
-    build,
-    {
-        ("housing", "ambient"): "housing.fins",
-        ("housing", "jacket.left"): "jacket.left.wall",
-        ("housing", "jacket.right"): "jacket.right.wall",
-        **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
-    },
-    ports,
-    features,
-)
+_FACES = {
+    ("housing", "ambient"): "housing.fins",
+    **{("housing", side): f"{side}.wall" for side in _SIDES},
+    **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
+}
+_DOC = "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets"
+FAMILY = Family("series-dc", _DOC, PARAMETERS, build, _FACES, ports, features)
