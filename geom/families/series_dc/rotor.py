@@ -19,20 +19,16 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     wires, liners = shapes.turned(wire, angles), shapes.turned(liner, angles)
     ends = shapes.ring(r.wire_bottom, r.wire_top)
     loose = (g.rotor.end_fill, g.rotor.end_impregnation)
+    inner = extrude(wires, z.core0, z.core1)
+    left = (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0))
+    right = (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1))
     return (
         _shaft(g, z),
         Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
-        _winding("winding.armature", "winding", extrude(wires, z.core0, z.core1), (g.rotor.fill, g.rotor.impregnation)),
-        _winding(
-            "winding.armature.left", "end-winding", (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)), loose
-        ),
-        _winding(
-            "winding.armature.right",
-            "end-winding",
-            (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1)),
-            loose,
-        ),
+        _winding("winding.armature", "winding", inner, (g.rotor.fill, g.rotor.impregnation)),
+        _winding("winding.armature.left", "end-winding", left, loose),
+        _winding("winding.armature.right", "end-winding", right, loose),
         *commutator(g, z, r),
     )
 
