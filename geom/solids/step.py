@@ -207,9 +207,9 @@ def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
 def _material(name: str, materials: Mapping[str, str], where: str) -> str:
     """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
     fitting = (m for pattern, m in materials.items() if fnmatchcase(name, pattern))
-    chosen = materials[name] if name in materials else next(fitting, None)
-    if chosen is not None:
-        return material(chosen).name
+    word = materials[name] if name in materials else next(fitting, None)
+    if word is not None:
+        return material(word).name
     if name not in _habits():
         raise InputError(f"no material for the solid {name!r}", where, f'write [materials] "{name}" = "steel"')
     return _habits()[name]

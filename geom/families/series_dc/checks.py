@@ -39,8 +39,8 @@ def _check_rotor(fit: Fit, g: Geometry, r: Radii) -> None:
     fit.below(pitch / 1.1, "rotor.slot_width", ": the slot pitch at the slot bottom, less a tooth")
     fit.below(0.4 * slot, "rotor.liner", ", to leave room for the winding")
     fit.below(0.8 * g.rotor.slot_depth - g.rotor.liner, "rotor.wedge", ", to leave room for the winding")
-    apart = "small enough for the ducts to stay apart, off the shaft and off the slots"
-    fit.need(_ducts_fit(g, r), "rotor.duct_diameter", apart)
+    room = "small enough for the ducts to stay apart, off the shaft and off the slots"
+    fit.need(_ducts_fit(g, r), "rotor.duct_diameter", room)
     fit.need(hub < g.commutator.diameter, "commutator.diameter", f"more than the hub under it, {hub * mm:.4g} mm")
     winding = 2 * r.wire_bottom
     between = f"from the core's {core * mm:.4g} mm to below the winding's {winding * mm:.4g} mm"
@@ -59,13 +59,13 @@ def _ducts_fit(g: Geometry, r: Radii) -> bool:
 
 def _check_poles(fit: Fit, g: Geometry, r: Radii) -> None:
     half = math.pi / g.stator.poles
-    apart = half * g.stator.pole_arc < half - 0.01
-    fit.need(apart, "stator.pole_arc", "small enough for the shoes to stay apart", unit="")
-    x, y, _ = shapes.polar(r.bore + g.stator.tip, half * g.stator.pole_arc)
+    tips = half * g.stator.pole_arc
+    fit.need(tips < half - 0.01, "stator.pole_arc", "small enough for the shoes to stay apart", unit="")
+    x, y, _ = shapes.polar(r.bore + g.stator.tip, tips)
     shoe = f"less than the shoe, {1.9 * y * mm:.4g} mm, whose tips lie below its back"
     fit.need(r.body < 0.95 * y and r.shoe_back > x, "stator.body_width", shoe)
-    apart = math.atan2(r.coil_side, r.coil0) < half - 0.005
-    fit.need(apart, "field.coil_width", "narrow enough for neighbouring coils to stay apart")
+    sides = math.atan2(r.coil_side, r.coil0)
+    fit.need(sides < half - 0.005, "field.coil_width", "narrow enough for neighbouring coils to stay apart")
     corner = math.hypot(r.coil1, r.coil_side)
     clear = f"more than {2.01 * corner * mm:.4g} mm, to clear the field coils"
     fit.need(corner < 0.995 * r.yoke0, "stator.yoke_inner_diameter", clear)
