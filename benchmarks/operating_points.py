@@ -25,8 +25,8 @@ from lumped.correlations.air_gap import taylor_film
 from lumped.declarations.circuit import read_circuits
 from lumped.declarations.network import read_network
 from lumped.integration.steady import steady
-from lumped.machine.coolant import FLOW, channel_of, liquid, onto_outlet
 from lumped.machine.films import Surroundings, surroundings
+from lumped.machine.jackets import FLOW, channel_of, liquid, onto_outlet
 from lumped.machine.outer import cowl_of, outer_films
 from lumped.machine.shapes import extent
 from lumped.schemas.reader import Table

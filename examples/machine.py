@@ -1,7 +1,7 @@
-"""A machine from its file: parts, masses, and a drawing.
+"""A machine from its file: parts, masses, and a picture.
 
-Loads the 100 kW series-wound motor, lists what its parts weigh, and draws its section. The mass of the shaft is checked
-against the cylinders it is made of.
+Loads the 100 kW series-wound motor, lists what its parts weigh, and draws its sections. The mass of the shaft is
+checked against the cylinders it is made of.
 
     python examples/machine.py [FOLDER]
 """
@@ -11,7 +11,7 @@ import math
 import sys
 from pathlib import Path
 
-from thermoscope.geom import drawing_of, load_machine, part_table
+from thermoscope.geom import load_machine, part_table, thumbnail_of
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
 
@@ -21,11 +21,11 @@ rows = {row.name: row for row in part_table(machine)}
 for row in rows.values():
     print(row)
 
-# %% A drawing.
+# %% A picture: sections across and along the axis.
 out.mkdir(parents=True, exist_ok=True)
-(out / "machine.svg").write_text(drawing_of(machine), encoding="utf-8")
+(out / "machine.svg").write_text(thumbnail_of(machine), encoding="utf-8")
 
-# %% Are the masses right? The shaft is a row of cylinders, and their radii stand in the drawing.
+# %% Are the masses right? The shaft is a row of cylinders, and its profiles have their radii.
 shaft = machine.part("shaft")
 computed = rows["shaft"].volume
 exact = sum(math.pi * profile.outer[0][0] ** 2 * (z1 - z0) for profile, z0, z1 in shaft.prisms)

@@ -2,8 +2,6 @@
 
 A limit stands far above what people measure and far below what a computer of 8 GB cannot hold. Who has more raises it
 by its environment variable.
-
-python -m geom.limits    writes docs/reference/limits.md
 """
 
 from __future__ import annotations
@@ -11,23 +9,8 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 from geom.errors import InputError
-
-PAGE = Path(__file__).parents[1] / "docs" / "reference" / "limits.md"
-HEAD = """# Limits
-
-What a file asks for is counted before anything of that size is kept in memory. Beyond a limit the command stops with
-exit code 2, names the limit, and leaves nothing behind. To raise one, set its environment variable to a whole number:
-
-```sh
-THERMOSCOPE_MOST_ROWS=20000000 thermoscope test compare CASE
-```
-
-| limit | usual | variable | what it bounds, and why this number |
-|---|---|---|---|
-"""
 
 
 @dataclass(frozen=True)
@@ -85,18 +68,3 @@ class ReadingTime:
     def check(self) -> None:
         """InputError where it takes too long."""
         SECONDS.check(time.monotonic() - self.begin, self.where, "was read for")
-
-
-def limits_table() -> str:
-    """The limits as rows of a Markdown table."""
-    rows = (f"| `{x.name}` | {x.usual:,} | `{x.variable}` | {x.unit} {x.why} |" for x in LIMITS)
-    return "\n".join(rows)
-
-
-def page() -> str:
-    """The page as Markdown."""
-    return f"{HEAD}{limits_table()}\n"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")

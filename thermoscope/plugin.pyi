@@ -49,7 +49,7 @@ from lumped.integration.signals import Signals as Signals
 from lumped.integration.simulate import Stand as Stand, initial_state as initial_state
 from lumped.machine.air import Stirred as Stirred
 from lumped.machine.bases import Switched as Switched
-from lumped.machine.coolant import (
+from lumped.machine.jackets import (
     Cooling as Cooling,
     FLOW as FLOW,
     INLET as INLET,
@@ -95,7 +95,7 @@ from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS 
 from lumped.schemas.reader import Table as Table, suggestion as suggestion
 from lumped.sources.loss_map import MapLoss as MapLoss
 from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
-from lumped.sources.losses import (
+from lumped.sources.loss_laws import (
     BrushLoss as BrushLoss,
     CopperLoss as CopperLoss,
     EDDY as EDDY,

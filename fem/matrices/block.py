@@ -10,8 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.matrices import kernels
-from fem.matrices.elements import Elements, HasTensor, Linear
-from fem.matrices.quadratic import Quadratic
+from fem.matrices.elements import Elements, HasTensor
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 
@@ -95,7 +94,7 @@ def block_of(
     points, tets = renumbered(cells, len(mesh.points))
     xyz = np.ascontiguousarray(mesh.points[points])
     volumes = kernels.volumes(xyz, tets)
-    elements: Elements = Quadratic.on(tets, xyz) if quadratic else Linear(tets, xyz)
+    elements = Elements.on(tets, xyz, quadratic)
     dofs = slice(start, start + len(elements.xyz))
     K, M, w = elements.conduction(conductivity), elements.mass(rho_cp * volumes), elements.nodal(volumes)
     return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp, conductivity)

@@ -65,15 +65,6 @@ def _add(indptr, indices, data, i, j, value):  # type: ignore[no-untyped-def]
 
 
 @njit(**_OPTIONS)
-def spread(cells, local, indptr, indices, data):  # type: ignore[no-untyped-def]
-    """Adds the matrices local (m, k, k) of cells (m, k)."""
-    for e in range(len(cells)):
-        for a in range(cells.shape[1]):
-            for b in range(cells.shape[1]):
-                _add(indptr, indices, data, cells[e, a], cells[e, b], local[e, a, b])
-
-
-@njit(**_OPTIONS)
 def volumes(xyz, tets):  # type: ignore[no-untyped-def]
     """(m,) m3"""
     out, grad = np.empty(len(tets)), np.empty((4, 3))
@@ -83,43 +74,52 @@ def volumes(xyz, tets):  # type: ignore[no-untyped-def]
 
 
 @njit(**_OPTIONS)
-def conduction(xyz, tets, k, indptr, indices, data):  # type: ignore[no-untyped-def]
-    """Adds Int grad N_i . k grad N_j, k (m, 3, 3) constant in a tetrahedron."""
-    grad, flux = np.empty((4, 3)), np.empty((4, 3))
+def conduction(xyz, tets, cells, k, reference, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds Int grad N_i . k grad N_j, k (m, 3, 3) constant in a tetrahedron; reference : of elements._reference."""
+    n, grad, local = cells.shape[1], np.empty((4, 3)), np.empty(reference.shape[1])
     for e in range(len(tets)):
-        volume = _gradients(xyz, tets[e], grad)
-        _fluxes(k[e], grad, volume, flux)
-        for a in range(4):
-            for b in range(4):
-                value = flux[a, 0] * grad[b, 0] + flux[a, 1] * grad[b, 1] + flux[a, 2] * grad[b, 2]
-                _add(indptr, indices, data, tets[e, a], tets[e, b], value)
+        _local_conduction(xyz, tets[e], k[e], reference, grad, local)
+        for a in range(n):
+            for b in range(n):
+                _add(indptr, indices, data, cells[e, a], cells[e, b], local[a * n + b])
 
 
 @njit(**_OPTIONS)
-def conduction_slope(xyz, tets, k, slope, T, indptr, indices, data):  # type: ignore[no-untyped-def]
-    """Adds d/dT_j of (f(T_mean) K_e T)_i beside f K_e: slope (m,) is df/dT, T (n,)."""
-    grad, flux = np.empty((4, 3)), np.empty((4, 3))
+def conduction_slope(xyz, tets, cells, k, reference, change, T, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds d/dT_j of (f(T_mean) K_e T)_i beside f K_e: change (m, n) is df/dT times the share of T_j in T_mean."""
+    n, grad, local = cells.shape[1], np.empty((4, 3)), np.empty(reference.shape[1])
     for e in range(len(tets)):
-        volume = _gradients(xyz, tets[e], grad)
-        _fluxes(k[e], grad, volume, flux)
-        for a in range(4):
+        _local_conduction(xyz, tets[e], k[e], reference, grad, local)
+        for a in range(n):
             heat = 0.0
-            for b in range(4):
-                for c in range(3):
-                    heat += flux[a, c] * grad[b, c] * T[tets[e, b]]
-            for b in range(4):
-                _add(indptr, indices, data, tets[e, a], tets[e, b], heat * slope[e] / 4)
+            for b in range(n):
+                heat += local[a * n + b] * T[cells[e, b]]
+            for b in range(n):
+                _add(indptr, indices, data, cells[e, a], cells[e, b], heat * change[e, b])
 
 
 @njit(**_OPTIONS)
-def mass(cells, sizes, indptr, indices, data):  # type: ignore[no-untyped-def]
-    """Adds Int N_i N_j for sizes (m,), volumes or areas, times whatever is to be integrated."""
-    k = cells.shape[1]
+def mass(cells, sizes, reference, indptr, indices, data):  # type: ignore[no-untyped-def]
+    """Adds Int N_i N_j for sizes (m,), volumes or areas, times whatever is to be integrated; reference : of size 1."""
     for e in range(len(cells)):
-        share = sizes[e] / (k * (k + 1))
-        for a in range(k):
-            for b in range(k):
-                _add(indptr, indices, data, cells[e, a], cells[e, b], 2 * share if a == b else share)
+        for a in range(cells.shape[1]):
+            for b in range(cells.shape[1]):
+                _add(indptr, indices, data, cells[e, a], cells[e, b], sizes[e] * reference[a, b])
+
+
+@njit(**_OPTIONS)
+def _local_conduction(xyz, tet, k, reference, grad, out):  # type: ignore[no-untyped-def]
+    """Into out (n * n,): the reference's share of grad_a . k grad_b for every pair of corners."""
+    volume = _gradients(xyz, tet, grad)
+    out[:] = 0.0
+    for a in range(4):
+        x = k[0, 0] * grad[a, 0] + k[0, 1] * grad[a, 1] + k[0, 2] * grad[a, 2]
+        y = k[1, 0] * grad[a, 0] + k[1, 1] * grad[a, 1] + k[1, 2] * grad[a, 2]
+        z = k[2, 0] * grad[a, 0] + k[2, 1] * grad[a, 1] + k[2, 2] * grad[a, 2]
+        for b in range(4):
+            along = volume * (x * grad[b, 0] + y * grad[b, 1] + z * grad[b, 2])
+            for i in range(len(out)):
+                out[i] += along * reference[4 * a + b, i]
 
 
 @njit(**_OPTIONS)
@@ -139,13 +139,6 @@ def _gradients(xyz, tet, grad):  # type: ignore[no-untyped-def]
 def _edge(xyz, tet, i):  # type: ignore[no-untyped-def]
     o, p = tet[0], tet[i]
     return xyz[p, 0] - xyz[o, 0], xyz[p, 1] - xyz[o, 1], xyz[p, 2] - xyz[o, 2]
-
-
-@njit(**_OPTIONS)
-def _fluxes(k, grad, volume, flux):  # type: ignore[no-untyped-def]
-    for a in range(4):
-        for c in range(3):
-            flux[a, c] = volume * (k[c, 0] * grad[a, 0] + k[c, 1] * grad[a, 1] + k[c, 2] * grad[a, 2])
 
 
 @njit(**_OPTIONS)

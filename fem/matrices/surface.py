@@ -13,8 +13,7 @@ from skfem.refdom import RefTri
 
 from fem.matrices import kernels
 from fem.matrices.block import Block, renumbered
-from fem.matrices.elements import pattern
-from fem.matrices.quadratic import RIM, hats
+from fem.matrices.elements import RIM, hats, pattern
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 
@@ -114,7 +113,7 @@ def trace_of(mesh: NamedMesh, block: Block, facets: Ints) -> Trace:
     areas = np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1) / 2
     unknowns, local = renumbered(block.elements.facets(points), block.n)
     mass, share = pattern(local, len(unknowns)), _reference(1 if local.shape[1] == 3 else 2)
-    kernels.spread(local, areas[:, None, None] * share, mass.indptr, mass.indices, mass.data)
+    kernels.mass(local, areas, share, mass.indptr, mass.indices, mass.data)
     b = np.bincount(local.ravel(), np.outer(areas, share.sum(1)).ravel(), len(unknowns)).astype(float)
     return Trace(block.name, block.dofs.start + unknowns, mass, b, local, areas)
 

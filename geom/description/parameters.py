@@ -17,23 +17,33 @@ from geom.errors import InputError
 UNITS = {"mm": 1e-3, "deg": math.pi / 180}
 
 
+Length = Callable[[Geometry], float]  # (m), of the geometry so far
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What lengths are measured in, each within its own bounds: measure(low, high) is the scale of one.
+
+    name : in words, after "of";  span, start : both of the geometry so far (m)
+    """
+
+    name: str
+    span: Length
+    start: Length = lambda g: 0.0
+
+    def __call__(self, low: float, high: float) -> Scale:
+        return Scale(self.name, low, high, self.span, self.start)
+
+
 @dataclass(frozen=True)
 class Scale:
-    """What a length is measured in: it is start + ratio * span, both in m, of the geometry so far.
-
-    name : in words, after "of";  low, high : any ratio between makes a machine that fits
-    """
+    """A length is start + ratio * span (m); any ratio between low and high makes a machine that fits."""
 
     name: str
     low: float
     high: float
-    span: Callable[[Geometry], float]
-    start: Callable[[Geometry], float] = lambda g: 0.0
-
-
-def scale(name: str, *of: Callable[[Geometry], float]) -> Callable[[float, float], Scale]:
-    """scale(name, span, start)(low, high): one length that several parameters are measured in, each in its bounds."""
-    return lambda low, high: Scale(name, low, high, *of)
+    span: Length
+    start: Length
 
 
 @dataclass(frozen=True)
@@ -127,7 +137,13 @@ def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def impossible(what: str, key: str, right: str) -> InputError:
-    """The error for values that are each allowed but do not fit together."""
-    group, name = key.split(".")
-    return InputError(what, f"[geometry.{group}] {name}", right)
+def length(
+    key: str, usual: float, low: float, high: float, of: Scale | None, doc: str, off: bool = False, like: str = ""
+) -> Parameter:
+    """A length (mm) under a key without its unit, "group.name"."""
+    return Parameter(f"{key}_mm", float(usual), float(low), float(high), doc, off=off, of=of, like=like)
+
+
+def choice(key: str, words: tuple[str, ...], doc: str) -> Parameter:
+    """A choice among words, of which the first is the default."""
+    return Parameter(key, words[0], doc=doc, choices=words)

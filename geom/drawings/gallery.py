@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
+from html import escape
 from pathlib import Path
 
 from geom.description.machine import Machine
-from geom.drawings.drawing import thumbnail_of
+from geom.description.roles import Role
+from geom.drawings.views import Views, middle_level
 from geom.machine_file import library, load_machine
 
 
@@ -32,16 +35,9 @@ def catalogue() -> list[Entry]:
 
 def entry_of(machine: Machine) -> Entry:
     mass = sum(part.volume * machine.material_of(part.name).rho for part in machine.parts)
+    m, parts = machine, len(machine.parts)
     return Entry(
-        machine.name,
-        machine.family,
-        machine.description,
-        len(machine.parts),
-        mass,
-        machine.extent,
-        cooling_of(machine),
-        machine.source,
-        machine.assumed,
+        m.name, m.family, m.description, parts, mass, m.extent, cooling_of(m), source=m.source, assumed=m.assumed
     )
 
 
@@ -92,3 +88,32 @@ def _row(entry: Entry) -> str:
     name = f"`{entry.name}` ([{entry.family}]({entry.family}.md)): {entry.description}"
     picture = f"![Sections across and along the axis of {entry.name}](thumbnails/{entry.name}.svg)"
     return f"| {picture} | {name} | {entry.parts} | {entry.mass:.1f} | {size} | {entry.cooling} | {numbers} |"
+
+
+def thumbnail_of(machine: Machine) -> str:
+    """A small SVG of the section across the axis and the section along it, without dimensions.
+
+    Framed on the machine; a base plate that reaches further is cut off.
+    """
+    views = Views(machine, middle_level(machine))
+    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.role is not Role.BASE)), views.z)
+    margin = 0.04 * framed.width
+    low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
+    wide = framed.width + 2 * margin
+    text = "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
+            'width="320" height="160">',
+            f"<title>{escape(machine.name)}</title>",
+            *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
+            *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
+            "</svg>\n",
+        ]
+    )
+    return re.sub(r"(\.\d)\d+", r"\1", text)
+
+
+def _window(at: float, x: float, y: float, width: float, height: float, shapes: list[str]) -> list[str]:
+    """What of the shapes lies in a rectangle, drawn from `at` on."""
+    sides = f'x="{at:.1f}" width="{width:.1f}" height="{height:.1f}" viewBox="{x:.1f} {y:.1f} {width:.1f} {height:.1f}"'
+    return [f"<svg {sides}>", *shapes, "</svg>"]

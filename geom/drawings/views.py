@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from geom.description.palette import colour
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Loop, Profile, edges
+from geom.description.roles import Role
 
 if TYPE_CHECKING:
     from geom.description.machine import Machine
@@ -104,6 +105,12 @@ class Views:
         knife = shapely.LineString([(_ASIDE, -10.0), (_ASIDE, 10.0)])
         cuts = {p: shapely.get_parts(polygon.intersection(knife)) for p, polygon in self._polygons.items()}
         return {p: [(c.bounds[1], c.bounds[3]) for c in pieces if c.length] for p, pieces in cuts.items()}
+
+
+def middle_level(machine: Machine) -> float:
+    """Where to cut across (m): in the middle of the rotor's stack, or of the machine."""
+    spans = [p.span for p in machine.parts if p.role is Role.ROTOR] or [p.span for p in machine.parts]
+    return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
 
 
 def path(loop: Loop) -> str:

@@ -60,22 +60,15 @@ class Nozzle:
     @property
     def drill(self) -> Rod:
         """The round bore, through wall and tube."""
-        return Rod(
-            self.angle,
-            self.z,
-            (self.channel + self.wall) / 2 - 0.6 * (self.wall - self.channel),
-            self.tip + 0.001,
-            self.bore,
-        )
+        middle, wall = (self.channel + self.wall) / 2, self.wall - self.channel
+        return Rod(self.angle, self.z, middle - 0.6 * wall, self.tip + 0.001, self.bore)
 
     def part(self, material: str = "aluminium-cast") -> Part:
         half, out = self.side / 2, TUBE * self.side / 2
         low, high = self.span
         whole = Profile(shapes.strip_loop(self.wall, self.tip, -out, out)).rotated(self.angle)
-        sides = [
-            Profile(shapes.strip_loop(self.wall, self.tip, *y)).rotated(self.angle)
-            for y in ((-out, -half), (half, out))
-        ]
+        strips = (shapes.strip_loop(self.wall, self.tip, *y) for y in ((-out, -half), (half, out)))
+        sides = [Profile(strip).rotated(self.angle) for strip in strips]
         prisms = ((whole, self.z - out, low), *((side, low, high) for side in sides), (whole, high, self.z + out))
         return Part(f"{self.name}.tube", material, prisms, cad_shape=self._tube(), role=Role.HOUSING)
 
@@ -99,16 +92,9 @@ def _between(inner: float, outer: float, here: Nozzle, following: Nozzle) -> Pro
     )
     out, back = ((end - start) % (2 * math.pi) / 2 for start, end in ((a, b), (p, q)))
     far, near = shapes.bulge_of(out), shapes.bulge_of(-back)
-    return Profile(
-        (
-            shapes.polar(outer, a, far),
-            shapes.polar(outer, a + out, far),
-            shapes.polar(outer, b),
-            shapes.polar(inner, q, near),
-            shapes.polar(inner, q - back, near),
-            shapes.polar(inner, p),
-        )
-    )
+    polar = shapes.polar
+    outside = (polar(outer, a, far), polar(outer, a + out, far), polar(outer, b))
+    return Profile((*outside, polar(inner, q, near), polar(inner, q - back, near), polar(inner, p)))
 
 
 def bored_circle(
@@ -121,12 +107,9 @@ def bored_circle(
     out: list[Vertex] = []
     for i, loop in enumerate(loops):
         here, following = ends[2 * i + 1], ends[(2 * i + 2) % len(ends)]
-        sweep = (following - here) % (2 * math.pi)
-        out += [
-            *loop,
-            shapes.polar(outer, here, shapes.bulge_of(sweep / 2)),
-            shapes.polar(outer, here + sweep / 2, shapes.bulge_of(sweep / 2)),
-        ]
+        half = (following - here) % (2 * math.pi) / 2
+        arc = shapes.bulge_of(half)
+        out += [*loop, shapes.polar(outer, here, arc), shapes.polar(outer, here + half, arc)]
     return tuple(out)
 
 

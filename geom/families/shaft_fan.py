@@ -3,49 +3,50 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from geom.description import shapes
 from geom.description.geometry import Group
-from geom.description.parameters import Parameter, Scale
+from geom.description.parameters import Length, Measure, Parameter, length
 from geom.description.part import Part
 from geom.description.roles import Role
+from geom.families.fit import Fit, mm
 
-P = Parameter
-Rule = tuple[bool, str, float, str]  # holds, key, value as in the file, what would be right
 _BLADE = 0.35  # of the pitch, as seen along the axis
 _FREE = 0.02  # of the cowl's radius: blade tip to cowl
 WHEEL = (0.2, 0.8)  # of the cowl's depth, from its open end: where the wheel begins and ends
-mm = 1e3
+
+
+def fan_measures(shield: str, radius: Length, shaft: Length) -> tuple[Measure, Measure]:
+    """What the cowl is measured in, from the bearing's seat to the shield of that radius, and what the hub is."""
+    cowl = Measure(
+        f"the way from the bearing's diameter to the {shield}'s",
+        lambda g: 2 * (radius(g) - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
+        lambda g: 1.02 * g.bearing.outer_diameter,
+    )
+    hub = Measure(
+        "the way from the shaft's diameter to 0.9 of the cowl's",
+        lambda g: 0.9 * g.fan.diameter - 1.05 * shaft(g),
+        lambda g: 1.05 * shaft(g),
+    )
+    return cowl, hub
 
 
 def fan_parameters(
-    plate: str,
-    of: Mapping[str, Callable[[float, float], Scale]],
-    diameter: float,
-    cowl: float,
-    hub: float,
-    within: float,
+    plate: str, of: Mapping[str, Measure], diameter: float, cowl: float, hub: float, within: float
 ) -> tuple[Parameter, ...]:
     """[geometry.fan] of a family whose fan stands before the left `plate`.
 
     diameter, cowl, hub : their usual lengths (mm);  within : largest share of what the family measures the cowl in
     of : what depth, wall, cowl and hub are measured in
     """
+    words = f"cowl with a fan on the shaft, in front of the left {plate}; 0 is none"
     return (
-        P(
-            "fan.depth_mm",
-            0.0,
-            0.0,
-            500.0,
-            f"cowl with a fan on the shaft, in front of the left {plate}; 0 is none",
-            off=True,
-            of=of["depth"](0.1, 0.5),
-        ),
-        P("fan.cowl_mm", cowl, 0.5, 20.0, "wall of the cowl", of=of["wall"](0.003, 0.02)),
-        P("fan.diameter_mm", diameter, 20.0, 2500.0, "inside of the cowl", of=of["cowl"](0.3, within)),
-        P("fan.hub_diameter_mm", hub, 6.0, 800.0, "hub of the fan on the shaft", of=of["hub"](0.05, 0.6)),
-        P("fan.blades", 7, 2, 24, "blades of the fan"),
+        length("fan.depth", 0, 0, 500, of["depth"](0.1, 0.5), words, off=True),
+        length("fan.cowl", cowl, 0.5, 20, of["wall"](0.003, 0.02), "wall of the cowl"),
+        length("fan.diameter", diameter, 20, 2500, of["cowl"](0.3, within), "inside of the cowl"),
+        length("fan.hub_diameter", hub, 6, 800, of["hub"](0.05, 0.6), "hub of the fan on the shaft"),
+        Parameter("fan.blades", 7, 2, 24, "blades of the fan"),
     )
 
 
@@ -68,27 +69,12 @@ def shaft_fan(fan: Group, shaft: float, z0: float, z1: float) -> tuple[Part, ...
     )
 
 
-def fan_rules(fan: Group, shaft: float, seat: float, shield: float) -> tuple[Rule, ...]:
+def check_fan(fit: Fit, shaft: float, shield: float) -> None:
     """The cowl stands on the shield around the bearing's seat, the hub between shaft and cowl; diameters (m)."""
+    fan, seat = fit.geometry.fan, 1.02 * fit.geometry.bearing.outer_diameter
     if not fan.depth:
-        return ()
-    return (
-        (
-            fan.diameter > 1.02 * seat,
-            "fan.diameter_mm",
-            fan.diameter * mm,
-            f"more than {1.02 * seat * mm:.4g} mm, to stand on the flange",
-        ),
-        (
-            fan.diameter + 2 * fan.cowl < shield,
-            "fan.diameter_mm",
-            fan.diameter * mm,
-            f"less than {(shield - 2 * fan.cowl) * mm:.4g} mm, the flange",
-        ),
-        (
-            1.05 * shaft < fan.hub_diameter < 0.9 * fan.diameter,
-            "fan.hub_diameter_mm",
-            fan.hub_diameter * mm,
-            f"from {1.05 * shaft * mm:.4g} to {0.9 * fan.diameter * mm:.4g} mm",
-        ),
-    )
+        return
+    fit.above(seat, "fan.diameter", ", to stand on the flange")
+    fit.below(shield - 2 * fan.cowl, "fan.diameter", ", the flange")
+    low, high = 1.05 * shaft, 0.9 * fan.diameter
+    fit.need(low < fan.hub_diameter < high, "fan.hub_diameter", f"from {low * mm:.4g} to {high * mm:.4g} mm")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from geom.description.part import Helix
+from geom.description import shapes
+from geom.description.part import Helix, Prism
+from geom.families.nozzles import Nozzle, bored_ring, slices
 
 _END = 0.8  # of a rib: what a helix may take from the walls at its ends
 CLEAR = 0.55  # of a port's bore: from its middle to the end of the channel, a tenth more than the bore needs
@@ -36,6 +39,24 @@ class Turns:
         """Axial range of each (m)."""
         starts = [self.first + i * self.pitch for i in range(self.count)]
         return [(start, start + self.width) for start in starts]
+
+    @property
+    def liquid(self) -> list[Prism]:
+        """What flows in them."""
+        return [(shapes.ring(self.inner, self.top), *span) for span in self.rings]
+
+    def walls(self, inner: float, outer: float, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
+        """A wall between two radii and two levels (m) around the rings, with the bores of its ports."""
+        ends = [z0, *(z for ring in self.rings for z in ring), z1]
+        ribs = [(shapes.ring(inner, outer), a, b) for a, b in zip(ends[::2], ends[1::2])]
+        inside = [(shapes.ring(inner, self.inner), *span) for span in self.rings]
+        outside = [
+            (piece, low, high)
+            for a, b in self.rings
+            for low, high, ports in slices(a, b, bored)
+            for piece in bored_ring(self.top, outer, ports)
+        ]
+        return [*ribs, *inside, *outside]
 
     @property
     def blunt(self) -> float:

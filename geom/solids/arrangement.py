@@ -114,16 +114,8 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     a, b = (points[pieces[first, i]] - curves.centre[original] for i in (0, 1))
     angle = (np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])) % (2 * math.pi)
     sweep = np.where(curves.curved[original], angle, 0.0)
-    return Arrangement(
-        points,
-        pieces[first],
-        curves.centre[original],
-        curves.radius[original],
-        sweep,
-        left | within,
-        right | within,
-        corners,
-    )
+    at = (curves.centre[original], curves.radius[original], sweep)
+    return Arrangement(points, pieces[first], *at, left | within, right | within, corners)
 
 
 def covers(loops: Iterable[Loop], points: Floats) -> Flags:

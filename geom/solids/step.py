@@ -65,32 +65,24 @@ def import_step(path: str | Path) -> Machine:
     fluids = sidecar.get("fluids", {})
     _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
-    material_of = {
-        name: _material(name, sidecar.get("materials", {}), str(beside)) for name in prisms if name not in fluids
-    }
+    materials = sidecar.get("materials", {})
+    parts = tuple(
+        Part(name, _material(name, materials, str(beside)), prisms[name], role=is_.role, turns=is_.turns)
+        for name in prisms
+        if name not in fluids
+        for is_ in [what.get(name, NOTHING)]
+    )
+    spaces = tuple(
+        Part(name, kind, prisms[name], solid=False, role=what.get(name, NOTHING).role or _space(kind))
+        for name, kind in fluids.items()
+    )
     header = sidecar.get("machine", {})
     return Machine(
         name=checked_name(header.get("name", path.stem), f"{beside} [machine] name"),
         family="step",
         description=header.get("description", f"imported from {path.name}"),
-        parts=tuple(
-            Part(
-                name,
-                material_of[name],
-                prisms[name],
-                role=what.get(name, NOTHING).role,
-                turns=what.get(name, NOTHING).turns,
-            )
-            for name in prisms
-            if name not in fluids
-        ),
-        fluids=(
-            *(
-                Part(name, kind, prisms[name], solid=False, role=what.get(name, NOTHING).role or _space(kind))
-                for name, kind in fluids.items()
-            ),
-            Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR),
-        ),
+        parts=parts,
+        fluids=(*spaces, Part(INSIDE, "air", (), solid=False, role=Role.INNER_AIR)),
         sections={name: table for name, table in sidecar.items() if name in SECTIONS and name != "machine"},
         geometry=None,
         face_names={},
@@ -214,13 +206,10 @@ def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
 
 def _material(name: str, materials: Mapping[str, str], where: str) -> str:
     """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
-    fitting = (
-        [materials[name]]
-        if name in materials
-        else [m for pattern, m in materials.items() if fnmatchcase(name, pattern)]
-    )
-    if fitting:
-        return material(fitting[0]).name
+    fitting = (m for pattern, m in materials.items() if fnmatchcase(name, pattern))
+    word = materials[name] if name in materials else next(fitting, None)
+    if word is not None:
+        return material(word).name
     if name not in _habits():
         raise InputError(f"no material for the solid {name!r}", where, f'write [materials] "{name}" = "steel"')
     return _habits()[name]

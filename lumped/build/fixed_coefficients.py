@@ -18,7 +18,7 @@ from lumped.build.crosscheck import coefficients, fluid_nodes
 from lumped.build.load_cases import rated_watts
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.recovery import Shapes
-from lumped.machine.losses import place_of
+from lumped.machine.loss_sources import place_of
 from lumped.machine.motor import rated_inputs
 from lumped.model.network import Array, Network
 

@@ -13,7 +13,7 @@ from lumped.build.pipeline import means_network
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
 from lumped.condensation.reduction_error import LoadCases, random_load_cases
-from lumped.machine.losses import loss_watts
+from lumped.machine.loss_sources import loss_watts
 from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.matrices.quadratic import Quadratic
+from fem.matrices.elements import Elements
 from geom import Machine
 from geom.disk_cache import recalled
 from geom.meshing.mesh import NamedMesh
@@ -206,7 +206,7 @@ def size_of(machine: Machine, how: Meshing) -> tuple[int, int]:
 
 def _unknowns(machine: Machine, mesh: NamedMesh, part: int) -> int:
     tets = mesh.tets[mesh.region == part]
-    middles = len(Quadratic.on(tets, mesh.points).edges) if wound(machine, mesh.parts[part]) else 0
+    middles = len(Elements.on(tets, mesh.points, quadratic=True).edges) if wound(machine, mesh.parts[part]) else 0
     return len(np.unique(tets)) + middles
 
 

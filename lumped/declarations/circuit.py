@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
 from lumped.circuits.hydraulics import Duct
-from lumped.declarations.coolant import read_coolant
+from lumped.declarations.films import read_coolant
 from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
 from lumped.transfer.properties import air
@@ -32,21 +32,11 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
         item.close()
     if not passes:
         raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
-    out = Circuit(
-        name,
-        read_coolant(table),
-        table.number("at_degC", 40.0),
-        flow,
-        passes,
-        inlet,
-        of,
-        unit,
-        int(table.number("cells", 8)),
-        cooler,
-        table.number("pump_efficiency", 0.5),
-        table.word("films", "follow", ("follow", "fixed")) == "follow",
-        "" if closed or "backwards_from" not in table else table.word("backwards_from", None, boundaries),
-    )
+    coolant, at = read_coolant(table), table.number("at_degC", 40.0)
+    cells, pump = int(table.number("cells", 8)), table.number("pump_efficiency", 0.5)
+    follow = table.word("films", "follow", ("follow", "fixed")) == "follow"
+    back = "" if closed or "backwards_from" not in table else table.word("backwards_from", None, boundaries)
+    out = Circuit(name, coolant, at, flow, passes, inlet, of, unit, cells, cooler, pump, follow, back)
     for key in ("prior_sd", "film_prior_sd"):
         table.raw(key)
     table.close()
@@ -69,27 +59,17 @@ def _pass(table: Table, nodes: list[str]) -> Pass:
             raise table.error(f"unknown wall '{wall}'", suggestion(wall, nodes))
     if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
         raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
-    duct = Duct(
-        1e-3 * table.number("width_mm"),
-        1e-3 * table.number("height_mm"),
-        table.number("length_m"),
-        int(table.number("bends", 0)),
-        1e-3 * table.number("coil_diameter_mm", 0.0),
-        int(table.number("parallel", 1)),
-    )
-    return Pass(duct, walls)
+    n = table.number
+    size = (1e-3 * n("width_mm"), 1e-3 * n("height_mm"), n("length_m"))
+    return Pass(Duct(*size, int(n("bends", 0)), 1e-3 * n("coil_diameter_mm", 0.0), int(n("parallel", 1))), walls)
 
 
 def _cooler(table: Table, boundaries: list[str]) -> Cooler:
     inner = Table(table.raw("reservoir"), f"{table.where} reservoir")
     flow, of, unit = _flow(inner, "air_flow")
     carries = air(AIR_AT_C).rho * air(AIR_AT_C).cp
-    out = Cooler(
-        1e-3 * inner.number("volume_l"),
-        inner.number("UA_W_K"),
-        inner.word("air", None, boundaries),
-        Flow(carries * (PER_M3S[unit] if of else flow), of),
-        ARRANGEMENTS[inner.word("arrangement", "crossflow", ARRANGEMENTS)],
-    )
+    volume, UA, around = 1e-3 * inner.number("volume_l"), inner.number("UA_W_K"), inner.word("air", None, boundaries)
+    arrangement = ARRANGEMENTS[inner.word("arrangement", "crossflow", ARRANGEMENTS)]
+    out = Cooler(volume, UA, around, Flow(carries * (PER_M3S[unit] if of else flow), of), arrangement)
     inner.close()
     return out

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 from geom.plugins import plugins
 from lumped.correlations import Info, film_tabulated, tabulated
 from lumped.declarations.separated import Film, FilmOver, following
 from lumped.schemas.reader import Table
+from lumped.transfer.coolant import NAMES, Coolant, coolant
 from lumped.transfer.laws import FilmTable, Fixed, Law
 from lumped.transfer.laws import Table as TableLaw
 from lumped.transfer.properties import Fluid, air
@@ -26,7 +27,7 @@ def natural(table: Table) -> Law:
 def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
     """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
-    surfaces = {**NATURAL, **plugins("still_air")}
+    surfaces = {**still_surfaces(), **plugins("still_air")}
     film, factor = surfaces[table.word("surface", None, surfaces)](table, film_air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
@@ -45,122 +46,78 @@ def millimetres(table: Table, key: str) -> float:
     return 1e-3 * table.number(key)
 
 
-def _cylinder(table: Table, of: Of) -> Still:
-    from lumped.correlations.natural import churchill_chu_cylinder
+@cache
+def still_surfaces() -> dict[str, Callable[[Table, Of], Still]]:
+    """[links.NAME.natural] surface -> its film; loaded where one is asked for."""
+    from lumped.correlations import fins, natural
 
-    return partial(churchill_chu_cylinder, _size(table), of=of)
+    def fin_array(t: Table, of: Of) -> Still:
+        return partial(
+            fins.van_de_pol_tierney, millimetres(t, "depth_mm"), millimetres(t, "spacing_mm"), _size(t), of=of
+        )
 
-
-def _plate(table: Table, of: Of) -> Still:
-    from lumped.correlations.natural import churchill_chu_plate
-
-    return partial(churchill_chu_plate, _size(table), of=of)
-
-
-def _level(upward: bool, table: Table, of: Of) -> Still:
-    from lumped.correlations.natural import mcadams_plate
-
-    return partial(mcadams_plate, _size(table), upward=upward, of=of)
-
-
-def _upright(table: Table, of: Of) -> Still:
-    from lumped.correlations.natural import popiel_cylinder
-
-    return partial(popiel_cylinder, _size(table), millimetres(table, "diameter_mm"), of=of)
-
-
-def _vertical_fins(table: Table, of: Of) -> Still:
-    from lumped.correlations.fins import van_de_pol_tierney
-
-    depth, spacing = millimetres(table, "depth_mm"), millimetres(table, "spacing_mm")
-    return partial(van_de_pol_tierney, depth, spacing, _size(table), of=of)
+    return {
+        "horizontal cylinder": lambda t, of: partial(natural.churchill_chu_cylinder, _size(t), of=of),
+        "vertical plate": lambda t, of: partial(natural.churchill_chu_plate, _size(t), of=of),
+        "plate facing up": lambda t, of: partial(natural.mcadams_plate, _size(t), upward=True, of=of),
+        "plate facing down": lambda t, of: partial(natural.mcadams_plate, _size(t), upward=False, of=of),
+        "vertical cylinder": lambda t, of: partial(
+            natural.popiel_cylinder, _size(t), millimetres(t, "diameter_mm"), of=of
+        ),
+        "vertical fins": fin_array,
+        "horizontal fins": lambda t, of: partial(fins.jones_smith, millimetres(t, "spacing_mm"), of=of),
+        "parallel plates": lambda t, of: partial(fins.elenbaas, millimetres(t, "spacing_mm"), _size(t), of=of),
+    }
 
 
-def _horizontal_fins(table: Table, of: Of) -> Still:
-    from lumped.correlations.fins import jones_smith
+@cache
+def moving_surfaces() -> dict[str, Callable[[Table, Fluid], Film]]:
+    """[links.NAME.forced] surface -> its film; loaded where one is asked for."""
+    from lumped.correlations import ducts, end_space, fins, forced
 
-    return partial(jones_smith, millimetres(table, "spacing_mm"), of=of)
+    def channel(t: Table, fluid: Fluid) -> Film:
+        wide, decay = millimetres(t, "diameter_mm"), partial(fins.straight_decay, t.number("speed_at_end", 1.0))
+        blown = partial(fins.heiles_decaying, diameter=wide, length=_size(t), decay=decay, fluid=fluid)
+        return partial(blown, turbulence=t.number("turbulence", 1.7))
 
+    def duct(t: Table, fluid: Fluid) -> Film:
+        return partial(ducts.duct_film, diameter=millimetres(t, "diameter_mm"), length=_size(t), fluid=fluid)
 
-def _plates(table: Table, of: Of) -> Still:
-    from lumped.correlations.fins import elenbaas
+    def helix(t: Table, fluid: Fluid) -> Film:
+        inner, coil = millimetres(t, "diameter_mm"), millimetres(t, "coil_diameter_mm")
+        return partial(ducts.schmidt_helical, diameter=inner, coil_diameter=coil, fluid=fluid)
 
-    return partial(elenbaas, millimetres(table, "spacing_mm"), _size(table), of=of)
+    def stirred(t: Table, _: Fluid) -> Film:
+        usual = zip(("k1", "k2", "k3"), end_space.SCHUBERT)
+        return partial(end_space.end_space, **{key: t.number(key, value) for key, value in usual})
 
-
-NATURAL: dict[str, Callable[[Table, Of], Still]] = {
-    "horizontal cylinder": _cylinder,
-    "vertical plate": _plate,
-    "plate facing up": partial(_level, True),
-    "plate facing down": partial(_level, False),
-    "vertical cylinder": _upright,
-    "vertical fins": _vertical_fins,
-    "horizontal fins": _horizontal_fins,
-    "parallel plates": _plates,
-}
-
-
-def _duct(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.ducts import duct_film
-
-    return partial(duct_film, diameter=millimetres(table, "diameter_mm"), length=_size(table), fluid=fluid)
-
-
-def _fin_channel(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.fins import heiles_decaying, straight_decay
-
-    decay, turbulence = partial(straight_decay, table.number("speed_at_end", 1.0)), table.number("turbulence", 1.7)
-    return partial(
-        heiles_decaying,
-        diameter=millimetres(table, "diameter_mm"),
-        length=_size(table),
-        decay=decay,
-        turbulence=turbulence,
-        fluid=fluid,
-    )
+    return {
+        "plate": lambda t, fluid: partial(forced.flat_plate, length=_size(t), fluid=fluid),
+        "cylinder": lambda t, fluid: partial(forced.churchill_bernstein, diameter=_size(t), fluid=fluid),
+        "fin channel": channel,
+        "duct": duct,
+        "helical pipe": helix,
+        "end space": stirred,
+    }
 
 
-def _flat(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.forced import flat_plate
-
-    return partial(flat_plate, length=_size(table), fluid=fluid)
-
-
-def _across(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.forced import churchill_bernstein
-
-    return partial(churchill_bernstein, diameter=_size(table), fluid=fluid)
-
-
-def _end_space(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.end_space import SCHUBERT, end_space
-
-    return partial(end_space, **{k: table.number(k, usual) for k, usual in zip(("k1", "k2", "k3"), SCHUBERT)})
-
-
-def _helix(table: Table, fluid: Fluid) -> Film:
-    from lumped.correlations.ducts import schmidt_helical
-
-    inner, coil = millimetres(table, "diameter_mm"), millimetres(table, "coil_diameter_mm")
-    return partial(schmidt_helical, diameter=inner, coil_diameter=coil, fluid=fluid)
-
-
-FORCED: dict[str, Callable[[Table, Fluid], Film]] = {
-    "plate": _flat,
-    "cylinder": _across,
-    "fin channel": _fin_channel,
-    "duct": _duct,
-    "helical pipe": _helix,
-    "end space": _end_space,
-}
+def read_coolant(table: Table) -> Coolant:
+    """T (degC) -> Fluid of the table's key `coolant`: a name, or a glycol mixture with its share."""
+    if isinstance(table.raw("coolant"), str):
+        return coolant(table.word("coolant", None, NAMES))
+    inner = Table(table.raw("coolant", {}), f"{table.where} coolant")
+    name = inner.word("name", None, NAMES)
+    shares = {key: inner.number(key) for key in ("mass_percent", "volume_percent") if key in inner}
+    inner.close()
+    return coolant(name, **shares)
 
 
 def over(table: Table) -> list[Law]:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
     liquid = "coolant" in table and table.raw("coolant") != "air"
-    surfaces = {**FORCED, **plugins("moving_air")}
+    surfaces = {**moving_surfaces(), **plugins("moving_air")}
     film, scale = surfaces[table.word("surface", None, surfaces)], table.number("m_s_per_unit", 1.0)
-    fluid, usual = (_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)
+    fluid, usual = (read_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)
     of, top = table.word("speed"), table.number("up_to_m_s", 50.0) / scale
     return film_laws(table, of, lambda x: partial(_scaled, film(table, x), scale), fluid, usual, top, liquid)
 
@@ -172,12 +129,6 @@ def film_laws(
     if "fluid_degC" in table:
         return [FilmOver(of, film(fluid(table.number("fluid_degC"))), top)]
     return following(of, film, fluid, usual_degC, top, liquid)
-
-
-def _coolant(table: Table) -> Of:
-    from lumped.declarations.coolant import read_coolant
-
-    return read_coolant(table)
 
 
 def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 from geom.constants import L_MIN, M3_H
@@ -46,29 +47,15 @@ def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
     return (InputPower(coefficient[0], of) if of else Fixed(coefficient[0])), coefficient[1]
 
 
+def _film(read: Callable[[Table], Law | list[Law]], table: Table, has_area: bool) -> Read:
+    """A mechanism per area."""
+    _needs_area(table, has_area)
+    return read(table), True
+
+
 def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
     _needs_area(table, has_area)
     return Fixed(table.number("emissivity") * table.number("view_factor", 1.0), Radiation()), True
-
-
-def _natural(table: Table, has_area: bool) -> tuple[Law, bool]:
-    _needs_area(table, has_area)
-    return natural(table), True
-
-
-def _gap(table: Table, has_area: bool) -> Read:
-    _needs_area(table, has_area)
-    return gap(table), True
-
-
-def _rotating(table: Table, has_area: bool) -> Read:
-    _needs_area(table, has_area)
-    return rotating(table), True
-
-
-def _contact(table: Table, has_area: bool) -> tuple[Law, bool]:
-    _needs_area(table, has_area)
-    return contact(table), True
 
 
 def _forced(table: Table, has_area: bool) -> Read:
@@ -81,11 +68,6 @@ def _forced(table: Table, has_area: bool) -> Read:
         raise table.error("forced without an input", right)
     assert coefficient is not None
     return InputPower(coefficient[0], of), coefficient[1]
-
-
-def _fan(table: Table, has_area: bool) -> tuple[Law, bool]:
-    _needs_area(table, has_area)
-    return shaft_fan(table), True
 
 
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
@@ -105,22 +87,17 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
     return InputPower(1.0, powers(table), TableLaw(difference, value)), per_area
 
 
-def _mixed(table: Table, has_area: bool) -> Read:
-    _needs_area(table, has_area)
-    return mixed(table), True
-
-
 MECHANISMS: dict[str, Callable[[Table, bool], Read]] = {
-    "natural": _natural,
+    "natural": partial(_film, natural),
     "radiation": _radiation,
     "forced": _forced,
-    "gap": _gap,
-    "rotating": _rotating,
-    "contact": _contact,
-    "fan": _fan,
+    "gap": partial(_film, gap),
+    "rotating": partial(_film, rotating),
+    "contact": partial(_film, contact),
+    "fan": partial(_film, shaft_fan),
     "power": _power,
     "table": _tabled,
-    "mixed": _mixed,
+    "mixed": partial(_film, mixed),
 }
 
 

@@ -11,16 +11,16 @@ import numpy as np
 
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from lumped.declarations.identity_tables import read_identities, read_quantities
 from lumped.declarations.links import flow_column, flow_law, mechanisms
-from lumped.declarations.losses import deducted, loss_kinds, loss_laws
+from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
-from lumped.declarations.roles import read_identities, read_quantities
 from lumped.declarations.separated import Share
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
 from lumped.model.soundness import checked_names, checked_network, checked_path
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.losses import EDDY
+from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 

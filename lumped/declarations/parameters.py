@@ -8,9 +8,9 @@ from dataclasses import replace
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
-from lumped.sources.losses import EDDY
+from lumped.sources.loss_laws import EDDY
 
-MAPPINGS = {
+MAPPINGS = {  # neutral value, least, most
     "log": (1.0, 1e-3, 1e3),
     "amplitude": (0.0, -1e6, 1e6),
     "relative": (0.0, -1.0, 1e3),
@@ -23,10 +23,8 @@ def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) ->
     parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
     names = [p.name for p in parameters]
     for name in (n for n in names if names.count(n) > 1):
-        raise top.error(
-            f"two parameters are called '{name}': prior_sd in a table makes one of that name",
-            "prior_sd there, or [parameters.NAME] of another name",
-        )
+        what = f"two parameters are called '{name}': prior_sd in a table makes one of that name"
+        raise top.error(what, "prior_sd there, or [parameters.NAME] of another name")
     return tuple(replace(p, targets=(*p.targets, *_companions(network, p))) for p in parameters)
 
 
@@ -40,14 +38,10 @@ def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Pa
     """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
     out = []
     items: list[Link | Source] = [*network.links, *network.sources]
-    for section, prefix, target in (
-        ("links", "link", "link:"),
-        ("streams", "stream", "stream:"),
-        ("losses", "loss", "loss:"),
-    ):
+    for section, prefix in (("links", "link"), ("streams", "stream"), ("losses", "loss")):
         for name, table in top.tables(section).items():
             if "prior_sd" in table:
-                stem = f"{target}{name}"
+                stem = f"{prefix}:{name}"
                 mine = [i.name for i in items if i.name == stem or i.name.startswith(f"{stem}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
                 sd, flow = table.number("prior_sd"), section == "streams"
@@ -95,20 +89,11 @@ def _parameter(name: str, table: Table) -> Parameter:
     targets = dict.fromkeys(table.members("acts_on"), 1.0) if listed else table.shares("acts_on", of="acts_on")
     if not targets:
         raise table.error("acts_on = {} names nothing", 'acts_on = ["link:NAME", ...]')
-    parameter = Parameter(
-        name,
-        tuple(targets.items()),
-        table.number("value", neutral),
-        table.word("unit", "1"),
-        table.number("low", low),
-        table.number("high", high),
-        table.number("prior_sd", 0.3, of="parameters.prior_sd"),
-        mapping,  # type: ignore[arg-type]
-        neutral,
-        int(table.number("sign", 0)),
-        table.word("source", ""),
-        table.flag("flow", False),
-    )
+    value, unit = table.number("value", neutral), table.word("unit", "1")
+    low, high = table.number("low", low), table.number("high", high)
+    sd, sign = table.number("prior_sd", 0.3, of="parameters.prior_sd"), int(table.number("sign", 0))
+    limits = (value, unit, low, high, sd, mapping, neutral, sign)
+    parameter = Parameter(name, tuple(targets.items()), *limits, table.word("source", ""), table.flag("flow", False))  # type: ignore[arg-type]
     table.close()
     return _checked(parameter, table)
 

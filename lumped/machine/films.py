@@ -9,10 +9,10 @@ from functools import cached_property
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.machine.air import channel_film, fan_shares, gap_film, stirred
-from lumped.machine.coolant import Cooling, cooling_of, jacket_film
+from lumped.machine.jackets import Cooling, cooling_of, jacket_film
 from lumped.machine.outer import outer_films
+from lumped.machine.part_identities import turning
 from lumped.machine.path import stem
-from lumped.machine.roles import turning
 from lumped.machine.settings import Fan, Films, read_fan, read_films
 from lumped.machine.shapes import Gap, gap_of, radius
 from lumped.transfer.laws import Inputs, Law

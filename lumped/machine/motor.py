@@ -29,13 +29,13 @@ from geom.description.machine import Machine
 from geom.description.part import Part
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
-from lumped.machine.coolant import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.machine.films import Surroundings, face_films, nominal, surroundings
-from lumped.machine.losses import sources
+from lumped.machine.jackets import FLOW, INLET, coolant_streams, outlet_film, outlets
+from lumped.machine.loss_sources import sources
 from lumped.machine.means import means
 from lumped.machine.parameters import parameters
+from lumped.machine.part_identities import declared, with_channels
 from lumped.machine.path import cells_of, stem
-from lumped.machine.roles import declared, with_channels
 from lumped.machine.settings import contact_coefficients
 from lumped.model.network import Link, Network, Place
 

@@ -21,7 +21,7 @@ from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_pl
 from lumped.correlations.streams import streamed
 from lumped.correlations.tabulate import film_tabulated
 from lumped.machine.settings import Films
-from lumped.machine.shapes import Extent, Fins, extent, fins_of
+from lumped.machine.shapes import Extent, extent, fins_of
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation
 from lumped.transfer.properties import Fluid, air
@@ -76,15 +76,9 @@ def cowl_of(machine: Machine) -> Cowl | None:
     if data is None:
         return None
     t = Table(data, f"{machine.name} [fans.cowl]")
-    cowl = Cowl(
-        t.number("air_speed_m_s"),
-        t.number("at_rpm"),
-        t.number("end_share", 0.2),
-        t.number("rear_share", 0.774),
-        t.number("front_share", 0.205),
-        t.number("turbulence", 1.7),
-        t.word("rear", "left", ("left", "right")),
-    )
+    speed, turbulence = (t.number("air_speed_m_s"), t.number("at_rpm")), t.number("turbulence", 1.7)
+    shares = (t.number("end_share", 0.2), t.number("rear_share", 0.774), t.number("front_share", 0.205))
+    cowl = Cowl(*speed, *shares, turbulence, t.word("rear", "left", ("left", "right")))
     t.close()
     return cowl
 
@@ -112,15 +106,8 @@ def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     t = Table(table.get(part, table.get("default")), f"{machine.name} [films.outer] {part}")
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
-    outer = Outer(
-        surface,
-        size,
-        t.number("emissivity", usual.emissivity),
-        t.number("view", usual.view),
-        t.number("factor", usual.factor),
-        usual.spacing,
-        _fan_law(t),
-    )
+    radiates = (t.number("emissivity", usual.emissivity), t.number("view", usual.view))
+    outer = Outer(surface, size, *radiates, t.number("factor", usual.factor), usual.spacing, _fan_law(t))
     t.close()
     return outer
 
@@ -214,6 +201,3 @@ def _excess(blown: Streamed, outer: Outer) -> Streamed:
     still = still_air(outer)
     still = replace(still, value=tuple(outer.factor * h for h in still.value))
     return replace(blown, table=replace(blown.table, still=still))
-
-
-__all__ = ["Cowl", "Fins", "Outer", "cowl_of", "outer_films", "outer_of", "still_air"]

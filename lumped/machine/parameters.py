@@ -9,25 +9,17 @@ from geom.errors import InputError
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
-from lumped.sources.losses import EDDY
+from lumped.sources.loss_laws import EDDY
 
-LOSS_SPREAD = {
-    "copper": 0.05,
-    "iron": 0.25,
-    "friction": 0.25,
-    "bearing": 0.25,
-    "brush": 0.15,
-    "windage": 0.3,
-    "magnet": 0.5,
-    "stray": 0.5,
-    "switching": 0.3,
-    "constant": 0.3,
-    "measured": 0.1,
-    "ripple": 0.3,
-    "map": 0.1,
-    "inverter": 0.15,
-    "pwm": 0.5,
-}
+SPREADS = (  # log-sd, kinds of losses
+    (0.05, "copper"),
+    (0.1, "map measured"),
+    (0.15, "brush inverter"),
+    (0.25, "iron friction bearing"),
+    (0.3, "windage switching constant ripple"),
+    (0.5, "magnet stray pwm"),
+)
+LOSS_SPREAD = {kind: sd for sd, kinds in SPREADS for kind in kinds.split()}
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
 
 
@@ -64,33 +56,21 @@ def _films(faces: Sequence[Place], films: Sequence[Link]) -> list[Parameter]:
 
 
 def _contacts(network: Network) -> list[Parameter]:
-    return [
-        Parameter(
-            link.name.replace(":", ".", 1),
-            ((link.name, 1.0),),
-            prior_sd=0.3,
-            low=0.02,
-            high=50.0,
-            source="spread of published contact gaps",
-        )
-        for link in network.links
-        if link.kind == "contact"
-    ]
+    words, out = "spread of published contact gaps", []
+    for name in (link.name for link in network.links if link.kind == "contact"):
+        short = name.replace(":", ".", 1)
+        out.append(Parameter(short, ((name, 1.0),), prior_sd=0.3, low=0.02, high=50.0, source=words))
+    return out
 
 
 def _losses(losses: Sequence[Source]) -> list[Parameter]:
-    return [
-        Parameter(
-            source.name.replace(":", ".", 1),
-            tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name),
-            prior_sd=LOSS_SPREAD[source.kind],
-            low=0.1,
-            high=10.0,
-            source="spread of published loss formulas",
-        )
-        for source in losses
-        if not source.name.endswith(EDDY)
-    ]
+    out = []
+    for source in (s for s in losses if not s.name.endswith(EDDY)):
+        name, spread = source.name.replace(":", ".", 1), LOSS_SPREAD[source.kind]
+        acts = tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name)
+        words = "spread of published loss formulas"
+        out.append(Parameter(name, acts, prior_sd=spread, low=0.1, high=10.0, source=words))
+    return out
 
 
 def _capacity(network: Network) -> Parameter:
@@ -128,7 +108,6 @@ def _conductivities(machine: Machine, network: Network) -> list[Parameter]:
         spread = max(machine.material_of(part).spread for part in parts)
         acts = tuple((inner[part], 1.0) for part in parts if part in inner)
         if acts:
-            out.append(
-                Parameter(f"k.{group}", acts, prior_sd=spread, low=0.05, high=20.0, source="spread of materials")
-            )
+            words = "spread of materials"
+            out.append(Parameter(f"k.{group}", acts, prior_sd=spread, low=0.05, high=20.0, source=words))
     return out

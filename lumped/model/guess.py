@@ -12,13 +12,13 @@ from lumped.model.rotation import turning
 from lumped.model.topology import Topology, conductance, fixed
 
 if TYPE_CHECKING:
-    from lumped.model.network import Network
+    from lumped.model.structure import Structure
 
 Evidence = tuple[Role, str]
 MUCH = 3.0  # a boundary that takes more than this times what the surroundings take is a coolant
 
 
-def identities(network: Network) -> Mapping[str, Identity]:
+def identities(network: Structure) -> Mapping[str, Identity]:
     """Name of a part, node, fluid or boundary -> what it is, with the evidence where it is a guess."""
     top = Topology(network)
     names = (*top.bodies, *top.fluids, *network.boundaries)

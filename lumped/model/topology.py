@@ -11,7 +11,7 @@ from lumped.transfer.laws import CONSTANT
 from lumped.transfer.terms_value import temperature_value
 
 if TYPE_CHECKING:
-    from lumped.model.network import Link, Network
+    from lumped.model.structure import Link, Structure
 
 SHARE = 0.2  # of a loss: a node that gets less of it is not the place where it is made
 FRICTION = frozenset({"friction", "bearing"})
@@ -23,7 +23,7 @@ REFERENCE_K = 30.0  # difference over which a film of free convection is looked 
 class Topology:
     """The network's own links and sources; those that effects and disturbances brought are left out."""
 
-    network: Network
+    network: Structure
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
@@ -135,7 +135,7 @@ def fixed(link: Link) -> bool:
     return not link.law.reads and link.law.temperature == CONSTANT
 
 
-def conductance(network: Network, link: Link) -> float:
+def conductance(network: Structure, link: Link) -> float:
     """W/K between the means of its ends, REFERENCE_K apart; 0 of a link that follows an input."""
     if link.law.reads:
         return 0.0

@@ -1,12 +1,15 @@
 """JSON Schemas of all TOML files: for editors, and for what error messages say a key means.
 
-python -m lumped.schemas.schema    writes the bounds of bounds.py into all of them, and machine.json from
-                                   the machine families' own parameters
+Their text is in KIND.json beside this file; bounds.py has the bounds of all numbers, and the families of machines have
+the keys of theirs.
+
+python -m lumped.schemas.schema FOLDER    writes the schemas, out/schemas where no folder is named
 """
 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -24,8 +27,11 @@ Schema = dict[str, Any]
 
 @cache
 def schema(name: str) -> Schema:
-    """The schema of one kind of file, one of FILES."""
-    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    """The schema of one kind of file, one of FILES, with the bounds of every number."""
+    if name == "machine":
+        return machine_schema()
+    out: Schema = bounded(json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8")))
+    return out
 
 
 @cache
@@ -132,16 +138,15 @@ def _owned(key: str, table: str) -> tuple[str, str]:
     return ("shares" if key in COMMON else key), table
 
 
-def wanted() -> Iterator[tuple[Path, Schema]]:
-    """Every schema file and what it should hold."""
-    for name in FILES:
-        yield FOLDER / f"{name}.json", machine_schema() if name == "machine" else bounded(schema(name))
-
-
-def write_schemas() -> None:
-    for path, document in wanted():
-        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+def write_schemas(folder: Path | str) -> list[Path]:
+    """KIND.json for every kind of file; returns what was written."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.json" for name in FILES]
+    for path in paths:
+        path.write_text(json.dumps(schema(path.stem), indent=1) + "\n", encoding="utf-8")
+    return paths
 
 
 if __name__ == "__main__":
-    write_schemas()
+    write_schemas(*(sys.argv[1:] or ["out/schemas"]))

@@ -5,10 +5,12 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from geom import drawing_of, load_machine, write_pages
+from geom import load_machine
 from geom.description import shapes
 from geom.drawings.views import path
 from geom.families import families
+from scripts.drawing import drawing_of
+from scripts.family_pages import write_pages
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -71,4 +73,6 @@ def test_page_lists_every_parameter_with_its_range(pages, family):
 def test_pages_in_the_docs_are_those_the_code_writes(pages, root):
     for page in pages:
         for file in (page, page.with_suffix(".svg")):
-            assert (root / "docs" / "families" / file.name).read_text() == file.read_text(), "run geom.write_pages"
+            assert (root / "docs" / "families" / file.name).read_text() == file.read_text(), (
+                "run python -m scripts.family_pages"
+            )

@@ -8,9 +8,9 @@ WHOLE = {"startswith", "endswith"}
 PIECES = {"split", "partition", "rpartition", "rsplit"}
 ALLOWED = {  # file -> what its strings are, none of them a user's name for a part, an input or a test
     "geom/description/parameters.py": "keys of geometry, GROUP.NAME",
+    "geom/families/fit.py": "keys of geometry, GROUP.NAME",
     "geom/drawings/gallery.py": "a choice of the family",
     "geom/description/reading.py": "keys of geometry, NAME_mm and NAME_ratio",
-    "lumped/schemas/keys_page.py": "keywords of JSON Schema",
     "lumped/schemas/schema.py": "keywords of JSON Schema",
     "lumped/schemas/bounds.py": "keys of files by their unit, NAME_mm",
     "measured/recordings/consistency.py": "names of inputs by the unit in them, NAME_W: for a warning only",
@@ -28,7 +28,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "lumped/machine/path.py": "cells that fem.solvers.streams names itself, FLUID@3",
     "lumped/machine/shapes.py": "a choice of the family",
     "lumped/machine/bases.py": "faces and shapes that the network names itself",
-    "lumped/machine/parameters.py": "streams that air.py and coolant.py name themselves",
+    "lumped/machine/parameters.py": "streams that air.py and jackets.py name themselves",
     "lumped/condensation/basis_cache.py": "keys of a file of shapes",
     "lumped/schemas/reader.py": "a heading in brackets, a hint at a key",
     "lumped/declarations/network.py": "targets of parameters, link:NAME",
@@ -51,7 +51,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "viz/figures/sankey.py": "streams that a machine's network names itself, fan:CELL",
     "geom/description/bases.py": "contacts, A|B",
     "geom/meshing/meshio_io.py": "keys of a file of meshes",
-    "lumped/machine/roles.py": "contacts, A|B",
+    "lumped/machine/part_identities.py": "contacts, A|B",
     "validation/inference/evidence.py": "places of an effect, A|B",
     "viz/pages/report.py": "effects by their own name, KIND@PLACE",
     "thermoscope/commands/model/crosscheck.py": "shapes that the network names itself, PART#1",

@@ -10,7 +10,7 @@ from recordings import case_of
 
 from lumped.declarations.network import read_network
 from lumped.model.build import node_source
-from lumped.sources.losses import PowerLoss
+from lumped.sources.loss_laws import PowerLoss
 
 CYCLE = "[cycle]\nstep_s = 10\n[boundaries]\nambient = 20\n"
 DUTY = '[duty]\ntype = "S3"\nperiod_s = 600\nduty_percent = 40\ncycles = 3\nstep_s = 10\n[load]\ncurrent_A = 100\n'

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from lumped.integration.simulate import Record
 from lumped.model.build import bare_network, node_link, node_source, stream
 from lumped.model.network import Network, Parameter
-from lumped.sources.losses import CopperLoss
+from lumped.sources.loss_laws import CopperLoss
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
 
 SMALLEST = 0.01  # K: |dT|^p is smoothed below, as the tool documents

@@ -10,10 +10,11 @@ import pytest
 
 from geom import import_step, load_machine
 from geom.errors import InputError
-from geom.limits import LIMITS, PAGE, page
+from geom.limits import LIMITS
 from geom.meshing.mesher import COARSE, build_mesh
 from measured.importing.source import read_source
 from measured.recordings.formats import read_recording
+from scripts.limits_page import PAGE, page
 
 HEADER = "time_s,T_winding,air\n"
 ROWS = [[float(k), 20.0 + k, 20.0] for k in range(40)]
@@ -48,7 +49,7 @@ FILES = {"a.csv": text, "a.csv.gz": text, "a.xlsx": book, "a.parquet": parquet}
 
 
 def test_page_of_limits_is_current():
-    """After a change: python -m geom.limits"""
+    """After a change: python -m scripts.limits_page"""
     assert PAGE.read_text(encoding="utf-8") == page()
 
 

@@ -24,7 +24,7 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.losses import CopperLoss
+from lumped.sources.loss_laws import CopperLoss
 from lumped.transfer.laws import Law
 from measured.recordings.consistency import is_amount
 from measured.recordings.grid import LEAST, bridged

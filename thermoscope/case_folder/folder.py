@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.losses import ASSUMED, ASSUMED_W, checked_losses
+from lumped.machine.loss_sources import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
 from measured.case import Case, LowFidelity, Reference, Test

@@ -118,7 +118,7 @@ class Machine:
         Raises InputError for an unknown input, and where the machine does not settle: at a rating for an hour, say.
         """
         from lumped.build.crosscheck import crosscheck
-        from lumped.machine.losses import loss_shares
+        from lumped.machine.loss_sources import loss_shares
 
         unknown = sorted(set(inputs) - set(self.rated))
         if unknown:

@@ -59,21 +59,8 @@ def _features(g: Geometry) -> Features:
     return Features(air_gap=g.stator.air_gap)
 
 
-PMSM = Family(
-    "pmsm",
-    "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket",
-    (*parameters.COMMON, *parameters.MAGNETS, *parameters.FAN),
-    build_pmsm,
-    _FACES,
-    ports,
-    _features,
-)
-TEFC = Family(
-    "tefc",
-    "Totally enclosed cage machine with axial or radial fins",
-    parameters.TEFC,
-    build_tefc,
-    _FACES,
-    ports,
-    _features,
-)
+_PMSM = "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket"
+_TEFC = "Totally enclosed cage machine with axial or radial fins"
+_WITH_MAGNETS = (*parameters.COMMON, *parameters.MAGNETS, *parameters.FAN)
+PMSM = Family("pmsm", _PMSM, _WITH_MAGNETS, build_pmsm, _FACES, ports, _features)
+TEFC = Family("tefc", _TEFC, parameters.TEFC, build_tefc, _FACES, ports, _features)

@@ -9,7 +9,7 @@ from geom.description.geometry import Geometry
 from geom.description.part import CadShape, Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import Nozzle, bored_ring, slices
+from geom.families.nozzles import Nozzle
 from geom.families.radial_flux.layout import Layout
 from geom.families.turns import Turns
 
@@ -40,17 +40,13 @@ def _skirts(g: Geometry, at: Layout) -> tuple[Prism, ...]:
 
 
 def _housing(g: Geometry, at: Layout) -> tuple[Part, ...]:
-    prisms = {"none": _none, "plain": _plain, "axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}
-    walls = prisms[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls, cad_shape=_cad_shape(g, at), role=Role.HOUSING),) if walls else ()
-
-
-def _none(g: Geometry, at: Layout) -> tuple[Prism, ...]:
-    return ()
-
-
-def _plain(g: Geometry, at: Layout) -> tuple[Prism, ...]:
-    return ((shapes.ring(at.core, at.wall), at.cap0, at.cap1),)
+    if g.housing.kind == "none":
+        return ()
+    if g.housing.kind == "plain":
+        walls: tuple[Prism, ...] = ((shapes.ring(at.core, at.wall), at.cap0, at.cap1),)
+    else:
+        walls = {"axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}[g.housing.kind](g, at)
+    return (Part("housing", "aluminium-cast", walls, cad_shape=_cad_shape(g, at), role=Role.HOUSING),)
 
 
 def _axial_fins(g: Geometry, at: Layout) -> tuple[Prism, ...]:
@@ -92,26 +88,15 @@ def fin_spans(g: Geometry, at: Layout) -> list[tuple[float, float]]:
 
 
 def _spiral(g: Geometry, at: Layout) -> tuple[Prism, ...]:
-    solid, rings = shapes.ring(at.core, at.body), turns_of(g, at).rings
-    ends = [at.cap0, *(z for turn in rings for z in turn), at.cap1]
-    ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
-    outer = [
-        (piece, low, high)
-        for a, b in rings
-        for low, high, ports in slices(a, b, nozzles(g, at))
-        for piece in bored_ring(at.channel, at.body, ports)
-    ]
-    return (*ribs, *((shapes.ring(at.core, at.wall), a, b) for a, b in rings), *outer)
+    return tuple(turns_of(g, at).walls(at.core, at.body, at.cap0, at.cap1, nozzles(g, at)))
 
 
 def _cad_shape(g: Geometry, at: Layout) -> CadShape | None:
     """A spiral jacket as it is made: a helix for the rings, round bores."""
     if g.housing.kind != "spiral":
         return None
-    drills = (nozzle.drill for nozzle in nozzles(g, at))
-    return CadShape(
-        ((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (turns_of(g, at).helix(g.housing.port), *drills)
-    )
+    helix, drills = turns_of(g, at).helix(g.housing.port), (nozzle.drill for nozzle in nozzles(g, at))
+    return CadShape(((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (helix, *drills))
 
 
 def turns_of(g: Geometry, at: Layout) -> Turns:
@@ -133,11 +118,8 @@ def coolant(g: Geometry, at: Layout) -> tuple[Part, ...]:
     """What flows in the jacket, to the ends of its ports."""
     if g.housing.kind != "spiral":
         return ()
-    ring = shapes.ring(at.wall, at.channel)
-    rings = ((ring, a, b) for a, b in turns_of(g, at).rings)
-    return (
-        fluid("jacket", *rings, *(nozzle.neck for nozzle in nozzles(g, at)), material="glycol-50", role=Role.COOLANT),
-    )
+    necks = (nozzle.neck for nozzle in nozzles(g, at))
+    return (fluid("jacket", *turns_of(g, at).liquid, *necks, material="glycol-50", role=Role.COOLANT),)
 
 
 def ports(g: Geometry) -> tuple[Port, ...]:
@@ -148,11 +130,9 @@ def ports(g: Geometry) -> tuple[Port, ...]:
 def _base(g: Geometry, at: Layout) -> tuple[Part, ...]:
     if g.base.kind == "none":
         return ()
-    half, sweep = g.foot.width / 2, 2 * math.asin(g.foot.width / 2 / at.body)
-    top = -shapes.on_circle(at.body, half)
-    pad = Profile(
-        ((-half, at.ground, 0.0), (half, at.ground, 0.0), (half, top, -shapes.bulge_of(sweep)), (-half, top, 0.0))
-    )
+    half, top = g.foot.width / 2, -shapes.on_circle(at.body, g.foot.width / 2)
+    arc = shapes.bulge_of(2 * math.asin(half / at.body))
+    pad = Profile(((-half, at.ground, 0.0), (half, at.ground, 0.0), (half, top, -arc), (-half, top, 0.0)))
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, at.ground - g.base.thickness, at.ground)
     reach = g.base.length / 2
     return (

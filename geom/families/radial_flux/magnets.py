@@ -17,15 +17,8 @@ def corners(g: Geometry, radius: float, width: float) -> Corners:
     thickness, reach = g.rotor.magnet_thickness, radius - g.rotor.bridge
     if g.rotor.magnet_shape == "flat":
         far = shapes.on_circle(reach, width / 2)
-        return [
-            (x, y)
-            for x, y in (
-                (far - thickness, -width / 2),
-                (far, -width / 2),
-                (far, width / 2),
-                (far - thickness, width / 2),
-            )
-        ]
+        near, half = far - thickness, width / 2
+        return [(near, -half), (far, -half), (far, half), (near, half)]
     c, s, start = math.cos(g.rotor.v), math.sin(g.rotor.v), g.rotor.bridge
     # it begins half a bridge above the middle line and rises towards the rotor surface
     x = shapes.on_circle(reach, start / 2 + width * c)

@@ -8,63 +8,37 @@ from __future__ import annotations
 import math
 
 from geom.description.geometry import Geometry
-from geom.description.parameters import scale
+from geom.description.parameters import Measure
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import widest
+from geom.families.shaft_fan import fan_measures
 
-outer = scale("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
-bore = scale("the bore", lambda g: g.stator.bore_diameter)
-shaft = scale("the shaft's diameter", lambda g: g.shaft.diameter)
-stack = scale("the stack's length", lambda g: g.stator.stack_length)
-build = scale("bore to outside of the laminations", lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2)
-depth = scale("the slot's depth", lambda g: g.stator.slot_depth)
-
-
-def _pitch(g: Geometry) -> float:
-    return g.stator.bore_diameter * math.sin(math.pi / g.stator.slots)
-
-
-pitch = scale("the slot pitch at the bore", _pitch)
-lining = scale("slot pitch or depth, the smaller", lambda g: min(_pitch(g), g.stator.slot_depth))
-
-
-def _mouth(g: Geometry) -> float:
-    return g.stator.slot_width if g.stator.slot_shape == "parallel" else _pitch(g) - g.stator.tooth
-
-
-mouth = scale("the slot's width at the bore", _mouth)
-tip = scale("the tooth tip", lambda g: g.stator.tip)
-
-
-def _content(g: Geometry) -> float:
-    return g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap)
-
-
-content = scale("stack, end windings and end-caps together", _content)
-yoke = scale(
-    "the yoke behind the slots", lambda g: (g.stator.outer_diameter - g.stator.bore_diameter) / 2 - g.stator.slot_depth
+outer = Measure("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
+bore = Measure("the bore", lambda g: g.stator.bore_diameter)
+shaft = Measure("the shaft's diameter", lambda g: g.shaft.diameter)
+stack = Measure("the stack's length", lambda g: g.stator.stack_length)
+build = Measure("bore to outside of the laminations", lambda g: (outer.span(g) - bore.span(g)) / 2)
+depth = Measure("the slot's depth", lambda g: g.stator.slot_depth)
+yoke = Measure("the yoke behind the slots", lambda g: build.span(g) - g.stator.slot_depth)
+pitch = Measure("the slot pitch at the bore", lambda g: g.stator.bore_diameter * math.sin(math.pi / g.stator.slots))
+lining = Measure("slot pitch or depth, the smaller", lambda g: min(pitch.span(g), g.stator.slot_depth))
+mouth = Measure(
+    "the slot's width at the bore",
+    lambda g: g.stator.slot_width if g.stator.slot_shape == "parallel" else pitch.span(g) - g.stator.tooth,
 )
+tip = Measure("the tooth tip", lambda g: g.stator.tip)
+content = Measure(
+    "stack, end windings and end-caps together",
+    lambda g: g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap),
+)
+length = Measure("the length over the end-caps", lambda g: g.frame.length)
+turn = Measure("the stack's length over turns + 1", lambda g: g.stator.stack_length / (g.housing.turns + 1))
 
 
 def _even_pitch(g: Geometry) -> float:
-    """Of fins spread evenly."""
     if g.housing.kind == "radial-fins":
         return (g.frame.length - 2 * g.frame.cap) / g.housing.fins
     return 2 * math.pi * (g.stator.outer_diameter / 2 + g.housing.thickness) / g.housing.fins
-
-
-even_pitch = scale("the pitch of fins spread evenly", _even_pitch)
-fin_pitch = scale(
-    "the fins' pitch, or 0.3 of the laminations where it is less",
-    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter),
-)
-
-
-def _turn(g: Geometry) -> float:
-    return g.stator.stack_length / (g.housing.turns + 1)
-
-
-turn = scale("the stack's length over turns + 1", _turn)
 
 
 def _channel(g: Geometry) -> float:
@@ -73,36 +47,26 @@ def _channel(g: Geometry) -> float:
     return min(wide if g.housing.turns > 1 else 0.6 * wide, g.stator.outer_diameter / 6)
 
 
-channel = scale("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller", _channel)
-length = scale("the length over the end-caps", lambda g: g.frame.length)
-
-
-def _pole(g: Geometry) -> float:
-    """Pole pitch at the rotor's surface or the iron under it, whichever is smaller."""
-    radius = g.stator.bore_diameter / 2 - g.stator.air_gap
-    return min(2 * radius * math.sin(math.pi / g.rotor.poles), radius - g.shaft.diameter / 2)
-
-
-pole = scale("pole pitch or rotor iron, the smaller", _pole)
-magnet = scale("the widest magnet that fits", widest)
-
-
 def _rotor(g: Geometry) -> float:
     return g.stator.bore_diameter / 2 - g.stator.air_gap
 
 
-iron = scale("rotor surface to shaft", lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
-bar_pitch = scale(
+def _pole(g: Geometry) -> float:
+    """Pole pitch at the rotor's surface or the iron under it, whichever is smaller."""
+    return min(2 * _rotor(g) * math.sin(math.pi / g.rotor.poles), _rotor(g) - g.shaft.diameter / 2)
+
+
+even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
+fin_pitch = Measure(
+    "the fins' pitch, or 0.3 of the laminations where it is less",
+    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter),
+)
+channel = Measure("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller", _channel)
+pole = Measure("pole pitch or rotor iron, the smaller", _pole)
+magnet = Measure("the widest magnet that fits", widest)
+iron = Measure("rotor surface to shaft", lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
+bar_pitch = Measure(
     "the bars' pitch at their bottom", lambda g: 2 * math.pi * (_rotor(g) - g.rotor.bar_depth) / g.rotor.bars
 )
-end_space = scale("stack to end-cap", lambda g: (g.frame.length - g.stator.stack_length) / 2 - g.frame.cap)
-fan = scale(
-    "the way from the bearing's diameter to the end-cap's",
-    lambda g: 2 * (Layout(g).cap_radius - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
-    lambda g: 1.02 * g.bearing.outer_diameter,
-)
-fan_hub = scale(
-    "the way from the shaft's diameter to 0.9 of the cowl's",
-    lambda g: 0.9 * g.fan.diameter - 1.05 * g.shaft.diameter,
-    lambda g: 1.05 * g.shaft.diameter,
-)
+end_space = Measure("stack to end-cap", lambda g: (g.frame.length - g.stator.stack_length) / 2 - g.frame.cap)
+fan, fan_hub = fan_measures("end-cap", lambda g: Layout(g).cap_radius, lambda g: g.shaft.diameter)

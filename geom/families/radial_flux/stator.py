@@ -56,13 +56,9 @@ def _wedges(g: Geometry, at: Layout, angles: list[float]) -> tuple[Part, ...]:
 def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:
     """The slot along +x between two radii (m), narrower by the lining (m) on either side."""
     a, b = at.half_angle(inner, lining), at.half_angle(outer, lining)
-    far = shapes.bulge_of(2 * b)
-    return (
-        shapes.polar(inner, -a),
-        shapes.polar(outer, -b, far),
-        shapes.polar(outer, b),
-        shapes.polar(inner, a, -shapes.bulge_of(2 * a)),
-    )
+    near, far = -shapes.bulge_of(2 * a), shapes.bulge_of(2 * b)
+    polar = shapes.polar
+    return polar(inner, -a), polar(outer, -b, far), polar(outer, b), polar(inner, a, near)
 
 
 def _bore(g: Geometry, at: Layout, angles: list[float]) -> Loop:
@@ -71,16 +67,10 @@ def _bore(g: Geometry, at: Layout, angles: list[float]) -> Loop:
     mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)
     inner, outer = (at.half_angle(r) for r in (at.slot0, at.slot1))
     lip, bottom = shapes.bulge_of(inner - throat), shapes.bulge_of(2 * outer)
-    loop = []
+    loop, polar = [], shapes.polar
     for angle, pitch in zip(angles, shapes.gaps(angles)):
-        loop += [
-            shapes.polar(at.bore, angle - mouth),
-            shapes.polar(at.slot0, angle - throat, -lip),
-            shapes.polar(at.slot0, angle - inner),
-            shapes.polar(at.slot1, angle - outer, bottom),
-            shapes.polar(at.slot1, angle + outer),
-            shapes.polar(at.slot0, angle + inner, -lip),
-            shapes.polar(at.slot0, angle + throat),
-            shapes.polar(at.bore, angle + mouth, shapes.bulge_of(pitch - 2 * mouth)),
-        ]
+        loop += [polar(at.bore, angle - mouth), polar(at.slot0, angle - throat, -lip)]
+        loop += [polar(at.slot0, angle - inner), polar(at.slot1, angle - outer, bottom)]
+        loop += [polar(at.slot1, angle + outer), polar(at.slot0, angle + inner, -lip)]
+        loop += [polar(at.slot0, angle + throat), polar(at.bore, angle + mouth, shapes.bulge_of(pitch - 2 * mouth))]
     return tuple(loop)

@@ -11,8 +11,8 @@ from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
-from geom.families.series_dc.brushes import brush_gear
 from geom.families.series_dc.checks import check
+from geom.families.series_dc.commutator import brush_gear
 from geom.families.series_dc.features import features
 from geom.families.series_dc.housing import enclosure
 from geom.families.series_dc.jacket import coolant, ports
@@ -48,17 +48,10 @@ def _fluids(g: Geometry, z: Axial) -> tuple[Part, ...]:
 
 
 _SIDES = ("jacket.left", "jacket.right")
-FAMILY = Family(
-    "series-dc",
-    "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets",
-    PARAMETERS,
-    build,
-    {
-        ("housing", "ambient"): "housing.fins",
-        ("housing", "jacket.left"): "jacket.left.wall",
-        ("housing", "jacket.right"): "jacket.right.wall",
-        **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
-    },
-    ports,
-    features,
-)
+_FACES = {
+    ("housing", "ambient"): "housing.fins",
+    **{("housing", side): f"{side}.wall" for side in _SIDES},
+    **{(f"{side}.{end}.tube", side): f"{side}.{end}.bore" for side in _SIDES for end in ("inlet", "outlet")},
+}
+_DOC = "Series-wound DC traction motor with salient poles; housing with fins or liquid jackets"
+FAMILY = Family("series-dc", _DOC, PARAMETERS, build, _FACES, ports, features)

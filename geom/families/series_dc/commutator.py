@@ -1,6 +1,8 @@
-"""The commutator: one homogeneous body, or copper bars with mica between them and to the hub."""
+"""The commutator, one homogeneous body or copper bars with mica between them and to the hub; and its brush gear."""
 
 from __future__ import annotations
+
+import math
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
@@ -9,55 +11,48 @@ from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.series_dc.layout import Axial, Radii
 
+_FREE = 0.1  # of the commutator's length: riser to brush
+
 
 def commutator(g: Geometry, z: Axial, r: Radii) -> tuple[Part, ...]:
     """Risers up to the winding, then the brush surface."""
-    hub, zones = (
-        g.shaft.hub_diameter / 2,
-        ((r.wire_top, z.ring1, z.riser1), (g.commutator.diameter / 2, z.riser1, z.bars1)),
-    )
+    hub = g.shaft.hub_diameter / 2
+    zones = ((r.wire_top, z.ring1, z.riser1), (g.commutator.diameter / 2, z.riser1, z.bars1))
     if not g.commutator.bars:
-        return (
-            Part(
-                "commutator",
-                "commutator",
-                tuple((shapes.ring(hub, top), a, b) for top, a, b in zones),
-                role=Role.COMMUTATOR,
-            ),
-        )
+        rings = tuple((shapes.ring(hub, top), a, b) for top, a, b in zones)
+        return (Part("commutator", "commutator", rings, role=Role.COMMUTATOR),)
+    bars, mica = (tuple(prism for zone in zones for prism in of(g, hub, *zone)) for of in (_bars, _mica))
     return (
-        Part(
-            "commutator",
-            "copper",
-            tuple(prism for zone in zones for prism in _bars(g, hub, *zone)),
-            role=Role.COMMUTATOR,
-        ),
-        Part(
-            "commutator.mica",
-            "mica",
-            tuple(prism for zone in zones for prism in _mica(g, hub, *zone)),
-            role=Role.INSULATION,
-            turns=True,
-        ),
+        Part("commutator", "copper", bars, role=Role.COMMUTATOR),
+        Part("commutator.mica", "mica", mica, role=Role.INSULATION, turns=True),
     )
-
-
-def _half_gap(g: Geometry) -> float:
-    """Half the angle (rad) of the mica between two bars, at the brush surface."""
-    return g.commutator.mica / g.commutator.diameter
 
 
 def _bars(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    half_gap, angles = _half_gap(g), shapes.evenly(g.commutator.bars)
-    pitch = angles[1]
-    return extrude(
-        [shapes.sector(hub + g.commutator.mica, top, a + half_gap, a + pitch - half_gap) for a in angles], z0, z1
-    )
+    half_gap, angles = g.commutator.mica / g.commutator.diameter, shapes.evenly(g.commutator.bars)
+    inner, pitch = hub + g.commutator.mica, angles[1]
+    return extrude([shapes.sector(inner, top, a + half_gap, a + pitch - half_gap) for a in angles], z0, z1)
 
 
 def _mica(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    half_gap, inner = _half_gap(g), hub + g.commutator.mica
-    between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in shapes.evenly(g.commutator.bars)]
-    ends = sorted(a + side for a in shapes.evenly(g.commutator.bars) for side in (-half_gap, half_gap))
+    half_gap, angles = g.commutator.mica / g.commutator.diameter, shapes.evenly(g.commutator.bars)
+    inner = hub + g.commutator.mica
+    between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in angles]
+    ends = sorted(a + side for a in angles for side in (-half_gap, half_gap))
     around = tuple(shapes.polar(inner, a, shapes.bulge_of(gap)) for a, gap in zip(ends, shapes.gaps(ends)))
     return extrude([Profile(around, (shapes.circle_loop(hub),)), *between], z0, z1)
+
+
+def brush_gear(g: Geometry, z: Axial) -> tuple[Part, ...]:
+    """Carbons, and an arm per row that holds them and leads their heat to the right flange; nothing without arms."""
+    b, surface = g.brushes, g.commutator.diameter / 2
+    if not b.arms:
+        return ()
+    begin, top = z.riser1 + _FREE * g.commutator.length, surface + b.height
+    angles, half = shapes.evenly(b.arms, math.pi / 2), b.arc * math.pi / b.arms
+    carbons = [shapes.sector(surface, top, a - half, a + half) for a in angles]
+    arms = [shapes.sector(top, top + b.arm, a - half, a + half) for a in angles]
+    return (
+        Part("brushes", "carbon", extrude(carbons, begin, z.bars1), role=Role.BRUSH),
+        Part("brush.arms", "steel", extrude(arms, begin, z.inner1), role=Role.BRUSH),
+    )

@@ -47,11 +47,7 @@ def _between_poles(g: Geometry) -> Duct:
 
 
 def _series(g: Geometry) -> SeriesWound:
-    return SeriesWound(
-        ("winding.armature", "winding.armature.left", "winding.armature.right"),
-        "winding.field",
-        "rotor.core",
-        "poles",
-        ("commutator", "brushes") if g.brushes.arms else ("commutator",),
-        ("bearing.left", "bearing.right"),
-    )
+    armature = ("winding.armature", "winding.armature.left", "winding.armature.right")
+    sliding = ("commutator", "brushes") if g.brushes.arms else ("commutator",)
+    bearings = ("bearing.left", "bearing.right")
+    return SeriesWound(armature, "winding.field", "rotor.core", "poles", sliding, bearings)

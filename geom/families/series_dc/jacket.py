@@ -10,7 +10,7 @@ from geom.description.geometry import Geometry
 from geom.description.part import Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import Nozzle, bored_circle, bored_ring, slices
+from geom.families.nozzles import Nozzle, bored_circle, slices
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.turns import CLEAR, Turns
 
@@ -24,24 +24,15 @@ def jacket_ring(r: Radii) -> Profile:
 
 def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
     """The housing's wall around the channels of one jacket, with the bores of its ports."""
-    solid = jacket_ring(r)
-    if g.jacket.layout == "zigzag":
-        pierced = [
-            (_pierced(r, sectors, ports), low, high)
-            for sectors, a, b in _zigzag(g, r, z0, z1)
-            for low, high, ports in slices(a, b, bored)
-        ]
-        return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
-    turns = turns_of(g, r, z0, z1).rings
-    ends = [z0, *(z for turn in turns for z in turn), z1]
-    ribs = [(solid, a, b) for a, b in zip(ends[::2], ends[1::2])]
-    outer = [
-        (piece, low, high)
-        for a, b in turns
+    if g.jacket.layout == "helical":
+        return turns_of(g, r, z0, z1).walls(r.yoke1, r.jacket, z0, z1, bored)
+    pierced = [
+        (_pierced(r, sectors, ports), low, high)
+        for sectors, a, b in _zigzag(g, r, z0, z1)
         for low, high, ports in slices(a, b, bored)
-        for piece in bored_ring(r.channel, r.jacket, ports)
     ]
-    return [*ribs, *((shapes.ring(r.yoke1, r.shell), a, b) for a, b in turns), *outer]
+    solid = jacket_ring(r)
+    return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
 
 
 def _pierced(r: Radii, sectors: list[Sector], bored: Sequence[Nozzle]) -> Profile:
@@ -61,16 +52,11 @@ def _spans(sector: Sector, angle: float) -> bool:
 def _zigzag(g: Geometry, r: Radii, z0: float, z1: float) -> list[tuple[list[Sector], float, float]]:
     """Channels along the axis, straight first; then those joined in pairs at the left end, and at the right end."""
     first, last, n = z0 + g.jacket.rib, z1 - g.jacket.rib, g.jacket.channels
-    turn = turn_length(g, z0, z1)
+    turn = min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))  # as deep as they are high, if there is room
     straight, left = [(i, i) for i in range(n)], [(i, min(i + 1, n - 1)) for i in range(0, n, 2)]
     right = [(0, 0), *((i, min(i + 1, n - 1)) for i in range(1, n, 2))]
     zones = ((straight, first + turn, last - turn), (left, first, first + turn), (right, last - turn, last))
     return [([_sector(g, r, *pair) for pair in pairs], a, b) for pairs, a, b in zones]
-
-
-def turn_length(g: Geometry, z0: float, z1: float) -> float:
-    """Axial length (m) over which two channels are joined: as deep as they are high, if there is room."""
-    return min(g.jacket.height, 0.3 * (z1 - z0 - 2 * g.jacket.rib))
 
 
 def _sector(g: Geometry, r: Radii, i: int, j: int) -> Sector:
@@ -89,11 +75,14 @@ def turns_of(g: Geometry, r: Radii, z0: float, z1: float) -> Turns:
 def coolant(g: Geometry, z: Axial) -> tuple[Part, ...]:
     """What flows in the jackets, one fluid each, to the ends of its ports."""
     r = Radii(g)
-    necks = {name: [nozzle.neck for nozzle in nozzles(g) if nozzle.jacket == name] for name in z.jackets}
-    return tuple(
-        fluid(name, *_channel_prisms(g, r, *span), *necks[name], material="glycol-50", role=Role.COOLANT)
-        for name, span in z.jackets.items()
-    )
+    out = []
+    for name, span in z.jackets.items():
+        zones = [] if g.jacket.layout == "helical" else _zigzag(g, r, *span)
+        channels = [(shapes.sector(r.shell, r.channel, *s), a, b) for sectors, a, b in zones for s in sectors]
+        flow = channels or turns_of(g, r, *span).liquid
+        necks = [nozzle.neck for nozzle in nozzles(g) if nozzle.jacket == name]
+        out.append(fluid(name, *flow, *necks, material="glycol-50", role=Role.COOLANT))
+    return tuple(out)
 
 
 def ports(g: Geometry) -> tuple[Port, ...]:
@@ -117,13 +106,3 @@ def _places(g: Geometry, r: Radii, z0: float, z1: float) -> tuple[tuple[float, f
         return turns_of(g, r, z0, z1).places(g.jacket.port)
     top, n, inset = math.pi / 2, g.jacket.channels, g.jacket.rib + CLEAR * g.jacket.port
     return (top, z1 - inset), (top - 2 * math.pi / n, z1 - inset if n % 2 == 0 else z0 + inset)
-
-
-def _channel_prisms(g: Geometry, r: Radii, z0: float, z1: float) -> tuple[Prism, ...]:
-    if g.jacket.layout == "zigzag":
-        return tuple(
-            (shapes.sector(r.shell, r.channel, *sector), a, b)
-            for sectors, a, b in _zigzag(g, r, z0, z1)
-            for sector in sectors
-        )
-    return tuple((shapes.ring(r.shell, r.channel), a, b) for a, b in turns_of(g, r, z0, z1).rings)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
-from geom.description.part import Part, extrude
+from geom.description.part import Part, Prism, extrude
 from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.series_dc.commutator import commutator
@@ -19,36 +19,22 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     wires, liners = shapes.turned(wire, angles), shapes.turned(liner, angles)
     ends = shapes.ring(r.wire_bottom, r.wire_top)
     loose = (g.rotor.end_fill, g.rotor.end_impregnation)
+    inner = extrude(wires, z.core0, z.core1)
+    left = (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0))
+    right = (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1))
     return (
         _shaft(g, z),
         Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
-        Part(
-            "winding.armature",
-            "winding",
-            extrude(wires, z.core0, z.core1),
-            (g.rotor.fill, g.rotor.impregnation),
-            role=Role.WINDING,
-            turns=True,
-        ),
-        Part(
-            "winding.armature.left",
-            "end-winding",
-            (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0)),
-            loose,
-            role=Role.WINDING,
-            turns=True,
-        ),
-        Part(
-            "winding.armature.right",
-            "end-winding",
-            (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1)),
-            loose,
-            role=Role.WINDING,
-            turns=True,
-        ),
+        _winding("winding.armature", "winding", inner, (g.rotor.fill, g.rotor.impregnation)),
+        _winding("winding.armature.left", "end-winding", left, loose),
+        _winding("winding.armature.right", "end-winding", right, loose),
         *commutator(g, z, r),
     )
+
+
+def _winding(name: str, material: str, prisms: tuple[Prism, ...], filling: tuple[float, float]) -> Part:
+    return Part(name, material, prisms, filling, role=Role.WINDING, turns=True)
 
 
 def _lamination(g: Geometry, r: Radii, angles: list[float]) -> Profile:

@@ -8,26 +8,15 @@ from __future__ import annotations
 import math
 
 from geom.description.geometry import Geometry
-from geom.description.parameters import scale
+from geom.description.parameters import Measure
 from geom.families.series_dc.layout import Radii
+from geom.families.shaft_fan import fan_measures
 
 STEEPEST = math.pi / 4  # of the line between two poles, where there are fewer than four
 
 
-rotor = scale("the rotor's diameter", lambda g: g.rotor.outer_diameter)
-stack = scale("the stack's length", lambda g: g.rotor.stack_length)
-core = scale("the shaft in the core", lambda g: g.shaft.core_diameter)
-seat = scale("the shaft in the bearings", lambda g: g.shaft.bearing_diameter)
-iron = scale("rotor surface to shaft", lambda g: (g.rotor.outer_diameter - g.shaft.core_diameter) / 2)
-
-
 def _bottom(g: Geometry) -> float:
     return g.rotor.outer_diameter / 2 - g.rotor.slot_depth
-
-
-slot_pitch = scale("the slot pitch at the slot bottom", lambda g: 2 * math.pi * _bottom(g) / g.rotor.slots)
-slot = scale("slot width or depth, the smaller", lambda g: min(g.rotor.slot_width, g.rotor.slot_depth))
-depth = scale("the slot's depth", lambda g: g.rotor.slot_depth)
 
 
 def _duct(g: Geometry) -> float:
@@ -35,96 +24,80 @@ def _duct(g: Geometry) -> float:
     return min(room, 2 * middle * math.sin(math.pi / g.rotor.ducts)) if g.rotor.ducts > 1 else room
 
 
-duct = scale("shaft to slots or duct to duct, the smaller", _duct)
-hub = scale(
-    "the way from the shaft in the core to the winding's diameter",
-    lambda g: 2 * (_bottom(g) + g.rotor.liner) - g.shaft.core_diameter,
-    lambda g: g.shaft.core_diameter,
-)
-brushes = scale(
-    "the way from the hub's diameter to the winding's",
-    lambda g: g.rotor.outer_diameter - 2 * g.rotor.wedge - g.shaft.hub_diameter,
-    lambda g: g.shaft.hub_diameter,
-)
-
-
 def _bar(g: Geometry) -> float:
     around = math.pi * g.commutator.diameter / (g.commutator.bars or 100)
     return min(around, (g.commutator.diameter - g.shaft.hub_diameter) / 2)
 
 
-bar = scale("a bar's pitch or height, the smaller", _bar)
-shoe = scale("the shoe in the middle", lambda g: g.stator.shoe)
+rotor = Measure("the rotor's diameter", lambda g: g.rotor.outer_diameter)
+stack = Measure("the stack's length", lambda g: g.rotor.stack_length)
+core = Measure("the shaft in the core", lambda g: g.shaft.core_diameter)
+seat = Measure("the shaft in the bearings", lambda g: g.shaft.bearing_diameter)
+iron = Measure("rotor surface to shaft", lambda g: (g.rotor.outer_diameter - g.shaft.core_diameter) / 2)
+slot_pitch = Measure("the slot pitch at the slot bottom", lambda g: 2 * math.pi * _bottom(g) / g.rotor.slots)
+slot = Measure("slot width or depth, the smaller", lambda g: min(g.rotor.slot_width, g.rotor.slot_depth))
+depth = Measure("the slot's depth", lambda g: g.rotor.slot_depth)
+duct = Measure("shaft to slots or duct to duct, the smaller", _duct)
+hub = Measure(
+    "the way from the shaft in the core to the winding's diameter",
+    lambda g: 2 * (_bottom(g) + g.rotor.liner) - g.shaft.core_diameter,
+    core.span,
+)
+brushes = Measure(
+    "the way from the hub's diameter to the winding's",
+    lambda g: g.rotor.outer_diameter - 2 * g.rotor.wedge - g.shaft.hub_diameter,
+    lambda g: g.shaft.hub_diameter,
+)
+bar = Measure("a bar's pitch or height, the smaller", _bar)
 
 
-def _shoe_width(g: Geometry) -> float:
-    radius = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.tip
-    return 2 * radius * math.sin(math.pi / g.stator.poles * g.stator.pole_arc)
-
-
-shoe_width = scale("the shoe's width", _shoe_width)
+def _bore(g: Geometry) -> float:
+    return g.rotor.outer_diameter / 2 + g.stator.air_gap
 
 
 def _between(g: Geometry) -> float:
     """Pole body to the middle between two poles, at the inner side of the coil."""
-    inner = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.shoe + g.field.clearance
+    inner = _bore(g) + g.stator.shoe + g.field.clearance
     return inner * math.tan(min(math.pi / g.stator.poles, STEEPEST)) - g.stator.body_width / 2
 
 
-between = scale("pole body to the middle between two poles", _between)
-
-
 def _corner(g: Geometry) -> float:
-    top = g.rotor.outer_diameter / 2 + g.stator.air_gap + g.stator.shoe + g.field.clearance + g.field.coil_height
+    top = _bore(g) + g.stator.shoe + g.field.clearance + g.field.coil_height
     return 2 * math.hypot(top, g.stator.body_width / 2 + g.field.insulation + g.field.coil_width)
-
-
-corner = scale("the circle around the field coils", _corner)
-yoke = scale("the yoke's bore", lambda g: g.stator.yoke_inner_diameter)
 
 
 def _overhang(g: Geometry) -> float:
     return max(g.rotor.straight + g.rotor.end_winding, g.field.insulation + g.field.coil_width, g.stator.yoke_overhang)
 
 
-overhang = scale("end winding, field coil or yoke beyond the core, the longest", _overhang)
-
-
 def _content(g: Geometry) -> float:
     """From one end of the shaft to the other, with no room to spare on the right."""
     after = g.rotor.straight + g.rotor.end_winding + g.commutator.riser + g.commutator.length
-    after = max(after, _overhang(g))
     ends = 2 * (g.flange.shaft_end + g.flange.thickness) + g.fan.depth
-    return ends + g.flange.rotor_offset + g.rotor.stack_length + after
+    return ends + g.flange.rotor_offset + g.rotor.stack_length + max(after, _overhang(g))
 
 
-content = scale("all that the shaft carries", _content)
+shoe = Measure("the shoe in the middle", lambda g: g.stator.shoe)
+shoe_width = Measure(
+    "the shoe's width", lambda g: 2 * (_bore(g) + g.stator.tip) * math.sin(math.pi / g.stator.poles * g.stator.pole_arc)
+)
+between = Measure("pole body to the middle between two poles", _between)
+corner = Measure("the circle around the field coils", _corner)
+yoke = Measure("the yoke's bore", lambda g: g.stator.yoke_inner_diameter)
+overhang = Measure("end winding, field coil or yoke beyond the core, the longest", _overhang)
+content = Measure("all that the shaft carries", _content)
 
 
 def _shell(g: Geometry) -> float:
     return g.stator.yoke_inner_diameter / 2 + g.stator.yoke_thickness + g.housing.thickness
 
 
-shell = scale("the housing's radius", _shell)
-
-
 def _even_pitch(g: Geometry) -> float:
     return 2 * math.pi * _shell(g) / max(g.housing.fins, 1)
 
 
-even_pitch = scale("the pitch of fins spread evenly", _even_pitch)
-fin_pitch = scale(
-    "the fins' pitch, or 0.6 of the housing's radius where it is less",
-    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.6 * _shell(g)),
-)
-
-
 def _inside(g: Geometry) -> float:
-    """Flange to flange."""
     return g.shaft.length - 2 * (g.flange.shaft_end + g.flange.thickness) - g.fan.depth
-
-
-inside = scale("flange to flange", _inside)
 
 
 def _jacket_length(g: Geometry) -> float:
@@ -137,11 +110,7 @@ def _around(g: Geometry) -> float:
 
 def _rib(g: Geometry) -> float:
     length = _jacket_length(g)
-    room = _around(g) if g.jacket.layout == "zigzag" else length / (g.jacket.turns + 1)
-    return min(room, length / 2.5)
-
-
-rib = scale("a channel with its rib, or 0.4 of the jacket's length, the smaller", _rib)
+    return min(_around(g) if g.jacket.layout == "zigzag" else length / (g.jacket.turns + 1), length / 2.5)
 
 
 def _port(g: Geometry) -> float:
@@ -154,33 +123,28 @@ def _port(g: Geometry) -> float:
     return min(wide, 3 * g.jacket.rib, _shell(g) / 4)
 
 
-port = scale(
-    "the channel's width (0.6 of it with one turn), three ribs or a quarter of the housing's radius, the smallest",
-    _port,
-)
-
-
-fan = scale(
-    "the way from the bearing's diameter to the housing's",
-    lambda g: 2 * (_shell(g) - g.fan.cowl) - 1.02 * g.bearing.outer_diameter,
-    lambda g: 1.02 * g.bearing.outer_diameter,
-)
-fan_hub = scale(
-    "the way from the shaft's diameter to 0.9 of the cowl's",
-    lambda g: 0.9 * g.fan.diameter - 1.05 * g.shaft.bearing_diameter,
-    lambda g: 1.05 * g.shaft.bearing_diameter,
-)
-
-
 def _outermost(g: Geometry) -> float:
     r = Radii(g)
     return max(r.fins, r.jacket) if g.jacket.sides else r.fins
 
 
-outermost = scale("the radius over fins or jacket", _outermost)
-beside = scale("the inner side of a foot to the edge of the housing", lambda g: 0.95 * _shell(g) - g.feet.inner)
-stance = scale("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
-footing = scale("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)
-above = scale(
+shell = Measure("the housing's radius", _shell)
+even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
+fin_pitch = Measure(
+    "the fins' pitch, or 0.6 of the housing's radius where it is less",
+    lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.6 * _shell(g)),
+)
+inside = Measure("flange to flange", _inside)
+rib = Measure("a channel with its rib, or 0.4 of the jacket's length, the smaller", _rib)
+port = Measure(
+    "the channel's width (0.6 of it with one turn), three ribs or a quarter of the housing's radius, the smallest",
+    _port,
+)
+fan, fan_hub = fan_measures("housing", _shell, seat.span)
+outermost = Measure("the radius over fins or jacket", _outermost)
+beside = Measure("the inner side of a foot to the edge of the housing", lambda g: 0.95 * _shell(g) - g.feet.inner)
+stance = Measure("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
+footing = Measure("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)
+above = Measure(
     "the armature's radius over the commutator's", lambda g: (g.rotor.outer_diameter - g.commutator.diameter) / 2
 )

@@ -22,18 +22,11 @@ def stator(g: Geometry, z: Axial) -> tuple[Part, ...]:
     inner0, inner1 = z.core0 - g.field.insulation, z.core1 + g.field.insulation
     coil = (*extrude(sides, inner0, inner1), (across, z.field0, inner0), (across, inner1, z.field1))
     lining = (*extrude(plates, z.core0, z.core1), (cap, inner0, z.core0), (cap, z.core1, inner1))
+    poles, filling = shapes.turned(_pole(g, r), angles), (g.field.fill, g.field.impregnation)
     return (
         Part("yoke", "steel", ((shapes.ring(r.yoke0, r.yoke1), z.yoke0, z.yoke1),), role=Role.IRON),
-        Part(
-            "poles", "electrical-steel", extrude(shapes.turned(_pole(g, r), angles), z.core0, z.core1), role=Role.IRON
-        ),
-        Part(
-            "winding.field",
-            "field-winding",
-            _around(coil, angles),
-            (g.field.fill, g.field.impregnation),
-            role=Role.WINDING,
-        ),
+        Part("poles", "electrical-steel", extrude(poles, z.core0, z.core1), role=Role.IRON),
+        Part("winding.field", "field-winding", _around(coil, angles), filling, role=Role.WINDING),
         Part("field.insulation", "insulation", _around(lining, angles), role=Role.INSULATION),
     )
 
@@ -48,21 +41,17 @@ def _pole(g: Geometry, r: Radii) -> Profile:
     root = shapes.on_circle(r.yoke0, r.body)
     back, tips = math.hypot(r.shoe_back, r.body), r.bore + g.stator.tip
     leaves = math.atan2(r.body, r.shoe_back) + math.acos(min(tips / back, 1.0))  # where a tangent leaves the circle
-    around = shapes.bulge_of(tip - leaves)
-    rounded = leaves < tip and tips < back
+    around, rounded = shapes.bulge_of(tip - leaves), leaves < tip and tips < back
+    first = [shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves)] if rounded else [shapes.polar(tips, -tip)]
     return Profile(
         (
             shapes.polar(r.bore, -tip),
-            *(
-                (shapes.polar(tips, -tip, around), shapes.polar(tips, -leaves))
-                if rounded
-                else (shapes.polar(tips, -tip),)
-            ),
+            *first,
             (r.shoe_back, -r.body, 0.0),
             (root, -r.body, shapes.bulge_of(2 * math.asin(r.body / r.yoke0))),
             (root, r.body, 0.0),
             (r.shoe_back, r.body, 0.0),
-            *((shapes.polar(tips, leaves, around),) if rounded else ()),
+            *([shapes.polar(tips, leaves, around)] if rounded else []),
             shapes.polar(tips, tip),
             shapes.polar(r.bore, tip, -shapes.bulge_of(2 * tip)),
         )

@@ -19,9 +19,9 @@ from lumped.declarations.separated import FilmOver, Share
 from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.exchanger import Exchanger, Flow, Rate
 from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water

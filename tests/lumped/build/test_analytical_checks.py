@@ -9,7 +9,7 @@ from lumped.build.analytical_checks import analytical_checks
 from lumped.build.crosscheck import crosscheck
 from lumped.build.pipeline import build
 from lumped.condensation.reduction import Recipe
-from lumped.machine.losses import loss_shares
+from lumped.machine.loss_sources import loss_shares
 from thermoscope.commands.model.crosscheck import save
 
 

@@ -9,7 +9,7 @@ from lumped.build.crosscheck import crosscheck
 from lumped.build.local_laws import copper, radiating, with_local_laws
 from lumped.build.pipeline import build
 from lumped.condensation.reduction import Recipe
-from lumped.machine.losses import loss_shares
+from lumped.machine.loss_sources import loss_shares
 
 POINT = {"current_A": 8.0, "speed_rpm": 0.0}
 

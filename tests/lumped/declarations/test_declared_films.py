@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
 from lumped.correlations import RangeWarning, air_gap, contacts, ducts, end_space, fins, forced, natural, rotating
-from lumped.declarations.films import FORCED, NATURAL
+from lumped.declarations.films import moving_surfaces, still_surfaces
 from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 from lumped.integration.steady import steady
@@ -66,8 +66,8 @@ def declared(mechanism, keys):
 
 
 def test_every_surface_has_a_case_here():
-    assert set(STILL) == set(NATURAL)
-    assert set(MOVING) == set(FORCED)
+    assert set(STILL) == set(still_surfaces())
+    assert set(MOVING) == set(moving_surfaces())
 
 
 @pytest.mark.parametrize("surface", STILL)

@@ -11,9 +11,9 @@ from test_circuit import network as circuit_network
 from test_declared_films import MOVING, STILL
 
 from lumped.correlations.contacts import GAPS, PRESSED
-from lumped.declarations.films import FORCED, NATURAL
+from lumped.declarations.films import moving_surfaces, still_surfaces
 from lumped.declarations.links import FLOW_INPUTS, MECHANISMS
-from lumped.declarations.losses import LOSSES, MEASURED, PLAIN
+from lumped.declarations.loss_tables import LOSSES, MEASURED, PLAIN
 from lumped.declarations.network import read_network
 from lumped.declarations.parameters import MAPPINGS
 from lumped.declarations.rotor import ROTATING
@@ -198,8 +198,10 @@ EACH = [pytest.param(data, id=name) for name, data in DOCUMENTS.items()]
 
 def test_every_entry_of_the_registries_has_a_case():
     assert set(MECHANISMS) <= {key for keys in LINKS.values() for key in keys}
-    assert set(NATURAL) == {keys["natural"]["surface"] for keys in LINKS.values() if "natural" in keys}
-    assert set(FORCED) == {keys["forced"].get("surface", "plate") for keys in LINKS.values() if "forced" in keys}
+    assert set(still_surfaces()) == {keys["natural"]["surface"] for keys in LINKS.values() if "natural" in keys}
+    assert set(moving_surfaces()) == {
+        keys["forced"].get("surface", "plate") for keys in LINKS.values() if "forced" in keys
+    }
     assert set(HEATS) == {*LOSSES, MEASURED, *PLAIN}
 
 

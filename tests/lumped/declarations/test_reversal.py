@@ -84,7 +84,7 @@ def test_what_comes_in_from_behind_must_be_known(made):
 
 def test_jackets_and_fans_of_machine_files_refuse_it():
     from geom import load_machine
-    from lumped.machine.coolant import _rate_law, cooling_of
+    from lumped.machine.jackets import _rate_law, cooling_of
 
     machine = load_machine("ipmsm-48s8p-jacket")
     law = _rate_law(machine, "jacket", cooling_of(machine))

@@ -11,8 +11,9 @@ from jsonschema import Draft202012Validator
 
 from geom.errors import InputError
 from lumped.declarations.network import read_network
-from lumped.schemas.keys_page import PAGE, page
-from lumped.schemas.schema import FILES, FOLDER, bounded, machine_schema, meanings, schema
+from lumped.schemas.bounds import COLDEST, HOTTEST
+from lumped.schemas.schema import FILES, meanings, schema, write_schemas
+from scripts.keys_page import PAGE, page
 
 ROOT = Path(__file__).resolve().parents[3]
 PATTERNS = {
@@ -29,7 +30,7 @@ SHIPPED = [
 
 
 def faults(kind, data):
-    checker = Draft202012Validator(schema(kind) if kind != "machine" else machine_schema())
+    checker = Draft202012Validator(schema(kind))
     return [f"{'.'.join(map(str, e.path))}: {e.message}" for e in checker.iter_errors(data)]
 
 
@@ -54,7 +55,7 @@ def test_editors_are_told_which_schema_is_whose(kind, path):
         for glob in r["include"]
         if fnmatch(f"/{name}", f"*/{glob.removeprefix('**/')}")
     }
-    assert fits == {f"lumped/schemas/{kind}.json"}
+    assert fits == {f"out/schemas/{kind}.json"}
     assert "$id" not in schema(kind)
 
 
@@ -87,11 +88,6 @@ def test_what_the_schema_refuses_the_reader_refuses(example, slip):
         read_network(example)
 
 
-def test_machine_schema_on_disk_is_the_families_own():
-    """After a change of a family's parameters: python -m lumped.schemas.schema"""
-    assert json.loads((FOLDER / "machine.json").read_text()) == machine_schema()
-
-
 def test_messages_say_what_a_key_means(example):
     del example["losses"]["copper"]["currents"]
     with pytest.raises(InputError, match=re.escape(f"currents = [words] ({meanings()['currents']})")):
@@ -115,12 +111,17 @@ def walked(node):
         yield from walked(extra)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in FILES if kind != "machine"])
-def test_schemas_on_disk_have_the_bounds_of_the_table(kind):
-    """After a change of lumped.schemas.bounds: python -m lumped.schemas.schema"""
-    assert json.loads((FOLDER / f"{kind}.json").read_text()) == bounded(schema(kind))
+def test_schemas_for_editors_are_written_when_asked_with_bounds_and_the_families_keys(tmp_path):
+    written = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in write_schemas(tmp_path / "schemas")}
+    assert written == {kind: schema(kind) for kind in FILES}
+    settles = written["network"]["properties"]["network"]["properties"]["settles_s"]
+    assert (settles["minimum"], settles["maximum"]) == (1.0, 1e9)
+    reference = written["network"]["properties"]["losses"]["additionalProperties"]["properties"]["reference_degC"]
+    assert (reference["minimum"], reference["maximum"]) == (COLDEST, HOTTEST)
+    shaft = written["machine"]["properties"]["geometry"]["properties"]["shaft"]["properties"]
+    assert shaft["diameter_mm"] == {"description": "shaft (mm)", "type": "number", "minimum": 5.0, "maximum": 500.0}
 
 
 def test_the_page_of_keys_is_the_schemas():
-    """After a change of keys or bounds: python -m lumped.schemas.keys_page"""
+    """After a change of keys or bounds: python -m scripts.keys_page"""
     assert PAGE.read_text(encoding="utf-8") == page()

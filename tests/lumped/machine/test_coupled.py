@@ -12,7 +12,7 @@ from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source
-from lumped.sources.losses import CopperLoss
+from lumped.sources.loss_laws import CopperLoss
 from lumped.transfer.laws import Fixed, InputPower, Linear
 
 MOTOR = PMMachine(4, 4.67e-3, 0.1e-3, 0.25e-3, 0.07, current_limit=400.0, voltage_limit=200.0)

@@ -9,7 +9,7 @@ from lumped.drives.coupled import coupled, induction_drive
 from lumped.drives.induction import InductionMachine
 from lumped.integration.simulate import Record
 from lumped.model.build import node_source
-from lumped.sources.losses import CopperLoss
+from lumped.sources.loss_laws import CopperLoss
 from lumped.transfer.laws import Fixed
 
 MOTOR = InductionMachine(2, 0.38, 0.17, 2.5e-3, 3e-3, 82e-3, magnetising=12.5, current_limit=60.0, voltage_limit=325.0)

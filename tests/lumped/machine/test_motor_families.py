@@ -12,13 +12,13 @@ from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.build.pipeline import prepared
 from lumped.integration.steady import steady
-from lumped.machine.coolant import channel_of, cooling_of
 from lumped.machine.films import surroundings
-from lumped.machine.losses import _declared, loss_watts
+from lumped.machine.jackets import channel_of, cooling_of
+from lumped.machine.loss_sources import _declared, loss_watts
 from lumped.machine.motor import operating_point
 from lumped.machine.outer import cowl_of, outer_films, outer_of
+from lumped.machine.part_identities import turning
 from lumped.machine.path import path_of
-from lumped.machine.roles import turning
 from lumped.machine.settings import read_films
 from lumped.machine.shapes import fins_of
 from lumped.machine.zones import motor_zones

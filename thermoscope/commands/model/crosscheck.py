@@ -43,7 +43,7 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
     from lumped.build.analytical_checks import analytical_checks
     from lumped.build.crosscheck import crosscheck as compare
     from lumped.build.local_laws import with_local_laws
-    from lumped.machine.losses import loss_shares
+    from lumped.machine.loss_sources import loss_shares
 
     tell("field against network")
     point = bearable(built)

@@ -15,7 +15,7 @@ import numpy as np
 from geom.errors import InputError
 from geom.escapes import toml_value
 from geom.storage import write_whole
-from lumped.machine.losses import ASSUMED
+from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, shift
 from measured.importing.case_files import folder_whole, write_case

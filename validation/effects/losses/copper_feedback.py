@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from geom.constants import ALPHA_CU
 from lumped.model.network import Network, Source
 from lumped.model.sites import windings
-from lumped.sources.losses import EDDY
+from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_source

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
-from lumped.sources.losses import EDDY
+from lumped.sources.loss_laws import EDDY
 from validation.effects.base import Effect, Scene, with_parameter
 
 

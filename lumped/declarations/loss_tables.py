@@ -11,9 +11,9 @@ from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.loss_laws import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.sources.losses import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
@@ -38,13 +38,8 @@ def _copper(table: Table) -> Law:
     if len(keys) != 1:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
     reference = 20.0 if keys[0] == "R20_ohm" else table.number("reference_degC")
-    return CopperLoss(
-        table.number(keys[0]),
-        table.members("currents"),
-        table.number("factor", 1.0),
-        _coefficient(table, reference, ALPHA_CU),
-        reference,
-    )
+    number, alpha = table.number, _coefficient(table, reference, ALPHA_CU)
+    return CopperLoss(number(keys[0]), table.members("currents"), number("factor", 1.0), alpha, reference)
 
 
 def _eddy(table: Table, copper: CopperLoss) -> EddyLoss:
@@ -61,19 +56,10 @@ def _temperature(table: Table) -> TemperatureLaw:
 
 
 def _iron(table: Table) -> Law:
-    excitation = table.word("excitation", "") or None
-    return IronLoss(
-        table.number("hysteresis_W", 0.0),
-        table.number("eddy_W", 0.0),
-        table.word("speed", "speed_rpm"),
-        table.number("speed_at"),
-        excitation,
-        table.number("excitation_at", 1.0),
-        table.number("flux_exponent", 2.0),
-        _temperature(table),
-        table.number("excess_W", 0.0),
-        table.number("frequency_exponent", 1.0),
-    )
+    n, excitation = table.number, table.word("excitation", "") or None
+    speed, excited = (table.word("speed", "speed_rpm"), n("speed_at")), (excitation, n("excitation_at", 1.0))
+    watts, exponents = (n("hysteresis_W", 0.0), n("eddy_W", 0.0)), (n("flux_exponent", 2.0), _temperature(table))
+    return IronLoss(*watts, *speed, *excited, *exponents, n("excess_W", 0.0), n("frequency_exponent", 1.0))
 
 
 def _terms(table: Table) -> Law:
@@ -81,9 +67,8 @@ def _terms(table: Table) -> Law:
         return PowerLoss(((table.number("P_W"), powers(table)),), _temperature(table))
     terms = tuple((item.number("P_W"), powers(item)) for item in table.listed("terms"))
     if not terms:
-        raise table.error(
-            "no power", "P_W = ... with of = { input, at, exponent }, or terms = [{ P_W = ..., of = ... }]"
-        )
+        right = "P_W = ... with of = { input, at, exponent }, or terms = [{ P_W = ..., of = ... }]"
+        raise table.error("no power", right)
     return PowerLoss(terms, _temperature(table))
 
 
@@ -110,42 +95,22 @@ def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _ripple(table: Table) -> Law:
-    return RippleLoss(
-        table.number("supply_V"),
-        table.word("voltage", "voltage_V"),
-        table.number("L_H"),
-        table.number("switching_Hz"),
-        table.number("R20_ohm"),
-        table.number("factor", 1.0),
-        _coefficient(table, 20.0, ALPHA_CU),
-    )
+    n, alpha = table.number, _coefficient(table, 20.0, ALPHA_CU)
+    supply, voltage = n("supply_V"), table.word("voltage", "voltage_V")
+    return RippleLoss(supply, voltage, n("L_H"), n("switching_Hz"), n("R20_ohm"), n("factor", 1.0), alpha)
 
 
 def _inverter(table: Table) -> Law:
-    return InverterLoss(
-        table.members("currents"),
-        table.number("factor", 1.5),
-        table.number("threshold_V"),
-        table.number("R_on_ohm"),
-        table.number("switching_Hz"),
-        table.number("switching_J"),
-        table.number("reference_A"),
-        table.number("reference_V"),
-        table.number("supply_V"),
-        table.number("standby_W", 0.0),
-        _temperature(table),
-    )
+    n = table.number
+    conducting = (n("factor", 1.5), n("threshold_V"), n("R_on_ohm"))
+    switching = (n("switching_Hz"), n("switching_J"), n("reference_A"), n("reference_V"), n("supply_V"))
+    return InverterLoss(table.members("currents"), *conducting, *switching, n("standby_W", 0.0), _temperature(table))
 
 
 def _pulses(table: Table) -> Law:
-    return PulseLoss(
-        table.word("voltage", "voltage_V"),
-        table.number("supply_V"),
-        table.number("L_H"),
-        table.number("switching_Hz"),
-        table.number("R_pulse_ohm"),
-        _temperature(table),
-    )
+    n, voltage = table.number, table.word("voltage", "voltage_V")
+    ripple = (n("supply_V"), n("L_H"), n("switching_Hz"), n("R_pulse_ohm"))
+    return PulseLoss(voltage, *ripple, _temperature(table))
 
 
 def _map(table: Table) -> Law:
@@ -179,23 +144,15 @@ def _mechanical(table: Table, speeds: Collection[str]) -> Products:
         names = item.words("product")
         turning = [name for name in names if name in speeds]
         if "factor" not in item and not turning and len(names) > 1:
-            raise item.error(
-                "none of these inputs is known as a speed", 'factor = ..., or [inputs.NAME] quantity = "speed"'
-            )
+            right = 'factor = ..., or [inputs.NAME] quantity = "speed"'
+            raise item.error("none of these inputs is known as a speed", right)
         out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
         item.close()
     return tuple(out)
 
 
-LOSSES = {
-    "copper": _copper,
-    "iron": _iron,
-    "brush": _brush,
-    "ripple": _ripple,
-    "inverter": _inverter,
-    "pwm": _pulses,
-    "map": _map,
-}
+LOSSES = {"copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter}
+LOSSES |= {"pwm": _pulses, "map": _map}
 MEASURED = "measured"
 PLAIN = ("friction", "windage", "stray", "magnet", "switching", "bearing", "constant")
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from geom.description.machine import Machine
 from geom.errors import InputError
-from lumped.declarations.losses import loss_laws
+from lumped.declarations.loss_tables import loss_laws
 from lumped.machine.settings import Losses, read
 from lumped.machine.shapes import gap_fluid, wound
 from lumped.model.network import Network, Place, Row, Source
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.losses import EDDY, PowerLoss
+from lumped.sources.loss_laws import EDDY, PowerLoss
 from lumped.transfer.laws import InputPower, Law, Linear
 
 Shares = Mapping[str, float]

@@ -1,4 +1,7 @@
-"""A family's page for the docs: the drawing of its default machine and the table of its parameters."""
+"""Writes a page for every family, docs/families/NAME.md: the drawing of its default machine, and its parameters.
+
+python -m scripts.family_pages
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,12 @@ from pathlib import Path
 from geom.description.geometry import Geometry
 from geom.description.parameters import Parameter
 from geom.description.reading import usual_geometry
-from geom.drawings.drawing import drawing_of
 from geom.families import families
 from geom.families.family import Family
 from geom.machine_file import library, load_machine, machine_from
+from scripts.drawing import drawing_of
+
+FOLDER = Path(__file__).resolve().parents[1] / "docs" / "families"
 
 _JACKETS = (
     "Jackets in the mesh and in CAD files: channels around the axis are rings in the mesh, in the table of "
@@ -87,3 +92,7 @@ def write_pages(folder: Path | str) -> list[Path]:
         page.write_text(family_page(family, f"{name}.svg"))
         pages.append(page)
     return pages
+
+
+if __name__ == "__main__":
+    write_pages(FOLDER)

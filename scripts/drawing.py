@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
-from geom.description.roles import Role
-from geom.drawings.dimensions import counts, diameters, lengths
-from geom.drawings.views import Views, fill
+from geom.drawings.views import Views, fill, middle_level
+from scripts.dimensions import counts, diameters, lengths
 
 if TYPE_CHECKING:
     from geom.description.machine import Machine
@@ -53,7 +51,7 @@ def drawing_of(machine: Machine, at_z: float | None = None) -> str:
 
     Left: section normal to the axis. Right: section along the axis, x = 0. Dimensions in mm; a legend of materials.
     """
-    views = Views(machine, _middle(machine) if at_z is None else at_z)
+    views = Views(machine, middle_level(machine) if at_z is None else at_z)
     z0, z1 = views.span
     low, high = views.heights
     unit = max(views.width + z1 - z0, high - low) / 65
@@ -86,12 +84,6 @@ def drawing_of(machine: Machine, at_z: float | None = None) -> str:
     )
 
 
-def _middle(machine: Machine) -> float:
-    """In the middle of the rotor's stack, or of the machine."""
-    spans = [p.span for p in machine.parts if p.role is Role.ROTOR] or [p.span for p in machine.parts]
-    return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
-
-
 def _along(machine: Machine, views: Views, pen: Pen) -> Iterator[str]:
     """Dimensions of the section along the axis: diameters to its left, lengths below."""
     low, (z0, _) = views.heights[0], views.span
@@ -116,32 +108,3 @@ def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Ite
         box = f'<rect x="{x:.1f}" y="{at:.1f}" width="{1.6 * pen.unit:.1f}" height="{pen.unit:.1f}" stroke="#333" '
         swatch = f'{box}stroke-width="0.4" fill="{fill(material)}"/>' if material else ""
         yield swatch + pen.text(x + (2.2 * pen.unit if material else 0), at + 0.85 * pen.unit, text)
-
-
-def thumbnail_of(machine: Machine) -> str:
-    """A small SVG of the section across the axis and the section along it, without dimensions.
-
-    Framed on the machine; a base plate that reaches further is cut off.
-    """
-    views = Views(machine, _middle(machine))
-    framed = Views(replace(machine, parts=tuple(part for part in machine.parts if part.role is not Role.BASE)), views.z)
-    margin = 0.04 * framed.width
-    low, high, z0, z1 = (end + side * margin for end, side in zip((*views.heights, *framed.span), (-1, 1, -1, 1)))
-    wide = framed.width + 2 * margin
-    text = "\n".join(
-        [
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide + margin + z1 - z0:.1f} {high - low:.1f}" '
-            'width="320" height="160">',
-            f"<title>{escape(machine.name)}</title>",
-            *_window(0.0, -wide / 2, -high, wide, high - low, views.across()),
-            *_window(wide + margin, z0, -high, z1 - z0, high - low, views.along()),
-            "</svg>\n",
-        ]
-    )
-    return re.sub(r"(\.\d)\d+", r"\1", text)
-
-
-def _window(at: float, x: float, y: float, width: float, height: float, shapes: list[str]) -> list[str]:
-    """What of the shapes lies in a rectangle, drawn from `at` on."""
-    sides = f'x="{at:.1f}" width="{width:.1f}" height="{height:.1f}" viewBox="{x:.1f} {y:.1f} {width:.1f} {height:.1f}"'
-    return [f"<svg {sides}>", *shapes, "</svg>"]

@@ -1,6 +1,6 @@
 """docs/reference/keys.md: every key of every file with its bounds and what it is, from the schemas.
 
-python -m lumped.schemas.keys_page    writes the page
+python -m scripts.keys_page    writes the page
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.schema import FILES, schema
 
-PAGE = Path(__file__).parents[2] / "docs" / "reference" / "keys.md"
+PAGE = Path(__file__).parents[1] / "docs" / "reference" / "keys.md"
 HEAD = f"""# Keys of all files
 
 Every key that a file may have, what it is, and what it may be. This page, the schemas, the readers and their messages

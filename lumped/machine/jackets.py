@@ -149,24 +149,16 @@ def outlet_film(machine: Machine, network: Network, place: str, cooling: Cooling
 @lru_cache(64)
 def _film(channel: Channel, cooling: Cooling, share: float, stretch: float) -> Streamed:
     """stretch : of StreamTable"""
-    return streamed(
-        FLOW,
-        cooling.flow_l_min,
-        lambda q, fluid: channel.film(share * q, fluid),
-        partial(liquid, cooling.coolant),
-        cooling.property_C,
-        liquid=True,
-        stretch=stretch,
-    )
+    film, fluid = (lambda q, of: channel.film(share * q, of)), partial(liquid, cooling.coolant)
+    return streamed(FLOW, cooling.flow_l_min, film, fluid, cooling.property_C, liquid=True, stretch=stretch)
 
 
 def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
     """Cell -> the cell, or the inlet, from which its coolant comes."""
     cells = {jacket: cells_of(machine, jacket) for jacket in cooling.feeds}
     last = {jacket: path[-1] for jacket, path in cells.items()} | {INLET: INLET}
-    return {
-        cell: feed for jacket, path in cells.items() for feed, cell in zip((last[cooling.feeds[jacket]], *path), path)
-    }
+    pairs = (zip(path, (last[cooling.feeds[jacket]], *path)) for jacket, path in cells.items())
+    return {cell: feed for pair in pairs for cell, feed in pair}
 
 
 def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
@@ -183,17 +175,9 @@ def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
 
 def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
     i, before, one = network.column(cell), network.column(feed), np.array([1.0])
-    return Link(
-        f"stream:{cell}",
-        "stream",
-        (feed, cell),
-        np.array([i, i]),
-        np.array([i, before]),
-        np.array([1.0, -1.0]),
-        law,
-        Row(np.array([i]), one),
-        Row(np.array([before]), one),
-    )
+    ends, of, rows = (feed, cell), np.array([i, before]), np.array([i, i])
+    hot, cold = Row(np.array([i]), one), Row(np.array([before]), one)
+    return Link(f"stream:{cell}", "stream", ends, rows, of, np.array([1.0, -1.0]), law, hot, cold)
 
 
 def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, Place]:
