@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
 from lumped.transfer.laws import CLOCK
 from measured.case import RUNNING, Recorded, Test
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
@@ -41,7 +41,7 @@ def wanted(network: Network, requested: bool | None) -> bool:
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{LAYOUT}-{case_key(folder)}.npz"
-    cached = recalled_result(file, lambda path: _from_cache(folder, path))
+    cached = recalled(file, lambda path: _from_cache(folder, path))
     if cached is not None:
         return cached
     posterior = parameter_posterior(folder.case, progress)
@@ -53,7 +53,7 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
             offset=posterior.offset,
             said=json.dumps([posterior.names, posterior.fitted]),
         )
-        store_result(file, out.getvalue(), "belief")
+        store(file, out.getvalue())
     return posterior
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from geom.disk_cache import empty
+from geom.storage import cache_folder
 from thermoscope.console.answer import Answer
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import EXTRAS, lacking
@@ -108,14 +110,25 @@ assert vk.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), None) == 0 a
 """
 
 
-def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
-    """Exit code 1 when something is missing that pictures need."""
+def check(target: str | None, browsers: Sequence[str] = BROWSERS, clean: bool = False) -> int:
+    """Exit code 1 when something is missing that pictures need.  clean : empty the store of results instead"""
+    if clean:
+        return _cleaned(target)
     with progress() as tell:
         tell("looking for graphics")
         parts = findings(browsers)
     document = {"ready": all(f.present for f in parts if f.needed), "checks": [f.document for f in parts]}
     give(document, target, lambda: answer(parts))
     return 0 if document["ready"] else 1
+
+
+def _cleaned(target: str | None) -> int:
+    """Every command makes again what it needs of these: meshes, solids, shapes, comparisons, how long stages took."""
+    folder = cache_folder()
+    files, size = empty(folder)
+    document = {"cleaned": {"folder": folder, "files": files, "bytes": size}}
+    give(document, target, lambda: Answer(f"Freed {size / 1e6:.1f} MB: {files} files in {folder}."))
+    return 0
 
 
 def answer(parts: list[Finding]) -> Answer:

@@ -321,11 +321,14 @@ def doctor(case: Case, json: Json = None) -> None:
 
 
 @app.command()
-def check(json: Json = None) -> None:
+def check(
+    clean: Annotated[bool, typer.Option("--clean", help="Empty the cache instead, and say what was freed.")] = False,
+    json: Json = None,
+) -> None:
     """What this computer lacks (graphics), each with the command that fixes it."""
     from thermoscope.check import check as run
 
-    raise typer.Exit(run(json))
+    raise typer.Exit(run(json, clean=clean))
 
 
 grouped(app)

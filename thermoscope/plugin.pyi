@@ -10,7 +10,7 @@ from geom.description.part import Part as Part, Prism as Prism, Rod as Rod
 from geom.description.profile import ArcGrid as ArcGrid, loop_length as loop_length
 from geom.description.roles import Role as Role
 from geom.description.toml_file import read_toml as read_toml
-from geom.disk_cache import atomic_write as atomic_write, recalled as recalled
+from geom.disk_cache import recalled as recalled, store as store
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
 from geom.families import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
@@ -224,7 +224,6 @@ from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View
 from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
 from thermoscope.bands import along as along, posterior_of as posterior_of, wanted as wanted
-from thermoscope.caches import recalled_result as recalled_result, store_result as store_result
 from thermoscope.case_folder.content import case_key as case_key
 from thermoscope.case_folder.cycle import find_cycle as find_cycle, load_cycle as load_cycle
 from thermoscope.case_folder.folder import (

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from validation.comparison.compare import ChannelError, Comparison, TestError, compare, physical
 from validation.comparison.predict import predict
@@ -38,14 +38,14 @@ class StoredComparison:
 
 def stored_comparison(folder: Folder) -> StoredComparison | None:
     """From the cache; None where this very model was not compared before, and for a network declared by hand."""
-    return None if folder.built is None else recalled_result(_file(folder), lambda path: _read(folder, path))
+    return None if folder.built is None else recalled(_file(folder), lambda path: _read(folder, path))
 
 
 def new_comparison(folder: Folder) -> Comparison:
     """Run the model on every test, and keep what comes of it. Networks declared by hand are quick and are not kept."""
     result = compare(folder.case, budgets=folder.numeric_K)
     if folder.built is not None:
-        store_result(_file(folder), _archive(folder, result), "comparison")
+        store(_file(folder), _archive(folder, result))
     return result
 
 

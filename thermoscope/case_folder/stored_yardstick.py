@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from measured.case import Case
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import code_digest, recorded_arrays
 from validation.comparison.compare import Comparison
 from validation.yardstick.terms import Term
@@ -31,12 +31,12 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison) -> dict[s
 def stored_yardstick(case: Case) -> Yardstick | None:
     """From the cache, or learnt now; None where the tests teach nothing."""
     file = cache_folder() / f"yardstick-{_key(case)}.json"
-    earlier = recalled_result(file, _read)
+    earlier = recalled(file, _read)
     if earlier is not None:
         return earlier
     new = yardstick(case)
     if new is not None:
-        store_result(file, json.dumps(asdict(new)), "yardstick")
+        store(file, json.dumps(asdict(new)))
     return new
 
 

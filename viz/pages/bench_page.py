@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geom.disk_cache import atomic_write
+from geom.storage import write_whole
 from viz.data import short
 from viz.figures.experiment import SENSORS, predicted
 from viz.pages import html
@@ -37,11 +37,7 @@ class BenchPage:
 
 def write_bench_page(page: BenchPage, path: str | Path) -> Path:
     """Write the page and return its path."""
-    path, text = Path(path), render(page)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(path) as partial:
-        partial.write_text(text, encoding="utf-8")
-    return path
+    return write_whole(Path(path), render(page))
 
 
 def render(page: BenchPage) -> str:

@@ -13,7 +13,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from geom.disk_cache import atomic_write
+from geom.storage import write_whole
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
@@ -57,10 +57,7 @@ class Report:
 
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
-    path, page = Path(path), render(report)
-    with atomic_write(path) as partial:
-        partial.write_text(page, encoding="utf-8")
-    return path
+    return write_whole(Path(path), render(report))
 
 
 def render(report: Report) -> str:

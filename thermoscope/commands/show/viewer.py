@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.names import file_stem
-from geom.disk_cache import atomic_write
+from geom.disk_cache import recalled, store
 from geom.errors import InputError
 from geom.plugins import plugins
-from geom.storage import cache_folder
+from geom.storage import cache_folder, write_whole
 from measured.case import Test
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
@@ -61,10 +60,7 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
     """Write the page of an open case, and return its path."""
     page = viewer_page(folder, tell)
     tell(f"writing {file}")
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(file) as partial:
-        partial.write_text(page, encoding="utf-8")
-    return file
+    return write_whole(file, page)
 
 
 def viewer_page(folder: Folder, tell: Progress) -> str:
@@ -90,7 +86,7 @@ def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]
     yield (every := next(making))
     rest = list(making)
     whole = json.dumps([first, every, *rest])
-    store_result(_file(folder), whole, "viewer")  # before the last part: who has it may end this
+    store(_file(folder), whole)  # before the last part: who has it may end this
     yield from rest
 
 
@@ -98,7 +94,7 @@ def stored_documents(folder: Folder) -> list[dict[str, Any]] | None:
     """What the page draws, from the cache; None where this very model was not drawn before."""
     if folder.built is None:
         return None
-    return recalled_result(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
+    return recalled(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
 
 
 def _file(folder: Folder) -> Path:
