@@ -9,11 +9,14 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from geom.disk_cache import empty
 from geom.storage import cache_folder
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import EXTRAS, lacking
 
@@ -110,15 +113,18 @@ assert vk.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), None) == 0 a
 """
 
 
-def check(target: str | None, browsers: Sequence[str] = BROWSERS, clean: bool = False) -> int:
-    """Exit code 1 when something is missing that pictures need.  clean : empty the store of results instead"""
+def check(
+    clean: Annotated[bool, typer.Option("--clean", help="Empty the cache instead, and say what was freed.")] = False,
+    target: Json = None,
+) -> int:
+    """What this computer lacks (graphics), each with the command that fixes it."""
     if clean:
         return _cleaned(target)
     with progress() as tell:
         tell("looking for graphics")
-        parts = findings(browsers)
+        parts = findings()
     document = {"ready": all(f.present for f in parts if f.needed), "checks": [f.document for f in parts]}
-    give(document, target, lambda: answer(parts))
+    give(document, target, lambda: check_summary(parts))
     return 0 if document["ready"] else 1
 
 
@@ -127,16 +133,16 @@ def _cleaned(target: str | None) -> int:
     folder = cache_folder()
     files, size = empty(folder)
     document = {"cleaned": {"folder": folder, "files": files, "bytes": size}}
-    give(document, target, lambda: Answer(f"Freed {size / 1e6:.1f} MB: {files} files in {folder}."))
+    give(document, target, lambda: Summary(f"Freed {size / 1e6:.1f} MB: {files} files in {folder}."))
     return 0
 
 
-def answer(parts: list[Finding]) -> Answer:
+def check_summary(parts: list[Finding]) -> Summary:
     """What is missing, and the command that fixes it."""
     missing = [f.name for f in parts if f.needed and not f.present]
     lines = [_line(f) for f in parts]
     sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
-    return Answer(sentence, lines)
+    return Summary(sentence, lines)
 
 
 def _line(f: Finding) -> str:

@@ -7,23 +7,26 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from geom.errors import InputError, MissingDependency
+from geom.table import Table
 from thermoscope.case_folder.folder import find_case
 from thermoscope.case_folder.runs import by_interest, comparison_of, end_of, fields, temperature_range
-from thermoscope.commands.explain.diagnose import answer as diagnosis_answer
-from thermoscope.commands.explain.diagnose import diagnosed
-from thermoscope.commands.model.build import build
+from thermoscope.commands.explain.diagnose import diagnosed, diagnosis_summary
+from thermoscope.commands.model.build import build_machine
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.show.pages import rendered, write_page
-from thermoscope.commands.test.compare import answer as comparison_answer
-from thermoscope.commands.test.compare import compared
-from thermoscope.console.answer import Answer, Grid, within
+from thermoscope.commands.test.compare import compared, comparison_summary
+from thermoscope.console.options import Json
 from thermoscope.console.progress_bar import one_bar
+from thermoscope.console.summary import Summary, within
 from thermoscope.console.terminal import give, notes, notes_once, progress, say
+from thermoscope.files import checked_out
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -44,13 +47,16 @@ class Stage:
 
 @notes_once()
 @one_bar()
-def demo(out: Path, target: str | None) -> int:
-    """Exit code 0 when an effect was named, accepted, and the error on the held-out test fell."""
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", callback=checked_out)] = Path("out/demo"),
+    target: Json = None,
+) -> int:
+    """The whole loop on the shipped case with a hidden effect: the error before and after."""
     start = time.monotonic()
     case = fresh(out)
     headline("1  The machine: solids, mesh, field, network")
     with within(SHORT):
-        build(str(machine_of(case)), out / "machine", None)
+        build_machine(str(machine_of(case)), out / "machine", None, None)
         picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
@@ -116,7 +122,7 @@ def print_comparison(folder: Folder) -> dict[str, Any]:
     """The comparison, printed."""
     with progress() as tell:
         _, document = compared(folder, tell)
-    give(document, None, lambda: comparison_answer(document, str(folder.settings.path)))
+    give(document, None, lambda: comparison_summary(document, str(folder.settings.path)))
     return document
 
 
@@ -124,7 +130,7 @@ def print_diagnosis(folder: Folder, out: Path) -> dict[str, Any]:
     """The diagnosis, printed."""
     with progress() as tell:
         _, document = diagnosed(folder, tell)
-    give(document, str(out / "diagnose.json"), lambda: diagnosis_answer(document, str(folder.settings.path)))
+    give(document, str(out / "diagnose.json"), lambda: diagnosis_summary(document, str(folder.settings.path)))
     return document
 
 
@@ -237,21 +243,21 @@ def closing(stages: Sequence[Stage], success: bool, out: Path, target: str | Non
     hold_out = [(a, b) for a, b in zip(first, last, strict=True) if a["role"] == "hold-out"]
     fell = success and all(b["rmse_K"] < a["rmse_K"] for a, b in hold_out)
     document = {"case": CASE, "stages": [{"stage": s.name, **s.errors} for s in stages], "fell": fell}
-    give(document, target, lambda: answer(stages, out, seconds))
+    give(document, target, lambda: demo_summary(stages, out, seconds))
     return 0 if fell else 1
 
 
-def answer(stages: Sequence[Stage], out: Path, seconds: float) -> Answer:
+def demo_summary(stages: Sequence[Stage], out: Path, seconds: float) -> Summary:
     """The errors, model by model."""
     headers = ["model", *(f"{t['name']}{'*' if t['role'] == 'hold-out' else ''}" for t in stages[0].errors["tests"])]
     rows = [[s.name, *(t["rmse_K"] for t in s.errors["tests"])] for s in stages]
     flange = [[s.name, *(right_flange(t) for t in s.errors["tests"])] for s in stages]
     sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
-    return Answer(
+    return Summary(
         sentence,
         [
-            Grid("Error of all sensors, rms (K)", headers, rows, keep=headers),
-            Grid("Error on the right flange alone, rms (K)", headers, flange, keep=headers),
+            Table("Error of all sensors, rms (K)", headers, rows, keep=headers),
+            Table("Error on the right flange alone, rms (K)", headers, flange, keep=headers),
         ],
         f"recording {out}/*.rrd; thermoscope show serve {out / CASE}",
     )

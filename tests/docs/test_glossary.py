@@ -93,13 +93,17 @@ def in_need(found, known):
 
 
 def headers(root):
-    """The second argument of every Grid, and every list called headers, in the commands and the demo."""
-    for file in [*(root / "thermoscope/commands").rglob("*.py"), root / "thermoscope/demo.py"]:
+    """The columns of every table, and every list called headers, in the commands, the demo and the results."""
+    others = [root / "thermoscope/demo.py", root / "validation/tables.py"]
+    for file in [*(root / "thermoscope/commands").rglob("*.py"), *others]:
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").lower() == "headers":
                 yield from words_in(node.value)
-            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Grid":
+            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Table":
                 yield from words_in(node.args[1])
+            elif isinstance(node, ast.Constant) and " | " in str(node.value) and "\n" not in str(node.value):
+                names = (column.partition("=")[0].strip(" *") for column in node.value.split("|"))
+                yield from (re.sub(r"\s*\([^)]*\)", "", name).strip().lower() for name in names if name)
 
 
 def words_in(node):

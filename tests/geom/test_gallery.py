@@ -66,7 +66,7 @@ def test_cooling_in_words():
 
 def test_command_lists_the_library_as_document_and_as_table(page, tmp_path, capsys):
     from thermoscope.commands.model.machines import machines
-    from thermoscope.console.answer import within
+    from thermoscope.console.summary import within
 
     assert machines(tmp_path / "lib", "-") == 0
     document = json.loads(capsys.readouterr().out)

@@ -17,7 +17,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "measured/recordings/units.py": "names of inputs by the unit that they say they hold, NAME_percent",
     "thermoscope/case_folder/doctor.py": "shapes that the network names itself, PART#1",
     "measured/recordings/csv_file.py": "endings of files",
-    "thermoscope/console/groups.py": "options on the command line",
+    "thermoscope/cli.py": "options on the command line",
     "thermoscope/console/progress_bar.py": "options on the command line",
     "extras/workbench/dropped.py": "columns that the page names itself, FILE:COLUMN",
     "thermoscope/commands/stored_diagnosis.py": "hidden files",

@@ -24,13 +24,14 @@ from extras.export.model import Output, Signal, packed
 from geom.description.names import FORBIDDEN, LETTERS, file_stem, is_plain, plain_header
 from geom.errors import InputError
 from geom.escapes import c_comment, csv_lines, toml_key, toml_value, xml_text
+from geom.table import Table
 from lumped.declarations.network import load_network
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
 from lumped.transfer.laws import Fixed
 from measured.case import Reference
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
-from thermoscope.console.answer import Answer, Grid, printed, within
+from thermoscope.console.summary import Summary, printed, within
 from thermoscope.console.terminal import give, notes
 from viz.pages import html
 from viz.viewer.page import render
@@ -183,7 +184,7 @@ def test_the_viewer_keeps_names_in_its_data():
 def test_a_terminal_is_sent_no_control_characters(capsys):
     with within(None):
         for name in NAMES:
-            printed(Answer(name, [name, Grid(name, [name, "n"], [[name, 1.0]])], name))
+            printed(Summary(name, [name, Table(name, [name, "n"], [[name, 1.0]])], name))
             notes([name])
     shown = capsys.readouterr()
     assert shown.out.replace("\n", "").isprintable()

@@ -228,7 +228,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
                 "value": last.values[p.name],
                 "unit": p.unit,
                 "ci95": [a, b],
-                "prior": {"from": low, "to": high},
+                "prior": [p.value, low, high],
                 "identified": b - a < BLIND * (high - low),
             }
         )

@@ -9,7 +9,7 @@ import pytest
 from extras.bench.commands.protocol import protocol, read_record
 from extras.bench.measuring.protocol import protocol as judged
 from geom.errors import InputError
-from thermoscope.console.answer import within
+from thermoscope.console.summary import within
 
 RECORD = """
 [machine]

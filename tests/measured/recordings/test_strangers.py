@@ -15,8 +15,9 @@ from measured.importing.source import read_source
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
-from thermoscope.commands.test.new import Wishes, new, places
-from thermoscope.console.answer import within
+from thermoscope.commands.test.new import Wishes, places
+from thermoscope.commands.test.new import new_case as new
+from thermoscope.console.summary import within
 from validation.comparison.compare import compare
 
 S = signals(5.0)

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
-from thermoscope.commands.explain.effects import effects, quantities
+from thermoscope.commands.explain.effects import effects
+from thermoscope.commands.test.quantities import quantities
 from thermoscope.quantities_page import PAGE, page
 from validation.effects.base import Effect
 from validation.effects.registry import kinds

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from geom.errors import InputError
 from lumped.schemas.reader import suggestion
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
 from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
+from thermoscope.console.options import Anyway, Case, Json
 from thermoscope.console.terminal import Progress
 
 if TYPE_CHECKING:
@@ -21,17 +24,14 @@ NAME = "calibration.json"
 
 
 def calibrate(
-    case: str,
-    anyway: bool,
-    target: str | None,
-    profile: tuple[str, ...] = (),
-    starts: int | None = None,
-    seed: int | None = None,
+    case: Case,
+    anyway: Anyway = False,
+    target: Json = None,
+    profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
+    starts: Annotated[int | None, typer.Option(min=1, max=1000, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, max=2**32 - 1, help="Of the points.")] = None,
 ) -> int:
-    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was.
-
-    starts, seed : None for what case.toml says
-    """
+    """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
     from validation.calibration.staged_fit import Search
     from validation.revision.revise import calibrate as fitted
 
@@ -39,9 +39,9 @@ def calibrate(
         unfinished = Unfinished(folder)
         usual = folder.settings
         many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed
-        _profilable(folder, profile)
+        _profilable(folder, profile or ())
         search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
-        result = fitted(folder.case, progress=tell, profiled=profile, search=search)
+        result = fitted(folder.case, progress=tell, profiled=tuple(profile or ()), search=search)
         unfinished.done()
         return result
 

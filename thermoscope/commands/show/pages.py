@@ -34,7 +34,9 @@ from thermoscope.case_folder.runs import (
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case as CaseName
+from thermoscope.console.options import Json, Out
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 
 if TYPE_CHECKING:
@@ -46,8 +48,8 @@ NO_PDF = "No PDF: WeasyPrint or Chromium prints it; thermoscope check says how t
 LIKELY = 0.5  # probability from which an event is drawn
 
 
-def report(case: str, out: Path | None, target: str | None) -> int:
-    """One page, as PDF too where this computer can. Its diagnosis is the last one there was; none is started here."""
+def report(case: CaseName, out: Out = None, target: Json = None) -> int:
+    """One self-contained HTML page: verdict, pictures, numbers with their uncertainty."""
     from viz import write_pdf
 
     with progress() as tell:
@@ -59,7 +61,7 @@ def report(case: str, out: Path | None, target: str | None) -> int:
     printed = [f"As PDF: {pdf}" if pdf else NO_PDF]
     if not (folder.settings.out / "diagnosis.json").exists():
         printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
-    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
+    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Summary(f"The report is {path}.", printed))
     return 0
 
 
@@ -101,8 +103,8 @@ def marked(comparison: Comparison, diagnosis: Mapping[str, Any] | None) -> Compa
     return replace(comparison, events=(*comparison.events, *spans))
 
 
-def render(case: str, out: Path | None, target: str | None) -> int:
-    """Curves and errors always; the field and the recording where the geometry is known."""
+def render(case: CaseName, out: Out = None, target: Json = None) -> int:
+    """Pictures (PNG) and a recording (.rrd) for the rerun viewer."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         into = out or folder.settings.out
@@ -110,7 +112,7 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
-    give(document, target, lambda: Answer(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
+    give(document, target, lambda: Summary(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
     return 0
 
 

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+import typer
 from numpy.typing import NDArray
 
 from geom.description.names import file_stem
@@ -31,7 +32,9 @@ from thermoscope.case_folder.runs import (
     temperature_range,
 )
 from thermoscope.commands.open_case import open_case
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case as CaseName
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing
@@ -44,8 +47,20 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
-    """One picture of a case, at the end of its most telling test, as a PNG file."""
+def picture(
+    case: CaseName,
+    what: Annotated[
+        str,
+        typer.Argument(
+            metavar="WHAT",
+            help="machine, temperature, field, difference, misses, uncertainty, exploded, parts, mesh, flux, network, "
+            "losses, curves, bands, residuals or errors.",
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
+    target: Json = None,
+) -> int:
+    """One picture: of the temperatures, the parts, the heat, or the model against its most telling test."""
     pictures = {**PICTURES, **plugins("pictures")}
     if what not in pictures:
         raise InputError(f"unknown picture '{what}'", "show picture", suggestion(what, pictures))
@@ -58,7 +73,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
         file = out or Path("out") / f"{file_stem(subject.folder.case.name)}-{what}.png"
         tell(f"drawing {file}")
         pictures[what](subject, file)
-    give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))
+    give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
 

@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from geom.description.names import file_stem
 from geom.disk_cache import recalled, store
@@ -33,7 +35,8 @@ from thermoscope.case_folder.runs import (
     temperature_range,
 )
 from thermoscope.commands.open_case import needs_geometry, open_case
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
 from thermoscope.parts import required
 from validation.parameters.unknowns import standing
@@ -43,8 +46,12 @@ MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while 
 FRAMES = 61  # instants of a test: between them the page draws straight lines
 
 
-def viewer(case: str, out: Path | None, target: str | None) -> int:
-    """One page that plays every test on the machine, in the browser's own GL."""
+def viewer(
+    case: Case,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    target: Json = None,
+) -> int:
+    """One HTML file: the machine to turn, cut and play in any browser, without a server or network."""
     if out is not None and (out.suffix != ".html" or out.is_dir()):
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
     needs_geometry(case)
@@ -52,7 +59,7 @@ def viewer(case: str, out: Path | None, target: str | None) -> int:
     with progress() as tell:
         folder = open_case(case, tell)
         file = write_case(folder, out or Path("out") / f"{file_stem(folder.case.name)}-viewer.html", tell)
-    give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Answer(f"{file}"))
+    give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
 
