@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
-from geom.disk_cache import recalled, store
+from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
@@ -46,14 +45,9 @@ def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
         return cached
     posterior = parameter_posterior(folder.case, progress)
     if posterior.fitted:
-        out = io.BytesIO()
-        np.savez_compressed(
-            out,
-            covariance=posterior.covariance,
-            offset=posterior.offset,
-            said=json.dumps([posterior.names, posterior.fitted]),
-        )
-        store(file, out.getvalue())
+        names = json.dumps([posterior.names, posterior.fitted])
+        with stored(file) as partial:
+            np.savez_compressed(partial, covariance=posterior.covariance, offset=posterior.offset, said=names)
     return posterior
 
 

@@ -41,13 +41,7 @@ class Finding:
 
     @property
     def document(self) -> dict[str, Any]:
-        return {
-            "name": self.name,
-            "found": self.present,
-            "needed_for": self.needed_for,
-            "needed": self.needed,
-            "fix": self.fix,
-        }
+        return {"found" if key == "present" else key: value for key, value in vars(self).items()}
 
 
 def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:

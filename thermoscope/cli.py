@@ -32,17 +32,17 @@ CODES = """Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 th
 # Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-# Group -> what it is for, and its commands: MODULE, or MODULE:COMMAND where they have not one name. Each command is a
+# Group -> what it is for, and its commands: MODULE, or MODULE.COMMAND where they have not one name. Each command is a
 # function; its signature and docstring are what the command line takes and says of it.
 GROUPS = {
-    "": ("", "demo check"),
+    "": ("", "demo,check"),
     "model": (
         "Machines, networks, and the model as it stands.",
-        "machines build crosscheck calibrate revise:add revise:remove revise:undo",
+        "machines,build,crosscheck,calibrate,revise.add,revise.remove,revise.undo",
     ),
-    "test": ("Recordings: bring them in, look at them, hold the model against them.", "new doctor compare quantities"),
-    "explain": ("What is missing, and what would show it.", "diagnose improve effects answer"),
-    "show": ("Report, pictures, the workbench in the browser.", "pages:report pages:render picture film viewer plan"),
+    "test": ("Recordings: bring them in, look at them, hold the model against them.", "new,doctor,compare,quantities"),
+    "explain": ("What is missing, and what would show it.", "diagnose,improve,effects,answer"),
+    "show": ("Report, pictures, the workbench in the browser.", "pages.report,pages.render,picture,film,viewer,plan"),
     "use": ("Run the model, and take it elsewhere.", "simulate"),
 }
 
@@ -52,7 +52,7 @@ def home_modules() -> dict[tuple[str, str], str]:
     out = {}
     for group, (_, words) in GROUPS.items():
         package = f"thermoscope.commands.{group}." if group else "thermoscope."
-        for module, _, name in (word.partition(":") for word in words.split()):
+        for module, _, name in (word.partition(".") for word in words.split(",")):
             out[group, name or module] = package + module
     return out
 

@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import viz
 from geom.errors import InputError, MissingDependency
 from geom.table import Table
 from thermoscope.case_folder.folder import find_case
-from thermoscope.case_folder.runs import by_interest, comparison_of, end_of, fields, temperature_range
+from thermoscope.case_folder.settings import read_settings
 from thermoscope.commands.explain.diagnose import diagnosed, diagnosis_summary
 from thermoscope.commands.model.build import build_machine
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.show.pages import rendered, write_page
+from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.test.compare import compared, comparison_summary
 from thermoscope.console.options import Json
 from thermoscope.console.progress_bar import one_bar
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
     from validation.calibration.one_factor_fit import OneFactorFit
 
-CASE, KNOB = "road-test", "fan.flow"
+CASE, KNOB, FLANGE = "road-test", "fan.flow", "flange.right"
 SHORT, LONGER = 7, 13  # lines of a chapter after its first sentence: the whole story is at most 80
 MARKER = ".made-by-thermoscope-demo"
 
@@ -56,7 +58,7 @@ def demo(
     case = fresh(out)
     headline("1  The machine: solids, mesh, field, network")
     with within(SHORT):
-        build_machine(str(machine_of(case)), out / "machine", None, None)
+        build_machine(str(read_settings(case).machine), out / "machine", None, None)
         picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
@@ -70,7 +72,9 @@ def demo(
     stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.comparison.document()))
     headline("5  What is missing?")
     with within(LONGER):
-        diagnosis = print_diagnosis(folder, out)
+        with progress() as tell:
+            _, diagnosis = diagnosed(folder, tell)
+        give(diagnosis, str(out / "diagnose.json"), lambda: diagnosis_summary(diagnosis, str(case)))
     picture(odds(diagnosis, out), "what the readings say")
     success, effects = False, diagnosis["named"]
     if effects:
@@ -81,7 +85,9 @@ def demo(
         stages.append(Stage(f"with {effects[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")
     say(remaining_error(diagnosis, stages[-1].errors))
-    pages(folder, case, out)
+    with progress() as tell:
+        rendered(folder, out, tell)
+        write_page(folder, str(case), out, tell)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, success, out, target, time.monotonic() - start)
@@ -126,21 +132,6 @@ def print_comparison(folder: Folder) -> dict[str, Any]:
     return document
 
 
-def print_diagnosis(folder: Folder, out: Path) -> dict[str, Any]:
-    """The diagnosis, printed."""
-    with progress() as tell:
-        _, document = diagnosed(folder, tell)
-    give(document, str(out / "diagnose.json"), lambda: diagnosis_summary(document, str(folder.settings.path)))
-    return document
-
-
-def pages(folder: Folder, case: Path, out: Path) -> None:
-    """Pictures, recording and report."""
-    with progress() as tell:
-        rendered(folder, out, tell)
-        write_page(folder, str(case), out, tell)
-
-
 def picture(file: Path | None, words: str) -> None:
     """Name a picture where the story has come to it; nothing where this computer cannot draw it."""
     if file is not None and file.exists():
@@ -149,37 +140,20 @@ def picture(file: Path | None, words: str) -> None:
 
 def machine_picture(case: Path, out: Path) -> Path | None:
     """The parts, each with its name."""
-    from viz import regions, split
-
-    built = open_demo(case).built
-    assert built is not None, "the demo's case is built from geometry"
-    return _picture(out / "1-machine.png", lambda png: regions(split(built.mesh), png=png).close())
+    s = Subject(open_demo(case), lambda message: None)
+    return _picture(out / "1-machine.png", lambda png: viz.regions(s.nodes, png=png).close())
 
 
 def misses(folder: Folder, out: Path) -> Path | None:
     """The machine at the end of the held-out test, its sensors labelled by what the calibrated model misses."""
-    from viz import cutaway, sensors, split
-    from viz.data import LATE
-
-    test, built = by_interest(folder)[0], folder.built
-    assert built is not None, "the demo's case is built from geometry"
-
-    def draw(png: Path) -> None:
-        nodes = split(built.mesh)
-        now = fields(folder.case, test, nodes, 1)[1][-1]
-        labels, limits = sensors(comparison_of(folder, test), folder.positions), temperature_range(folder, nodes)
-        title = f"{end_of(test)}: temperature of the model"
-        cutaway(nodes, now, sensors=labels, title=title, limits=limits, note=LATE, png=png)
-
-    return _picture(out / "2-misses.png", draw)
+    s = Subject(folder, lambda message: None)
+    return _picture(out / "2-misses.png", lambda png: draw_field(s, png))
 
 
 def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
     """The picture, None where graphics are missing (`thermoscope check` says how to get them)."""
-    from viz import require_gl
-
     try:
-        require_gl()
+        viz.require_gl()
         draw(png)
     except MissingDependency as fault:
         notes([str(fault)])
@@ -189,11 +163,9 @@ def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
 
 def odds(diagnosis: Mapping[str, Any], out: Path) -> Path | None:
     """The probability of every hypothesis."""
-    from viz import posterior
-
     if not diagnosis:
         return None
-    posterior(diagnosis["odds"], png=out / "3-odds.png")
+    viz.posterior(diagnosis["odds"], png=out / "3-odds.png")
     return out / "3-odds.png"
 
 
@@ -208,14 +180,6 @@ def fresh(out: Path) -> Path:
     return copy
 
 
-def machine_of(case: Path) -> Path:
-    from thermoscope.case_folder.settings import read_settings
-
-    machine = read_settings(case).machine
-    assert machine is not None, "the demo's case is built from geometry"
-    return machine
-
-
 def headline(words: str) -> None:
     say(f"=== {words} ===")
 
@@ -226,15 +190,11 @@ def old_way(folder: Folder) -> OneFactorFit:
 
     with progress() as tell:
         tell("turning the fan's air flow")
-        fit = one_factor_fit(folder.case, KNOB, flange(folder.case.tests))
+        flange = next(c.name for t in folder.case.tests for c in t.channels if c.place == FLANGE)
+        fit = one_factor_fit(folder.case, KNOB, flange)
     flow = 138 * fit.factor
     say(f"{flow:.0f} m3/h instead of 138 bring it closest on road-1; see below what else they do")
     return fit
-
-
-def flange(tests: Sequence[Any]) -> str:
-    """The channel on the right flange."""
-    return next(c.name for t in tests for c in t.channels if c.place == "flange.right")
 
 
 def closing(stages: Sequence[Stage], success: bool, out: Path, target: str | None, seconds: float) -> int:
@@ -264,4 +224,4 @@ def demo_summary(stages: Sequence[Stage], out: Path, seconds: float) -> Summary:
 
 
 def right_flange(test: Mapping[str, Any]) -> float:
-    return next((c["rmse_K"] for c in test["channels"] if c["place"] == "flange.right"), float("nan"))
+    return next((c["rmse_K"] for c in test["channels"] if c["place"] == FLANGE), float("nan"))

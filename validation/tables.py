@@ -59,7 +59,10 @@ def roles_table(roles: Iterable[Document]) -> Table:
 
 def diagnosis_tables(document: Document) -> tuple[Table, ...]:
     """Bases, hypotheses, candidates, events, contradictions, what would decide, and what cannot be seen."""
-    candidates, events = candidates_table(document["candidates"]), events_table(document.get("events", []))
+    candidates, events = (
+        candidates_table(weighty_candidates(document["candidates"])),
+        events_table(document.get("events", [])),
+    )
     every = (
         bases_table(document.get("bases", [])),
         odds_table(document["odds"]),
@@ -78,21 +81,25 @@ def odds_table(odds: Iterable[Document]) -> Table:
     return Table.of("What the readings say", likely, "hypothesis | probability (%)=probability", probability=_percent)
 
 
-def candidates_table(candidates: Sequence[Document]) -> Table:
-    """Size with interval and detection limit, and what each buys; the leader at least."""
-    weighty = [c for c in candidates if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"]
+def weighty_candidates(candidates: Sequence[Document]) -> Sequence[Document]:
+    """Those that carry weight; the leader at least."""
+    return [c for c in candidates if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or candidates[:1]
+
+
+def candidates_table(candidates: Iterable[Document]) -> Table:
+    """Size with interval and detection limit, and what each buys."""
     columns = (
         "effect | *%=probability | *size (95 %)=size | *detectable=smallest_detectable | *unit | "
-        "*refitted (K)=refitted | held out (K)=held_out | score (nats)=score | threshold | decision"
+        "*refitted (K)=refitted | held out (K)=held_out | evidence (nats)=score | threshold | decision"
     )
     return Table.of(
         "Candidates",
-        weighty or candidates[:1],
+        candidates,
         columns,
         ["named", "group"],
         size=lambda c: with_interval(c["amplitude"]["value"], *c["amplitude"]["ci95"]),
-        refitted=lambda c: _arrow(c["rmse_K"]),
-        held_out=lambda c: _arrow(c["holdout_rmse_K"]),
+        refitted=lambda c: _arrow(c.get("rmse_K")),
+        held_out=lambda c: _arrow(c.get("holdout_rmse_K")),
         probability=_percent,
         unit=lambda c: unit_of(c["amplitude"]),
     )
@@ -108,7 +115,7 @@ def unit_of(record: Document) -> str:
 
 
 def _percent(record: Document) -> str:
-    return f"{100 * record['probability']:.1f}"
+    return f"{100 * record['probability']:.1f}" if "probability" in record else ""
 
 
 def events_table(events: Iterable[Document], likely: bool = True) -> Table:
@@ -155,7 +162,7 @@ def limits_table(cannot_see: Iterable[Document]) -> Table:
     return Table.of(
         "Effects that could be there unseen",
         cannot_see,
-        "effect | *smallest that would be seen=smallest | *unit",
+        "effect | *detectable=smallest | *unit",
         smallest=lambda h: h["smallest_detectable"] or "none that physics allows",
     )
 

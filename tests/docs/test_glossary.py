@@ -101,9 +101,17 @@ def headers(root):
                 yield from words_in(node.value)
             elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Table":
                 yield from words_in(node.args[1])
-            elif isinstance(node, ast.Constant) and " | " in str(node.value) and "\n" not in str(node.value):
-                names = (column.partition("=")[0].strip(" *") for column in node.value.split("|"))
-                yield from (re.sub(r"\s*\([^)]*\)", "", name).strip().lower() for name in names if name)
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) == "Table.of":
+                yield from names_of(node.args[2])
+            elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").lower() in ("columns", "sensors"):
+                yield from names_of(node.value)
+
+
+def names_of(node):
+    """Of the columns in "NAME=KEY | *NAME"."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        for column in node.value.split("|"):
+            yield re.sub(r"\s*\([^)]*\)", "", column.partition("=")[0].strip(" *")).strip().lower()
 
 
 def words_in(node):

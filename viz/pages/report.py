@@ -15,19 +15,8 @@ from typing import Any
 
 from geom.storage import write_whole
 from geom.table import Table
+from validation import tables
 from validation.comparison.uncertainty import RULE
-from validation.tables import (
-    budget_table,
-    candidates_table,
-    contradiction_table,
-    events_table,
-    limits_table,
-    offers,
-    offers_table,
-    parameters_table,
-    sensors_table,
-    undecided,
-)
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
@@ -147,8 +136,8 @@ def _missing(r: Report) -> str:
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     parts = [
         html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance."),
-        html.table(candidates_table(by_score)),
-        html.headed(events_table(d.get("events", []))),
+        html.table(tables.candidates_table(by_score[:12])),
+        html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]
     if placed(d) and d["where"][0].get("heat"):
@@ -171,27 +160,27 @@ def _contradiction(row: Document | None) -> str:
         return ""
     figure = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
     head = f"<h3>Tests that contradict each other</h3>{html.text(row['words'])}"
-    return f"{head}{figure}{html.more('In numbers', html.table(contradiction_table(row)))}"
+    return f"{head}{figure}{html.more('In numbers', html.table(tables.contradiction_table(row)))}"
 
 
 def _hidden(r: Report) -> str:
     """What these tests cannot see, and which test would show more."""
     if r.diagnosis is None:
         return ""
-    limits = html.table(limits_table(r.diagnosis.get("cannot_see", [])))
+    limits = html.table(tables.limits_table(r.diagnosis.get("cannot_see", [])))
     return html.section(
         "What these tests cannot see, and what would help",
         limits and html.more("Effects that could be there unseen", limits),
-        html.headed(offers_table(offers(r.diagnosis))) or html.text(undecided(r.diagnosis)),
+        html.headed(tables.offers_table(tables.offers(r.diagnosis))) or html.text(tables.undecided(r.diagnosis)),
     )
 
 
 def _values(r: Report) -> str:
     """What the data fix is in sight; what they leave as it was expected opens on a click."""
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
-    left = parameters_table("", [p for p in r.parameters if p not in fixed])
+    left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
     rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
-    return html.section("Calibrated values", html.table(parameters_table("", fixed)), rest)
+    return html.section("Calibrated values", html.table(tables.parameters_table("", fixed)), rest)
 
 
 def _sensors(r: Report) -> str:
@@ -203,13 +192,13 @@ def _sensors(r: Report) -> str:
 
 def _sensors_of(test: Document) -> str:
     name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-    return html.more(name, html.table(sensors_table("", [test])), expanded=test["role"] == "hold-out")
+    return html.more(name, html.table(tables.sensors_table("", [test])), expanded=test["role"] == "hold-out")
 
 
 def _numerical(r: Report) -> str:
     """What mesh, condensation and time steps leave in every temperature, test by test."""
-    parts = [html.more(name, html.table(budget_table(places))) for name, places in r.error_budget.items()]
-    return html.section(budget_table([]).title, *parts)
+    parts = [html.more(name, html.table(tables.budget_table(places))) for name, places in r.error_budget.items()]
+    return html.section(tables.budget_table([]).title, *parts)
 
 
 def _assumed(r: Report) -> str:

@@ -63,7 +63,11 @@ def export(
         content = tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
     paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
-    document = {"case": folder.case.name, "files": [str(p) for p in paths], "worksheets": list(content)}
+    document = {
+        "case": folder.case.name,
+        "files": [str(p) for p in paths],
+        "worksheets": [table.title for table in content],
+    }
     give(document, target, lambda: Summary(f"{len(paths)} files written.", [str(p) for p in paths]))
     return 0
 

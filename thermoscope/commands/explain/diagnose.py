@@ -15,15 +15,7 @@ from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
-from validation.tables import (
-    LEAST_PROBABILITY,
-    bases_table,
-    candidates_table,
-    events_table,
-    next_tests,
-    odds_table,
-    unit_of,
-)
+from validation import tables
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -61,15 +53,15 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
-        return Summary(sentence, [bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
+        return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model add {case} {effects[0]}" if effects else f"explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     events, odds, candidate_rows = (
         document.get("events", []),
-        odds_table(document["odds"]),
-        candidates_table(candidates),
+        tables.odds_table(document["odds"]),
+        tables.candidates_table(tables.weighty_candidates(candidates)),
     )
     parts = [
         replace(odds, rows=odds.rows[:ODDS]),
@@ -77,14 +69,14 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         *_leader(candidates),
         *_lost(candidates, effects),
         " ".join(row["words"] for row in document.get("remainder", [])),
-        events_table(events),
+        tables.events_table(events),
         *contradiction(document.get("contradiction")),
-        *next_tests(document),
+        *tables.next_tests(document),
         in_short(budgets or {}, steps or {}),
         hidden_words,
         question(document, case),
     ]
-    rest = [events_table(events, likely=False), *budget(budgets or {}, steps or {}), *hidden]
+    rest = [tables.events_table(events, likely=False), *budget(budgets or {}, steps or {}), *hidden]
     return Summary(sentence, parts, f"Next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
 
 
@@ -96,7 +88,7 @@ def question(document: Mapping[str, Any], case: str) -> str:
 
 def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
-    if not candidates or candidates[0]["probability"] <= LEAST_PROBABILITY:
+    if not candidates or candidates[0]["probability"] <= tables.LEAST_PROBABILITY:
         return []
     first = candidates[0]
     lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
@@ -114,7 +106,7 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
     refitted = [
         f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}."
         for c in candidates[1:ROWS]
-        if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in effects
+        if c["note"] and c["probability"] > tables.LEAST_PROBABILITY and c["effect"] not in effects
     ]
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
@@ -124,7 +116,7 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
 
 def limit(candidate: Mapping[str, Any]) -> str:
     """The smallest size that the tests would show, with its unit."""
-    return f"{cell(candidate['smallest_detectable'])} {unit_of(candidate['amplitude'])}".strip()
+    return f"{cell(candidate['smallest_detectable'])} {tables.unit_of(candidate['amplitude'])}".strip()
 
 
 def bought(candidate: Mapping[str, Any]) -> str:

@@ -74,7 +74,6 @@ def compared(
     from thermoscope.bands import of_tests, wanted
     from thermoscope.case_folder.stored_yardstick import yardstick_document
     from validation.comparison.error_budget import documents
-    from validation.diagnosis.discrepancy import discrepancies
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
@@ -83,6 +82,8 @@ def compared(
     tell("learning plain models")
     more: dict[str, Any] = {}
     if why:
+        from validation.diagnosis.discrepancy import discrepancies
+
         uncertainties = [u.document() for test in result.tests for u in test.uncertainty]
         more = {"uncertainty": uncertainties, **discrepancies(folder.case, tell).document()}
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
