@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from geom.errors import MissingDependency
+
 
 @dataclass(frozen=True)
 class Table:
@@ -49,9 +51,11 @@ class Table:
         return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 
     def frame(self) -> Any:
-        """A pandas.DataFrame with the title as its name."""
-        import pandas
-
+        """A pandas.DataFrame, the title in its attrs. Raises MissingDependency where pandas is not installed."""
+        try:
+            import pandas
+        except ModuleNotFoundError:
+            raise MissingDependency("a DataFrame needs pandas: pip install pandas") from None
         frame = pandas.DataFrame(self.documents(), columns=list(self.columns))
         frame.attrs["title"] = self.title
         return frame

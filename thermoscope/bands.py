@@ -32,7 +32,7 @@ JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
-def wanted(network: Network, requested: bool | None) -> bool:
+def bands_requested(network: Network, requested: bool | None) -> bool:
     """Whether bands are made: as asked, else where they cost little."""
     return len(network.states) <= SMALL if requested is None else requested
 
@@ -67,7 +67,7 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     )
 
 
-def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
+def predicted_bands(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
     """Temperatures along a record and how sure they are."""
     return bands(of, _test_of(name, record), _places(rows))
 
@@ -120,7 +120,7 @@ def documents(bands: Bands) -> dict[str, dict[str, Any]]:
     return out
 
 
-def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
+def test_bands(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     """Test by test and place by place the width of the band; for a sensor also how much of its record is inside.
 
     The readings' own uncertainty (1 sigma of the sheet) counts with it.

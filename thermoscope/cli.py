@@ -17,7 +17,7 @@ import typer
 from geom.errors import ThermoscopeError
 from geom.plugins import plugins
 from geom.storage import cache_folder
-from thermoscope.console.summary import LINES, within
+from thermoscope.console.summary import LINES, limited_lines
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.files import STOPPED, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
@@ -57,8 +57,8 @@ def home_modules() -> dict[tuple[str, str], str]:
     return out
 
 
-def command_line(wanted: Callable[[str, str], bool], extras: Sequence[typer.Typer] = ()) -> typer.Typer:
-    """The app in which the wanted commands (group, name) can run; of the others it knows the help alone.
+def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.Typer] = ()) -> typer.Typer:
+    """The program in which the requested commands (group, name) can run; of the others it knows the help alone.
 
     extras : apps of further commands; the name of each is its group, a new one brings its help
     """
@@ -70,7 +70,7 @@ def command_line(wanted: Callable[[str, str], bool], extras: Sequence[typer.Type
             parts[group] = typer.Typer(help=words, **PLAIN)
             app.add_typer(parts[group], name=group, short_help=words)
     for (group, name), module in home_modules().items():
-        run = getattr(import_module(module), name) if wanted(group, name) else _help_alone(module, name)
+        run = getattr(import_module(module), name) if requested(group, name) else _help_alone(module, name)
         parts[group].command(name, short_help=run.__doc__)(run)  # else the list of commands cuts it
     for extra in extras:
         for one in extra.registered_commands:
@@ -113,7 +113,7 @@ def main() -> None:
     _open_streams()
     arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
     try:
-        with within(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
+        with limited_lines(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
             if "--help" not in arguments:
                 required(package for word in arguments[:2] for package in NEEDS.get(word, ()))
             code = narrowed_app(arguments)(arguments, prog_name="thermoscope", standalone_mode=False)

@@ -26,7 +26,7 @@ from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.test.compare import compared, comparison_summary
 from thermoscope.console.options import Json
 from thermoscope.console.progress_bar import one_bar
-from thermoscope.console.summary import Summary, within
+from thermoscope.console.summary import Summary, limited_lines
 from thermoscope.console.terminal import give, notes, notes_once, progress, say
 from thermoscope.files import checked_out
 
@@ -57,21 +57,21 @@ def demo(
     start = time.monotonic()
     case = fresh(out)
     headline("1  The machine: solids, mesh, field, network")
-    with within(SHORT):
+    with limited_lines(SHORT):
         build_machine(str(read_settings(case).machine), out / "machine", None, None)
         picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
     folder = open_demo(case)
     headline("3  Held against the road")
-    with within(SHORT):
+    with limited_lines(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
         picture(misses(folder, out), "after an hour on the road, what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     fit = old_way(folder)
     stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.comparison.document()))
     headline("5  What is missing?")
-    with within(LONGER):
+    with limited_lines(LONGER):
         with progress() as tell:
             _, diagnosis = diagnosed(folder, tell)
         give(diagnosis, str(out / "diagnose.json"), lambda: diagnosis_summary(diagnosis, str(case)))
@@ -79,7 +79,7 @@ def demo(
     success, effects = False, diagnosis["named"]
     if effects:
         headline(f"6  Add {effects[0]}")
-        with within(SHORT):
+        with limited_lines(SHORT):
             success = add(str(case), effects[0], False, str(out / "add.json")) == 0
         folder = open_demo(case)
         stages.append(Stage(f"with {effects[0]}", folder.compared.document()))

@@ -224,7 +224,11 @@ from viz.rendering.scale import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
 from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
-from thermoscope.bands import along as along, posterior_of as posterior_of, wanted as wanted
+from thermoscope.bands import (
+    predicted_bands as predicted_bands,
+    posterior_of as posterior_of,
+    bands_requested as bands_requested,
+)
 from thermoscope.case_folder.content import case_key as case_key
 from thermoscope.case_folder.cycle import find_cycle as find_cycle, load_cycle as load_cycle
 from thermoscope.case_folder.folder import (

@@ -31,7 +31,7 @@ from lumped.model.network import Row
 from lumped.transfer.laws import Fixed
 from measured.case import Reference
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
-from thermoscope.console.summary import Summary, printed, within
+from thermoscope.console.summary import Summary, limited_lines, printed
 from thermoscope.console.terminal import give, notes
 from viz.pages import html
 from viz.viewer.page import render
@@ -182,7 +182,7 @@ def test_the_viewer_keeps_names_in_its_data():
 
 
 def test_a_terminal_is_sent_no_control_characters(capsys):
-    with within(None):
+    with limited_lines(None):
         for name in NAMES:
             printed(Summary(name, [name, Table(name, [name, "n"], [[name, 1.0]])], name))
             notes([name])

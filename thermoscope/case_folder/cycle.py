@@ -236,8 +236,8 @@ def _series(
 ) -> tuple[Drive, dict[str, str], Series]:
     m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
     rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
-    own = _numbers(m, inductance_H=2e-3, inertia_kg_m2=2.0, friction_Nms=0.0)
-    machine = SeriesMachine.from_ratings(*rated, L=own[0], J=own[1], B=own[2])
+    values = _numbers(m, inductance_H=2e-3, inertia_kg_m2=2.0, friction_Nms=0.0)
+    machine = SeriesMachine.from_ratings(*rated, L=values[0], J=values[1], B=values[2])
     body = _numbers(v, mass_kg=None, wheel_radius_m=None, gear=None, efficiency=0.95, rolling=0.01)
     vehicle = Vehicle(*body, *_numbers(v, drag_area_m2=3.0, air_density_kg_m3=1.2, brakes_m_s2=3.0, regeneration=0.0))
     control = Controller(

@@ -131,14 +131,14 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
     return run.time[rows], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
-def at_instant(test: Test, time: float) -> str:
+def instant_words(test: Test, time: float) -> str:
     """Which test and which instant (s) a picture shows."""
     return f"{test.name} at {time / 60:.0f} min"
 
 
-def end_of(test: Test) -> str:
+def end_words(test: Test) -> str:
     """The same of its end."""
-    return at_instant(test, test.time[-1])
+    return instant_words(test, test.time[-1])
 
 
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:

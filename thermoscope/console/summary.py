@@ -40,7 +40,7 @@ class Summary:
 
 
 @contextmanager
-def within(lines: int | None) -> Any:
+def limited_lines(lines: int | None) -> Any:
     """Summaries in here have so many lines after their sentence; None for all there is, at any width."""
     token = _limit.set(lines)
     try:

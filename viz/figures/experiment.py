@@ -37,8 +37,8 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
             y, band = curves[channel.name][thin], 2 * float(np.hypot(channel.sigma_K, channel.model_K))
             ax.fill_between(t, y - band, y + band, color=colour, alpha=0.15, lw=0)
             ax.plot(t, y, color=colour)
-        apart = np.ptp([curves[channel.name] for curves in plan.curves.values()], axis=0).max()
-        ax.set_title(f"{short(channel.name)}: up to {apart:.1f} K apart")
+        spread_K = np.ptp([curves[channel.name] for curves in plan.curves.values()], axis=0).max()
+        ax.set_title(f"{short(channel.name)}: up to {spread_K:.1f} K apart")
         ax.margins(x=0)
         ax.axvline((time[at] - time[0]) / unit_s, color=LIGHT.ink, lw=0.8, ls=":")
         ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]

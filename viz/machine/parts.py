@@ -13,7 +13,7 @@ from geom.description.identity import Identity
 from geom.description.roles import Role
 from viz.colours import LIGHT, Theme, heat, part_colours, rgb
 from viz.rendering import scene
-from viz.rendering.callouts import Label, beside, callouts, text
+from viz.rendering.callouts import Label, callouts, label_room, text
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
@@ -48,7 +48,7 @@ def regions(
     surface = cut_away(nodes, wedge)
     _paint(p, surface, None, theme, mesh=mesh)
     scene.headline(p, title, theme)
-    wide = beside(nodes.parts, LETTERS, 0.2)
+    wide = label_room(nodes.parts, LETTERS, 0.2)
     room = Room(wide, wide, TITLE if title else 0.0)
     scene.look(p, surface.framed, view, room)
     anchor_points = anchors(surface, view, room, surface.framed)

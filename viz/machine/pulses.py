@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from viz.colours import VERDICT, rgb
 from viz.data import Sensor
-from viz.rendering.callouts import HOLLOW, on_top
+from viz.rendering.callouts import HOLLOW, draw_on_top
 from viz.rendering.cut import Surface
 from viz.rendering.visibility import covered, obstacle
 
@@ -53,4 +53,4 @@ class Pulses:
                 reset_camera=False,
                 render=False,
             )
-            on_top(actor, order)
+            draw_on_top(actor, order)

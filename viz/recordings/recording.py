@@ -21,7 +21,7 @@ from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import beside, blueprint, eye, non_overlapping
+from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -154,7 +154,7 @@ def _names(
 
     places = np.array([positions[channel.name] for channel in channels])
     hidden = covered(obstacle(surface), places, eye(surface.points))
-    at = np.where(hidden[:, None], beside(places, surface.points), places)
+    at = np.where(hidden[:, None], outside_outline(places, surface.points), places)
     visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
         at[visible],

@@ -27,6 +27,7 @@ from thermoscope.plugin import (
     Summary,
     Table,
     as_number,
+    bands_requested,
     before_last,
     find_case,
     give,
@@ -40,7 +41,6 @@ from thermoscope.plugin import (
     short_of,
     standing_reference,
     toml_value,
-    wanted,
 )
 
 POINTS = 6  # speeds of the envelope
@@ -135,7 +135,7 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     here = {form: rated(model, op, limits, form, None) for form in DUTIES}
     old = _before(folder, request, tell)
     before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
-    posterior = posterior_of(folder, tell) if request.losses is None and wanted(model.network, sure) else None
+    posterior = posterior_of(folder, tell) if request.losses is None and bands_requested(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, request)
     envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]

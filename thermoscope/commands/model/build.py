@@ -146,11 +146,11 @@ def build_summary(document: Mapping[str, Any], folder: Path) -> Summary:
 
 
 def _sizes(sizes: Mapping[str, Any]) -> list[Table | str]:
-    """Error against number of states, and what the guard saw at points nothing was fitted to."""
-    requested, guard = sizes["wish_percent"], sizes["guard"]
+    """Error against number of states, and what was seen at points nothing was fitted to."""
+    requested, trials = sizes["wish_percent"], sizes["guard"]
     table = Table.of(
         f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})",
-        [*sizes["sizes"], *({**g, "asked": None} for g in guard)],
+        [*sizes["sizes"], *({**g, "asked": None} for g in trials)],
         "network | *states | mean=nominal.mean | hot spot=nominal.hot | point=nominal.point | "
         "*mean, random=random.mean | *hot, random=random.hot | point, random=random.point | *met",
         network=lambda s: "learned" if s["asked"] is None else f"up to {s['asked']}" if s["asked"] else "means only",
@@ -160,8 +160,8 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Table | str]:
     if mesh := sizes["mesh"]:
         left = f"{mesh['worst']:.2g} % of the rise at the hot spot of {mesh['worst_part']}"
         notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}.")
-    if guard and not guard[-1]["met"]:
-        bad = guard[-1]["random"]
+    if trials and not trials[-1]["met"]:
+        bad = trials[-1]["random"]
         where = f"mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}"
         notes.append(f"The accuracy is missed: {where}.")
     return [table, *notes]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import at_instant, before_last, by_interest, fields, readings, temperature_range
+from thermoscope.case_folder.runs import before_last, by_interest, fields, instant_words, readings, temperature_range
 from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json
@@ -84,7 +84,7 @@ def now(folder: Folder) -> str:
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
     """Which test, which instant (s), which model, and what that misses most."""
-    return f"{at_instant(test, time)}, {words}{largest(sensors)}"
+    return f"{instant_words(test, time)}, {words}{largest(sensors)}"
 
 
 def largest(sensors: Sequence[Sensor]) -> str:

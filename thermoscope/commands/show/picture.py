@@ -19,7 +19,7 @@ from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
-from thermoscope.bands import along, field_half95, posterior_of
+from thermoscope.bands import field_half95, posterior_of, predicted_bands
 from thermoscope.case_folder import runs
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
@@ -84,7 +84,7 @@ class Subject:
 
     @property
     def when(self) -> str:
-        return runs.end_of(self.test)
+        return runs.end_words(self.test)
 
     @property
     def built(self) -> Built:
@@ -129,7 +129,7 @@ class Subject:
         network, values = heat_model(standing(case), case.model.values)
         heat = balance(network, test, values)
         step = last_running_step(network, heat)
-        when = runs.at_instant(self.test, heat.time[step + 1])
+        when = runs.instant_words(self.test, heat.time[step + 1])
         means = dict(zip([*network.states, *network.boundaries], heat.z[step + 1].tolist(), strict=True))
         return heat_flows(network, heat, step), means, when
 
@@ -162,7 +162,9 @@ def _uncertainty(s: Subject, png: Path) -> None:
 
 def _bands(s: Subject, png: Path) -> None:
     network, test = standing(s.folder.case), s.test
-    bands = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), runs.named_rows(network, s.folder))
+    bands = predicted_bands(
+        posterior_of(s.folder, s.tell), test.name, record(test, {}), runs.named_rows(network, s.folder)
+    )
     read, measured = {f"sensor {c.name}": c.y for c in test.channels}, {c.place for c in test.channels}
     each = [(n, bands.y[:, k], bands.half95[:, k], read.get(n)) for k, n in enumerate(bands.names) if n not in measured]
     viz.predicted(bands.time, [viz.Predicted(*one) for one in each], title=test.name, png=png)

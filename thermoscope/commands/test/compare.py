@@ -71,7 +71,7 @@ def compared(
     folder: Folder, tell: Progress, why: bool = False, sure: bool | None = None
 ) -> tuple[Comparison, dict[str, Any]]:
     """An open case's model against its tests, and the document of it."""
-    from thermoscope.bands import of_tests, wanted
+    from thermoscope.bands import bands_requested, test_bands
     from thermoscope.case_folder.stored_yardstick import yardstick_document
     from validation.comparison.error_budget import documents
 
@@ -86,7 +86,7 @@ def compared(
 
         uncertainties = [u.document() for test in result.tests for u in test.uncertainty]
         more = {"uncertainty": uncertainties, **discrepancies(folder.case, tell).document()}
-    bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
+    bands = {"bands": test_bands(folder, tell)} if bands_requested(folder.case.model.network, sure) else {}
     return result, {
         **result.document(),
         **more,

@@ -96,8 +96,8 @@ def new(
     target: Json = None,
 ) -> int:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
-    window_s, given = (start, end), settings(constants or ())
-    return new_case(files, Wishes(machine, network, out, yes, given, period, window_s, places(place or ())), target)
+    window_s, values = (start, end), settings(constants or ())
+    return new_case(files, Wishes(machine, network, out, yes, values, period, window_s, places(place or ())), target)
 
 
 def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:

@@ -22,7 +22,7 @@ from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record
 from lumped.integration.simulate import simulate as integrated
 from lumped.model.network import Network, Row
-from thermoscope.bands import along, documents, posterior_of, wanted
+from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
@@ -50,7 +50,7 @@ def simulate(
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        posterior = posterior_of(folder, tell) if wanted(network, sure) else None
+        posterior = posterior_of(folder, tell) if bands_requested(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits}
@@ -119,7 +119,7 @@ def _ran(
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    band = None if posterior is None else along(posterior, cycle.name, record, rows)
+    band = None if posterior is None else predicted_bands(posterior, cycle.name, record, rows)
     file = write_whole(into / f"simulate-{file_stem(cycle.name)}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)
