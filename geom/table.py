@@ -55,19 +55,19 @@ class Table:
         try:
             import pandas
         except ModuleNotFoundError:
-            raise MissingDependency("a DataFrame needs pandas: pip install pandas") from None
+            raise MissingDependency("a table for further work needs another package: `pip install pandas`") from None
         frame = pandas.DataFrame(self.documents(), columns=list(self.columns))
         frame.attrs["title"] = self.title
         return frame
 
 
-def value_at(record: Any, path: str) -> Any:
-    """What a record has under "KEY" or "KEY.KEY"; None where it has none."""
+def value_at(holder: object, path: str) -> Any:
+    """What an object or mapping has under "KEY" or "KEY.KEY"; None where it has none."""
 
     def inner(here: Any, key: str) -> Any:
         return here.get(key) if isinstance(here, Mapping) else getattr(here, key, None)
 
-    return reduce(inner, path.split("."), record)
+    return reduce(inner, path.split("."), holder)
 
 
 def cell(value: Any) -> str:

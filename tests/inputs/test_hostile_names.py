@@ -121,7 +121,7 @@ def test_the_description_of_an_fmu_is_xml_with_every_name(model, version):
 
 
 def test_worksheets_hold_texts_as_texts(tmp_path):
-    sheets = {name: {name: [name, "x"], "t": NAMES[:2]} for name in NAMES}
+    sheets = [Table(name, [name, "t"], [[name, NAMES[0]], ["x", NAMES[1]]]) for name in NAMES]
     book = openpyxl.load_workbook(write_xlsx(tmp_path / "x.xlsx", sheets))
     cells = [cell for sheet in book.worksheets for row in sheet for cell in row if cell.value is not None]
     assert {cell.data_type for cell in cells} == {"s"}
@@ -131,7 +131,7 @@ def test_worksheets_hold_texts_as_texts(tmp_path):
 
 def test_csv_has_no_formula_and_lies_in_its_folder(tmp_path):
     inside = tmp_path / "a" / "b"
-    write_csvs(inside, {name[:LETTERS]: {name: [name]} for name in NAMES})
+    write_csvs(inside, [Table(name[:LETTERS], [name], [[name]]) for name in NAMES])
     assert {p.parent for p in tmp_path.rglob("*") if p.is_file()} == {inside}
     rows = list(csv.reader(io.StringIO(csv_lines([[name, -1.5, "-1.5"] for name in NAMES]), newline="")))
     assert len(rows) == len(NAMES)
@@ -165,7 +165,7 @@ class Tags(HTMLParser):
 
 def tags(name):
     parser, inner = Tags(), html.inner_page(html.page(name, [html.text(name)]), name)
-    parser.feed(html.page(name, [html.section(name, html.text(name), html.table([name], [[name]])), inner]))
+    parser.feed(html.page(name, [html.section(name, html.text(name), html.table(Table("", [name], [[name]]))), inner]))
     return parser.tags
 
 
