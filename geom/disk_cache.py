@@ -1,19 +1,32 @@
-"""Results kept on disk, named by the content of the prisms they come from."""
+"""The one store of results on disk: files named KIND-KEY.SUFFIX by the content they come from.
+
+All of them together take `geom.limits.CACHE_BYTES`; what was not used for longest goes first. A damaged entry counts as
+none, and is made again. `thermoscope check --clean` empties the store.
+"""
 
 from __future__ import annotations
 
-import errno
 import hashlib
-import os
+import re
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from os import utime
 from pathlib import Path
-from typing import TypeVar
-from uuid import uuid4
+from typing import TYPE_CHECKING, TypeVar
 
-from geom.description.part import Part
+from geom.limits import CACHE_BYTES
+from geom.storage import atomic_write, write_whole
+
+if TYPE_CHECKING:
+    from geom.description.part import Part
 
 Result = TypeVar("Result")
+ENTRY = re.compile(r"stages\.json|[a-z][\w.-]*-[0-9a-f]{8,20}\.(brep|json|npz)")
+PARTIAL = re.compile(r"\..*\.[0-9a-f]{32}\.part\.(brep|json|npz)")
+ABANDONED_S = 86400.0  # no entry takes a day to write: what is unfinished for longer a killed process has left
+UNCOUNTED = 0.01  # of the bound, which a process may write before it counts the store again
+_since_count: dict[Path, int] = {}  # folder -> bytes that this process has written since then
 
 
 def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) -> Path | None:
@@ -25,44 +38,68 @@ def cache_file(part: Part, folder: Path | str | None, kind: str, suffix: str) ->
 
 
 def recalled(file: Path, read: Callable[[Path], Result]) -> Result | None:
-    """What is kept there; None where there is nothing or it is damaged: then it is made again.
+    """An entry, which counts as a use of it; None where there is none or it is damaged: then it is made again.
 
     Whatever fails in reading means damage: zip, NumPy, JSON and CAD have no error in common.
     """
     if not file.is_file():
         return None
     try:
-        return read(file)
+        result = read(file)
     except Exception:
         return None
+    with suppress(OSError):  # a folder that can only be read
+        utime(file)
+    return result
 
 
 @contextmanager
-def atomic_write(path: Path) -> Iterator[Path]:
-    """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails.
-
-    It is on the disk before it is renamed, and its new name is before this returns: a power cut leaves old or new.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.stem}.{uuid4().hex}.part{path.suffix}")
-    try:
+def stored(file: Path) -> Iterator[Path]:
+    """A file to write an entry to, which takes its place when it is complete."""
+    with atomic_write(file) as partial:
         yield partial
-        _synced(partial, os.O_RDWR)
-        partial.replace(path)
-        _synced(path.parent, os.O_RDONLY)
-    finally:
-        partial.unlink(missing_ok=True)
+    _bound(file)
 
 
-def _synced(path: Path, mode: int) -> None:
-    """What was written there is on the disk. Some systems cannot open folders, or sync them: then they need not."""
-    if path.is_dir() and os.name == "nt":
+def store(file: Path, content: str | bytes) -> None:
+    """Write an entry as a whole."""
+    write_whole(file, content)
+    _bound(file)
+
+
+def _bound(new: Path) -> None:
+    """Cut the store of a new entry to its bound; the entry itself stays."""
+    folder, most, total = new.parent, CACHE_BYTES.most, 0
+    _since_count[folder] = _since_count.get(folder, most) + new.stat().st_size
+    if _since_count[folder] <= UNCOUNTED * most:
         return
-    file = os.open(path, mode)
-    try:
-        os.fsync(file)
-    except OSError as fault:
-        if fault.errno not in (errno.EINVAL, errno.ENOTSUP):
-            raise
-    finally:
-        os.close(file)
+    _since_count[folder] = 0
+    for _, size, path in sorted(entries(folder), key=lambda entry: (entry[2] != new, -entry[0])):
+        total += size
+        if total > most and path != new:
+            _removed(path)
+
+
+def entries(folder: Path) -> list[tuple[int, int, Path]]:
+    """Last use (ns), size (bytes) and path of all that the store has written here; other files are left alone."""
+    out = []
+    for path in folder.iterdir() if folder.is_dir() else ():
+        with suppress(OSError):  # another process dropped it first
+            status = path.stat()
+            abandoned = PARTIAL.fullmatch(path.name) and time.time() - status.st_mtime > ABANDONED_S
+            if path.is_file() and (ENTRY.fullmatch(path.name) or abandoned):
+                out.append((status.st_mtime_ns, status.st_size, path))
+    return out
+
+
+def empty(folder: Path) -> tuple[int, int]:
+    """Remove all entries: how many files went, and how many bytes they had."""
+    sizes = [size for _, size, path in entries(folder) if _removed(path)]
+    return len(sizes), sum(sizes)
+
+
+def _removed(path: Path) -> bool:
+    with suppress(OSError):  # another process dropped it first, or has it open on Windows
+        path.unlink()
+        return True
+    return False

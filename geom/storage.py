@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from uuid import uuid4
 
 from geom.errors import InputError
 
@@ -18,8 +19,6 @@ YOUNG_S = 5.0  # a folder may be made and not yet locked
 
 def write_whole(path: Path, text: str | bytes) -> Path:
     """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
-    from geom.disk_cache import atomic_write  # loads NumPy, which help does without
-
     try:
         with atomic_write(path) as partial:
             partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "backslashreplace"))
@@ -29,6 +28,37 @@ def write_whole(path: Path, text: str | bytes) -> Path:
             f"cannot be written: {fault.strerror}", str(path), CURES.get(fault.errno or 0, right)
         ) from None
     return path
+
+
+@contextmanager
+def atomic_write(path: Path) -> Iterator[Path]:
+    """A file to write to that takes its place only when it is complete; hidden until then, gone if writing fails.
+
+    It is on the disk before it is renamed, and its new name is before this returns: a power cut leaves old or new.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f".{path.stem}.{uuid4().hex}.part{path.suffix}")
+    try:
+        yield partial
+        _synced(partial, os.O_RDWR)
+        partial.replace(path)
+        _synced(path.parent, os.O_RDONLY)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _synced(path: Path, mode: int) -> None:
+    """What was written there is on the disk. Some systems cannot open folders, or sync them: then they need not."""
+    if path.is_dir() and os.name == "nt":
+        return
+    file = os.open(path, mode)
+    try:
+        os.fsync(file)
+    except OSError as fault:
+        if fault.errno not in (errno.EINVAL, errno.ENOTSUP):
+            raise
+    finally:
+        os.close(file)
 
 
 @contextmanager

@@ -37,32 +37,6 @@ if TYPE_CHECKING:
     from validation.inference.result import Candidate, Diagnosis
     from validation.revision.revise import Revision
 
-_HOME = {
-    "open": "thermoscope.interface.case",
-    "effects": "thermoscope.interface.case",
-    "Case": "thermoscope.interface.case",
-    "build": "thermoscope.interface.machine",
-    "machines": "thermoscope.interface.machine",
-    "Machine": "thermoscope.interface.machine",
-    "Field": "thermoscope.interface.machine",
-    "Comparison": "validation.comparison.compare",
-    "Diagnosis": "validation.inference.result",
-    "Candidate": "validation.inference.result",
-    "Revision": "validation.revision.revise",
-    "Effect": "validation.effects.base",
-    "Network": "lumped.model.network",
-    "Parameter": "lumped.model.network",
-    "Record": "lumped.integration.record",
-    "Run": "lumped.integration.simulate",
-    "simulate": "lumped.integration.simulate",
-    "Steady": "lumped.integration.steady",
-    "steady": "lumped.integration.steady",
-    "load_network": "lumped.declarations.network",
-    "read_network": "lumped.declarations.network",
-    "InputError": "geom.errors",
-    "MissingDependency": "geom.errors",
-    "ThermoscopeError": "geom.errors",
-}
 __all__ = [
     "Candidate",
     "Case",
@@ -94,9 +68,11 @@ register_rooms()
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOME:
+    if name not in __all__:
         raise AttributeError(f"module 'thermoscope' has no attribute '{name}'; known: {', '.join(__all__)}")
-    return getattr(import_module(_HOME[name]), name)
+    from geom.lazy import typed_homes
+
+    return getattr(import_module(typed_homes(__file__)[name][0]), name)
 
 
 def __dir__() -> list[str]:

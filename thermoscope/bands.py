@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record
 from lumped.model.network import Network, Row
 from lumped.transfer.laws import CLOCK
 from measured.case import RUNNING, Recorded, Test
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import case_key
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
@@ -33,7 +32,7 @@ JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 
-def wanted(network: Network, requested: bool | None) -> bool:
+def bands_requested(network: Network, requested: bool | None) -> bool:
     """Whether bands are made: as asked, else where they cost little."""
     return len(network.states) <= SMALL if requested is None else requested
 
@@ -41,19 +40,14 @@ def wanted(network: Network, requested: bool | None) -> bool:
 def posterior_of(folder: Folder, progress: Progress) -> ParameterPosterior:
     """Of the model as it stands, from the cache where this very case was looked at before."""
     file = cache_folder() / f"belief-{LAYOUT}-{case_key(folder)}.npz"
-    cached = recalled_result(file, lambda path: _from_cache(folder, path))
+    cached = recalled(file, lambda path: _from_cache(folder, path))
     if cached is not None:
         return cached
     posterior = parameter_posterior(folder.case, progress)
     if posterior.fitted:
-        out = io.BytesIO()
-        np.savez_compressed(
-            out,
-            covariance=posterior.covariance,
-            offset=posterior.offset,
-            said=json.dumps([posterior.names, posterior.fitted]),
-        )
-        store_result(file, out.getvalue(), "belief")
+        names = json.dumps([posterior.names, posterior.fitted])
+        with stored(file) as partial:
+            np.savez_compressed(partial, covariance=posterior.covariance, offset=posterior.offset, said=names)
     return posterior
 
 
@@ -73,7 +67,7 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     )
 
 
-def along(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
+def predicted_bands(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
     """Temperatures along a record and how sure they are."""
     return bands(of, _test_of(name, record), _places(rows))
 
@@ -126,7 +120,7 @@ def documents(bands: Bands) -> dict[str, dict[str, Any]]:
     return out
 
 
-def of_tests(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
+def test_bands(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
     """Test by test and place by place the width of the band; for a sensor also how much of its record is inside.
 
     The readings' own uncertainty (1 sigma of the sheet) counts with it.

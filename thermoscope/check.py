@@ -9,9 +9,14 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
-from thermoscope.console.answer import Answer
+import typer
+
+from geom.disk_cache import empty
+from geom.storage import cache_folder
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import EXTRAS, lacking
 
@@ -36,13 +41,7 @@ class Finding:
 
     @property
     def document(self) -> dict[str, Any]:
-        return {
-            "name": self.name,
-            "found": self.present,
-            "needed_for": self.needed_for,
-            "needed": self.needed,
-            "fix": self.fix,
-        }
+        return {"found" if key == "present" else key: value for key, value in vars(self).items()}
 
 
 def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
@@ -108,22 +107,36 @@ assert vk.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), None) == 0 a
 """
 
 
-def check(target: str | None, browsers: Sequence[str] = BROWSERS) -> int:
-    """Exit code 1 when something is missing that pictures need."""
+def check(
+    clean: Annotated[bool, typer.Option("--clean", help="Empty the cache instead, and say what was freed.")] = False,
+    target: Json = None,
+) -> int:
+    """What this computer lacks (graphics), each with the command that fixes it."""
+    if clean:
+        return _cleaned(target)
     with progress() as tell:
         tell("looking for graphics")
-        parts = findings(browsers)
+        parts = findings()
     document = {"ready": all(f.present for f in parts if f.needed), "checks": [f.document for f in parts]}
-    give(document, target, lambda: answer(parts))
+    give(document, target, lambda: check_summary(parts))
     return 0 if document["ready"] else 1
 
 
-def answer(parts: list[Finding]) -> Answer:
+def _cleaned(target: str | None) -> int:
+    """Every command makes again what it needs of these: meshes, solids, shapes, comparisons, how long stages took."""
+    folder = cache_folder()
+    files, size = empty(folder)
+    document = {"cleaned": {"folder": folder, "files": files, "bytes": size}}
+    give(document, target, lambda: Summary(f"Freed {size / 1e6:.1f} MB: {files} files in {folder}."))
+    return 0
+
+
+def check_summary(parts: list[Finding]) -> Summary:
     """What is missing, and the command that fixes it."""
     missing = [f.name for f in parts if f.needed and not f.present]
     lines = [_line(f) for f in parts]
     sentence = f"This computer lacks {', '.join(missing)}." if missing else "This computer has all that is needed."
-    return Answer(sentence, lines)
+    return Summary(sentence, lines)
 
 
 def _line(f: Finding) -> str:

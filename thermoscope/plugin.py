@@ -5,19 +5,17 @@ plugin.pyi lists them with their modules. What is missing there is added there; 
 
 from __future__ import annotations
 
-import ast
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from geom.lazy import typed_homes
+
 
 @cache
 def _homes() -> dict[str, tuple[str, str]]:
-    """Name -> its module, and what it is called there."""
-    tree = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
-    return {a.asname or a.name: (str(node.module), a.name) for node in imports for a in node.names}
+    return typed_homes(Path(__file__).with_suffix(".pyi"))
 
 
 def __getattr__(name: str) -> Any:

@@ -10,13 +10,14 @@ from geom.description.part import Part as Part, Prism as Prism, Rod as Rod
 from geom.description.profile import ArcGrid as ArcGrid, loop_length as loop_length
 from geom.description.roles import Role as Role
 from geom.description.toml_file import read_toml as read_toml
-from geom.disk_cache import atomic_write as atomic_write, recalled as recalled
+from geom.disk_cache import recalled as recalled, store as store
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
 from geom.families import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
+from geom.table import Table as Table, cell as cell
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
 from geom.text import visible as visible
 from fem.solvers.snapshots import Recipe as Recipe
@@ -92,7 +93,7 @@ from lumped.numerics.terms import (
     Terms as Terms,
 )
 from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS as KEY_UNITS
-from lumped.schemas.reader import Table as Table, suggestion as suggestion
+from lumped.schemas.reader import Table as TomlTable, suggestion as suggestion
 from lumped.sources.loss_map import MapLoss as MapLoss
 from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
 from lumped.sources.loss_laws import (
@@ -204,6 +205,7 @@ from validation.parameters.unknowns import (
     working as working,
 )
 from validation.revision import revise as revise
+from validation.tables import bases_table as bases_table, offers as offers
 from validation.threads import one_blas_thread as one_blas_thread
 from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as Theme, heat as heat_colours
 from viz.data import Comparison as Comparison, Sensor as Sensor, sensors as data_sensors, short as short
@@ -214,7 +216,6 @@ from viz.live.curves import sensor as sensor
 from viz.live.style import as_text as as_text, figure as figure
 from viz.machine.animation import WRITERS as WRITERS
 from viz.machine.pulses import Pulses as Pulses
-from viz.pages.next_tests import deciding as deciding
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed
@@ -223,8 +224,11 @@ from viz.rendering.scale import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
 from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
-from thermoscope.bands import along as along, posterior_of as posterior_of, wanted as wanted
-from thermoscope.caches import recalled_result as recalled_result, store_result as store_result
+from thermoscope.bands import (
+    predicted_bands as predicted_bands,
+    posterior_of as posterior_of,
+    bands_requested as bands_requested,
+)
 from thermoscope.case_folder.content import case_key as case_key
 from thermoscope.case_folder.cycle import find_cycle as find_cycle, load_cycle as load_cycle
 from thermoscope.case_folder.folder import (
@@ -251,7 +255,6 @@ from thermoscope.case_folder.runs import (
 )
 from thermoscope.case_folder.settings import Settings as Settings, read_settings as read_settings
 from thermoscope.case_folder.workbook import tables as tables, write_csvs as write_csvs, write_xlsx as write_xlsx
-from thermoscope.commands.explain.bases_table import hypotheses_table as hypotheses_table
 from thermoscope.commands.model.revise import evidence as evidence, recorded as recorded
 from thermoscope.commands.open_case import (
     PACKAGE as PACKAGE,
@@ -273,7 +276,7 @@ from thermoscope.commands.test.new import (
     save_case as save_case,
 )
 from thermoscope.commands.use.simulate_readings import short_of as short_of
-from thermoscope.console.answer import Answer as Answer, Grid as Grid, cell as cell
+from thermoscope.console.summary import Summary as Summary
 from thermoscope.console.options import (
     Case as CaseArgument,
     HotLimit as HotLimitOption,
@@ -302,6 +305,7 @@ __all__ = [
     "MeasuredCase",
     "OutOption",
     "StoredRevision",
+    "TomlTable",
     "USUAL_DOUBT",
     "USUAL_QUANTITIES",
     "data_sensors",

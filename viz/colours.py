@@ -43,6 +43,11 @@ LIGHT = Theme("#ffffff", "#1f2933", "#9aa5b1")
 DARK = Theme("#14181d", "#e6e9ed", "#66707c")
 
 
+def rgb(colour: str) -> tuple[int, ...]:
+    """'#rrggbb' as numbers from 0 to 255."""
+    return tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5))
+
+
 @lru_cache(maxsize=1)
 def heat() -> LinearSegmentedColormap:
     """Blue through magenta to yellow; lightness rises evenly from 0.47 to 0.93 (OKLab), so nothing turns black."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
 from measured.case import Channel, Test
+from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 
 Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours
@@ -46,6 +47,17 @@ class Sensor:
         if (abs(self.residual_K) if self.rmse_K is None else self.rmse_K) <= self.limit_K:
             return "within"
         return "hot" if self.residual_K > 0 else "cold"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line over a test, whatever draws it.  y : (n_time,);  ink : in the colour of writing;  dashed : of before"""
+
+    name: str
+    y: Array
+    colour: str
+    ink: bool = False
+    dashed: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,6 +99,32 @@ class Comparison:
     def residual(self, channel: Channel) -> Array:
         """Measured - modelled (K), NaN where nothing was read."""
         return np.asarray(channel.y, float) - np.asarray(self.model[channel.name], float)
+
+    def temperatures(self, channel: Channel) -> list[Curve]:
+        """What was read (degC), the model before its last step if there was one, and the model."""
+        read = Curve("measured ± limit", np.asarray(channel.y, float), LIGHT.ink, ink=True)
+        earlier = (
+            [] if self.before is None else [Curve("earlier model", self.before[channel.name], ORANGE, dashed=True)]
+        )
+        return [read, *earlier, Curve("model", np.asarray(self.model[channel.name], float), BLUE)]
+
+    def residuals(self, channel: Channel) -> list[Curve]:
+        """Measured - modelled (K): of the model before its last step if there was one, and of the model."""
+        read, *models = self.temperatures(channel)
+        words = {"earlier model": "earlier residual", "model": "residual"}
+        return [replace(m, name=words[m.name], y=read.y - m.y) for m in models]
+
+    def residual_curve(self, channel: Channel) -> Curve:
+        """Measured - modelled (K), coloured where the sensor is over.
+
+        Faint where the rms is within the limit; else by sign: vermilion where the machine, once warm, is hotter than
+        the model, blue where it is colder.
+        """
+        y = self.residual(channel)
+        finite = y[np.isfinite(y)]
+        within = not finite.size or np.sqrt(np.mean(finite**2)) <= self.limit_K(channel)
+        hot = not within and finite[len(finite) // 2 :].mean() > 0
+        return Curve(short(channel.name), y, LIGHT.faint if within else VERMILION if hot else BLUE)
 
     def limit_K(self, channel: Channel) -> float:
         """The largest error of a sensor that counts as agreement (K)."""

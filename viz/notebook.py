@@ -8,39 +8,36 @@ from __future__ import annotations
 from html import escape
 
 from geom.description.machine import Machine
+from geom.table import Table
 from lumped.model.network import Network
 from validation.comparison.compare import Comparison as Compared
 from validation.inference.result import Diagnosis
 from validation.revision.revise import Revision
+from validation.tables import candidates_table, sensors_table
 from viz.data import Comparison
-from viz.figures import candidates, curves
+from viz.figures import curves
 from viz.pages import html, words
 from viz.pages.report import Report, render
 
 MOST_ROWS = 10  # rows of a cell
+_CHANGES = "test=name | role | before (K)=before | after (K)=after"
 
 
 def compared(c: Compared) -> str:
     """Error per sensor of every test; those beyond their uncertainty marked."""
-    rows = [(t.name, t.role, s.channel, s.place, s.rmse_K, s.sigma_K, s.verdict) for t in c.tests for s in t.channels]
-    return titled(c.words) + html.table(["test", "role", "sensor", "place", "rms (K)", "1σ (K)", "verdict"], rows)
+    return titled(c.words) + html.table(sensors_table("", c.document()["tests"]))
 
 
 def diagnosed(d: Diagnosis) -> str:
     """The verdict, and the candidates by score."""
     document = d.document()
-    _, sentence = words.verdict(document, None)
-    leading = document["candidates"][:MOST_ROWS]
-    rows = [(c["effect"], c["score"], candidates.amplitude(c), c["decision"]) for c in leading]
-    return titled(sentence) + html.table(["effect", "score", "size", "decision"], rows)
+    return titled(words.verdict(document, None)[1]) + html.table(candidates_table(document["candidates"][:MOST_ROWS]))
 
 
 def revised(r: Revision) -> str:
     """What a step did to the error of every test."""
-    rows = [(t.name, t.role, t.before, t.after) for t in r.tests]
     verdict = "accepted" if r.accepted else "not accepted"
-    head = f"{r.action} {r.effect or ''}: {verdict}; {r.why}"
-    return titled(head) + html.table(["test", "role", "before (K)", "after (K)"], rows)
+    return titled(f"{r.action} {r.effect or ''}: {verdict}; {r.why}") + html.table(Table.of("", r.tests, _CHANGES))
 
 
 def comparison_html(c: Comparison) -> str:
@@ -50,14 +47,13 @@ def comparison_html(c: Comparison) -> str:
 
 def machine(m: Machine) -> str:
     """Parts with their materials."""
-    rows = [(p.name, p.material) for p in m.parts]
-    return titled(f"{m.name}: {len(rows)} parts") + html.table(["part", "material"], rows)
+    return titled(f"{m.name}: {len(m.parts)} parts") + html.table(Table.of("", m.parts, "part=name | material"))
 
 
 def network(n: Network) -> str:
     """How large, and what may be calibrated."""
-    rows = [(p.name, p.value, p.unit, p.prior_sd) for p in n.parameters[:MOST_ROWS]]
-    return titled(f"{n.name}: {n.sizes}") + html.table(["parameter", "value", "unit", "prior sd"], rows)
+    columns = "parameter=name | value | unit | prior sd=prior_sd"
+    return titled(f"{n.name}: {n.sizes}") + html.table(Table.of("", n.parameters[:MOST_ROWS], columns))
 
 
 def report(r: Report) -> str:

@@ -22,10 +22,9 @@ def export(
     limit: Limit = None,
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
-    csv: Annotated[bool, typer.Option("--csv", hidden=True, help="As --as csv.")] = False,
     json: Json = None,
 ) -> None:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     from extras.export.commands.export import export as run
 
-    raise typer.Exit(run(case, out, "csv" if csv else form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
+    raise typer.Exit(run(case, out, form, tuple(limit or ()), fmi, json, tuple(sensor or ())))

@@ -19,7 +19,7 @@ from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.portrait import framed
 from extras.portraits.shape import Shape
-from thermoscope.plugin import QUARTER, SplitMesh, Wedge, atomic_write, packed_integers, packed_numbers, recalled
+from thermoscope.plugin import QUARTER, SplitMesh, Wedge, packed_integers, packed_numbers, recalled, store
 from thermoscope.plugin import MachineDescription as Machine
 
 if TYPE_CHECKING:
@@ -46,8 +46,7 @@ def packed_looks(
     looks = cached_looks(machine, nodes, cache, wedge)
     if looks is None:
         looks = _packed(machine, nodes, wedge)
-        with atomic_write(_file(machine, nodes, wedge, cache)) as partial:
-            partial.write_text(json.dumps(looks), encoding="utf-8")
+        store(_file(machine, nodes, wedge, cache), json.dumps(looks))
     return looks
 
 

@@ -18,9 +18,9 @@ from thermoscope.plugin import (
     AtRest,
     Folder,
     ParameterPosterior,
-    along,
     named_rows,
     parameter_values,
+    predicted_bands,
     thermal,
 )
 
@@ -112,5 +112,5 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     record = Record(time, inputs, air, float(np.mean(list(op.boundaries.values()))))
     end = np.asarray(simulate(bare, record, values, keep_states=True).z)[-1]
-    bands = along(of, "rating", record, {r.at: spot.hottest(end)[1]})
+    bands = predicted_bands(of, "rating", record, {r.at: spot.hottest(end)[1]})
     return float(bands.half95[-1, 0] / r.slope)

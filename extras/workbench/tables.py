@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from extras.workbench.appearance import Appearance
-from thermoscope.plugin import History, amplitude, deciding, short, verdict
+from thermoscope.plugin import History, amplitude, offers, short, verdict
 from thermoscope.plugin import data_sensors as sensors
 
 Row = dict[str, Any]
@@ -96,8 +96,8 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     tone, sentence = verdict(diagnosis, None)
     hidden = [h["effect"] for h in diagnosis["cannot_see"]]
     further_tests = [
-        f"{o.kind} {o.what}{f' ({o.how})' if o.how else ''}: separates {', '.join(o.separates)}"
-        for o in deciding(diagnosis)[:3]
+        f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
+        for o in offers(diagnosis)[:3]
     ]
     hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
     return {

@@ -10,7 +10,7 @@ from typing import Any
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.disk_cache import recalled
+from geom.disk_cache import recalled, stored
 from geom.meshing.blocks import Block, Column, find_blocks, find_columns
 from geom.meshing.extrude import extrude
 from geom.meshing.mesh import NamedMesh
@@ -51,7 +51,8 @@ def build_mesh(
     flat = triangulate(plan.columns, size_m, across)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
     if file is not None:
-        write_npz(mesh, file)
+        with stored(file) as partial:
+            write_npz(mesh, partial)
     return replace(mesh, identities=identities)
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from geom.disk_cache import atomic_write
 from geom.errors import InputError
 from geom.meshing.mesh import Contact, NamedMesh, Patch
+from geom.storage import atomic_write
 
 
 def write_npz(mesh: NamedMesh, path: Path | str) -> None:

@@ -15,7 +15,7 @@ from geom.description.machine import Machine
 from geom.description.names import file_stem
 from geom.description.palette import colour
 from geom.description.part import Part, Prism
-from geom.disk_cache import atomic_write, cache_file, recalled
+from geom.disk_cache import cache_file, recalled, stored
 from geom.errors import InputError
 from geom.solids.carved import carved
 from geom.solids.glb import write_glb
@@ -43,7 +43,7 @@ def solids(part: Part, cache: Path | str | None = None) -> list[cq.Solid]:
     if solid:
         return solid
     exact = _built(part)
-    with atomic_write(file) as partial:
+    with stored(file) as partial:
         cq.Compound.makeCompound(exact).exportBin(str(partial))
     return exact
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.disk_cache import atomic_write, cache_file, recalled
+from geom.disk_cache import cache_file, recalled, store
 from geom.solids.cad import solids
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
         watertight=all(bool(mesh.is_watertight) for mesh in surfaces.values()),
     )
     if file is not None:
-        with atomic_write(file) as partial:
-            partial.write_text(json.dumps(vars(check)))
+        store(file, json.dumps(vars(check)))
     return check
 
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from fem.matrices.elements import Elements
 from geom import Machine
-from geom.disk_cache import recalled
+from geom.disk_cache import recalled, store
 from geom.meshing.mesh import NamedMesh
-from geom.storage import cache_folder, write_whole
+from geom.storage import cache_folder
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
@@ -78,7 +78,7 @@ def chosen_mesh(
     cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
     if cached is None:
         cached = _looked_for(_Looks(machine, progress), accuracy, first, most)
-        write_whole(file, json.dumps(asdict(cached)))
+        store(file, json.dumps(asdict(cached)))
     return cached
 
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
-from geom.disk_cache import recalled
-from geom.storage import cache_folder, write_whole
+from geom.disk_cache import recalled, store
+from geom.storage import cache_folder
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Built, coefficients_on, meshed
 from lumped.condensation.recovery import PartShape, Shapes, locate
@@ -55,7 +55,7 @@ def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
     if cached is not None:
         return cached
     errors = at_rated_point(built, looks)
-    write_whole(file, json.dumps(vars(errors)))
+    store(file, json.dumps(vars(errors)))
     return errors
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.disk_cache import atomic_write, recalled
+from geom.disk_cache import recalled, stored
 
 Floats = NDArray[np.floating]
 Pairs = dict[str, tuple[Floats, Floats]]
@@ -55,7 +55,7 @@ class BasisCache:
         out |= {f"{part}/fields": fields for part, (_, fields) in pairs.items()}
         point = hashlib.sha256(centre.values.round(9).tobytes()).hexdigest()[:8]
         file = self.folder / f"shapes-{self._key}-{point}.npz"
-        with atomic_write(file) as partial:
+        with stored(file) as partial:
             np.savez(partial, **out)
         return pairs
 

@@ -12,18 +12,14 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 import pytest
-from command_line import answered
+from command_line import GROUP, answered
 
 from lumped.build import fixed_coefficients, network_size, pipeline
 from lumped.condensation.reduction import Recipe
 from lumped.declarations.network import load_network
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.cli import whole_app
 from thermoscope.commands import open_case
 from thermoscope.commands.model.crosscheck import checked
-from thermoscope.console.groups import HOME
-
-whole_app()  # extras have told their groups
 
 ROOT = Path(__file__).resolve().parents[2]
 TINY = Recipe(tolerance=0.3, shifts=(), random_points=1, local_points=1, local_states=1, max_states=40)
@@ -147,7 +143,7 @@ def finite(document):
 
 def test_every_command_and_every_file_has_a_line():
     words = {word.split()[0] for all_ in TAKEN.values() for word in all_}
-    assert words | MACHINE_COMMANDS | NO_FILE == set(HOME)
+    assert words | MACHINE_COMMANDS | NO_FILE == set(GROUP)
     assert {str(p.parent.relative_to(ROOT / "cases")) for p in ROOT.glob("cases/**/case.toml")} == set(TAKEN)
     cycles = {(p.parents[1].name, p.stem) for p in ROOT.glob("cases/**/cycles/*.toml")}
     runs = [(c, w.split()) for c, all_ in TAKEN.items() for w in all_ if "--cycle" in w]

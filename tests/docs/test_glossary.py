@@ -93,13 +93,25 @@ def in_need(found, known):
 
 
 def headers(root):
-    """The second argument of every Grid, and every list called headers, in the commands and the demo."""
-    for file in [*(root / "thermoscope/commands").rglob("*.py"), root / "thermoscope/demo.py"]:
+    """The columns of every table, and every list called headers, in the commands, the demo and the results."""
+    others = [root / "thermoscope/demo.py", root / "validation/tables.py"]
+    for file in [*(root / "thermoscope/commands").rglob("*.py"), *others]:
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").lower() == "headers":
                 yield from words_in(node.value)
-            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Grid":
+            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Table":
                 yield from words_in(node.args[1])
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) == "Table.of":
+                yield from names_of(node.args[2])
+            elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").lower() in ("columns", "sensors"):
+                yield from names_of(node.value)
+
+
+def names_of(node):
+    """Of the columns in "NAME=KEY | *NAME"."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        for column in node.value.split("|"):
+            yield re.sub(r"\s*\([^)]*\)", "", column.partition("=")[0].strip(" *")).strip().lower()
 
 
 def words_in(node):

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from scripts import tutorial
 from thermoscope.cli import whole_app
-from thermoscope.console.answer import LINES
+from thermoscope.console.summary import LINES
 
 PAGE = tutorial.PAGE.read_text(encoding="utf-8")
 RUN = [c for c in tutorial.commands(PAGE) if c.startswith("thermoscope")]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geom.disk_cache import atomic_write
+from geom.storage import atomic_write
 
 
 def test_nobody_sees_a_file_before_it_is_complete(tmp_path):

@@ -24,13 +24,14 @@ from extras.export.model import Output, Signal, packed
 from geom.description.names import FORBIDDEN, LETTERS, file_stem, is_plain, plain_header
 from geom.errors import InputError
 from geom.escapes import c_comment, csv_lines, toml_key, toml_value, xml_text
+from geom.table import Table
 from lumped.declarations.network import load_network
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
 from lumped.transfer.laws import Fixed
 from measured.case import Reference
 from thermoscope.case_folder.workbook import write_csvs, write_xlsx
-from thermoscope.console.answer import Answer, Grid, printed, within
+from thermoscope.console.summary import Summary, limited_lines, printed
 from thermoscope.console.terminal import give, notes
 from viz.pages import html
 from viz.viewer.page import render
@@ -120,7 +121,7 @@ def test_the_description_of_an_fmu_is_xml_with_every_name(model, version):
 
 
 def test_worksheets_hold_texts_as_texts(tmp_path):
-    sheets = {name: {name: [name, "x"], "t": NAMES[:2]} for name in NAMES}
+    sheets = [Table(name, [name, "t"], [[name, NAMES[0]], ["x", NAMES[1]]]) for name in NAMES]
     book = openpyxl.load_workbook(write_xlsx(tmp_path / "x.xlsx", sheets))
     cells = [cell for sheet in book.worksheets for row in sheet for cell in row if cell.value is not None]
     assert {cell.data_type for cell in cells} == {"s"}
@@ -130,7 +131,7 @@ def test_worksheets_hold_texts_as_texts(tmp_path):
 
 def test_csv_has_no_formula_and_lies_in_its_folder(tmp_path):
     inside = tmp_path / "a" / "b"
-    write_csvs(inside, {name[:LETTERS]: {name: [name]} for name in NAMES})
+    write_csvs(inside, [Table(name[:LETTERS], [name], [[name]]) for name in NAMES])
     assert {p.parent for p in tmp_path.rglob("*") if p.is_file()} == {inside}
     rows = list(csv.reader(io.StringIO(csv_lines([[name, -1.5, "-1.5"] for name in NAMES]), newline="")))
     assert len(rows) == len(NAMES)
@@ -164,7 +165,7 @@ class Tags(HTMLParser):
 
 def tags(name):
     parser, inner = Tags(), html.inner_page(html.page(name, [html.text(name)]), name)
-    parser.feed(html.page(name, [html.section(name, html.text(name), html.table([name], [[name]])), inner]))
+    parser.feed(html.page(name, [html.section(name, html.text(name), html.table(Table("", [name], [[name]]))), inner]))
     return parser.tags
 
 
@@ -181,9 +182,9 @@ def test_the_viewer_keeps_names_in_its_data():
 
 
 def test_a_terminal_is_sent_no_control_characters(capsys):
-    with within(None):
+    with limited_lines(None):
         for name in NAMES:
-            printed(Answer(name, [name, Grid(name, [name, "n"], [[name, 1.0]])], name))
+            printed(Summary(name, [name, Table(name, [name, "n"], [[name, 1.0]])], name))
             notes([name])
     shown = capsys.readouterr()
     assert shown.out.replace("\n", "").isprintable()

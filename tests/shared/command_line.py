@@ -3,17 +3,14 @@
 import contextlib
 import json
 import sys
-from functools import cache
 from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
-import typer.main
+from thermoscope.cli import main, whole_app
 
-from thermoscope.cli import main
-
-commands_of = cache(typer.main.get_command)  # the tree of commands is made anew for each call: most of a refusal's time
+GROUP = {str(c.name): str(g.name) for g in whole_app().registered_groups for c in g.typer_instance.registered_commands}
 RUN = "import sys; sys.argv[0] = 'thermoscope'; from thermoscope.cli import main; main()"  # in a process of its own
 
 
@@ -38,10 +35,11 @@ class Answer(NamedTuple):
 
 
 def answered(*words: object, cwd: Path | str = ".") -> Answer:
-    """thermoscope WORDS in the folder `cwd`."""
+    """thermoscope WORDS in the folder `cwd`; a command may stand without its group."""
+    if words and words[0] in GROUP:
+        words = (GROUP[str(words[0])], *words)
     out, err = StringIO(), StringIO()
     with contextlib.ExitStack() as stack:
-        stack.enter_context(patch.object(typer.main, "get_command", commands_of))
         stack.enter_context(patch.object(sys, "argv", ["thermoscope", *map(str, words)]))
         stack.enter_context(contextlib.chdir(cwd))
         stack.enter_context(contextlib.redirect_stdout(out))

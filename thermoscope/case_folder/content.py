@@ -25,28 +25,32 @@ ROOMS = ("geom", "fem", "lumped", "measured", "validation", "thermoscope")  # pa
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to
 
 
+def digest(*pieces: object) -> str:
+    """A key of bytes and arrays by their content, of anything else by its repr."""
+    content = hashlib.sha256()
+    for piece in pieces:
+        if isinstance(piece, np.ndarray):
+            content.update(np.ascontiguousarray(piece).data)
+        else:
+            content.update(piece if isinstance(piece, bytes) else repr(piece).encode())
+    return content.hexdigest()[:20]
+
+
 def case_key(folder: Folder) -> str:
     """Of everything that decides: the case's files, its recordings, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
-    content = hashlib.sha256(
-        repr((model.effects, sorted(model.values.items()), model.revision, model.reference)).encode()
-    )
     files = [settings.path / "case.toml", settings.network, *(f for e in settings.tests for f in (e.file, e.sheet))]
-    for file in files:
-        if file is not None and Path(file).is_file():
-            content.update(Path(file).read_bytes())
-    for array in recorded_arrays(folder.case.tests):
-        content.update(np.ascontiguousarray(array).tobytes())
-    if folder.built is not None:
-        content.update(repr(folder.built.machine.sections).encode())
-        content.update(np.ascontiguousarray(folder.built.mesh.points).tobytes())
-    return content.hexdigest()[:20]
+    texts = [Path(file).read_bytes() for file in files if file is not None and Path(file).is_file()]
+    machine = () if folder.built is None else (folder.built.machine.sections, folder.built.mesh.points)
+    fitted = (model.effects, sorted(model.values.items()), model.revision, model.reference)
+    return digest(fitted, *texts, *recorded_arrays(folder.case.tests), *machine)
 
 
 def recorded_arrays(tests: Iterable[Test]) -> Iterator[Array]:
     """Times, inputs, boundaries and readings of tests."""
     for test in tests:
-        yield from (test.time, *test.inputs.values(), *test.boundaries.values(), *(c.y for c in test.channels))
+        arrays = (test.time, *test.inputs.values(), *test.boundaries.values(), *(c.y for c in test.channels))
+        yield from (np.asarray(array) for array in arrays)
 
 
 def result_key(folder: Folder, *rooms: str) -> str:
@@ -54,13 +58,9 @@ def result_key(folder: Folder, *rooms: str) -> str:
 
     rooms : packages that decide it besides ROOMS
     """
-    content = hashlib.sha256(repr((case_key(folder), sorted(folder.case.answers.items()))).encode())
     shapes = folder.case.model.network.recovery
-    if isinstance(shapes, Shapes):
-        for part in shapes.parts.values():
-            content.update(np.ascontiguousarray(part.V).tobytes())
-    content.update(code_digest(*ROOMS, *rooms))
-    return content.hexdigest()[:20]
+    parts = [part.V for part in shapes.parts.values()] if isinstance(shapes, Shapes) else []
+    return digest(case_key(folder), sorted(folder.case.answers.items()), *parts, code_digest(*ROOMS, *rooms))
 
 
 @cache

@@ -226,31 +226,22 @@ def _drive(
     return (*_permanent(top, network, inputs), None, {}) if "pm-machine" in top else (None, {}, None, {})
 
 
+def _numbers(table: Table, **usual: float | None) -> list[float]:
+    """Numbers of a table in this order, each what it usually is; None has to be given."""
+    return [table.number(key, value) for key, value in usual.items()]
+
+
 def _series(
     top: Table, network: Network, ratings: Mapping[str, float], time: Array, inputs: dict[str, Array]
 ) -> tuple[Drive, dict[str, str], Series]:
     m, v, c = top.table("series-machine"), top.table("vehicle"), top.table("controller")
     rated = [m.number(k, ratings.get(k)) for k in ("power_W", "speed_rpm", "voltage_V", "current_A")]
-    machine = SeriesMachine.from_ratings(
-        *rated, L=m.number("inductance_H", 2e-3), J=m.number("inertia_kg_m2", 2.0), B=m.number("friction_Nms", 0.0)
-    )
-    vehicle = Vehicle(
-        v.number("mass_kg"),
-        v.number("wheel_radius_m"),
-        v.number("gear"),
-        v.number("efficiency", 0.95),
-        v.number("rolling", 0.01),
-        v.number("drag_area_m2", 3.0),
-        v.number("air_density_kg_m3", 1.2),
-        v.number("brakes_m_s2", 3.0),
-        v.number("regeneration", 0.0),
-    )
+    values = _numbers(m, inductance_H=2e-3, inertia_kg_m2=2.0, friction_Nms=0.0)
+    machine = SeriesMachine.from_ratings(*rated, L=values[0], J=values[1], B=values[2])
+    body = _numbers(v, mass_kg=None, wheel_radius_m=None, gear=None, efficiency=0.95, rolling=0.01)
+    vehicle = Vehicle(*body, *_numbers(v, drag_area_m2=3.0, air_density_kg_m3=1.2, brakes_m_s2=3.0, regeneration=0.0))
     control = Controller(
-        c.number("Kp", 40.0),
-        c.number("Ki", 4.0),
-        c.number("current_limit_A", rated[3]),
-        c.number("voltage_limit_V", rated[2]),
-        c.number("current_lag_s", 0.02),
+        *_numbers(c, Kp=40.0, Ki=4.0, current_limit_A=rated[3], voltage_limit_V=rated[2], current_lag_s=0.02)
     )
     places = _places(m, network, "winding", WINDING)
     reference = m.number("reference_degC", 20.0)
@@ -268,16 +259,9 @@ def _series(
 
 def _permanent(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str]]:
     m = top.table("pm-machine")
-    machine = PMMachine(
-        int(m.number("pole_pairs")),
-        m.number("R20_ohm"),
-        m.number("Ld_H"),
-        m.number("Lq_H"),
-        m.number("psi_Vs"),
-        m.number("current_limit_A"),
-        m.number("voltage_limit_V"),
-        alpha_B=m.number("alpha_B_1_K", -1.1e-3),
-    )
+    limits = dict.fromkeys(("R20_ohm", "Ld_H", "Lq_H", "psi_Vs", "current_limit_A", "voltage_limit_V"))
+    poles, slope = int(m.number("pole_pairs")), m.number("alpha_B_1_K", -1.1e-3)
+    machine = replace(PMMachine(poles, *_numbers(m, **limits)), alpha_B=slope)
     places = {WINDING: _places(m, network, "winding", WINDING), MAGNET: _places(m, network, "magnet", "rotor")}
     rms = m.word("current_A", "rms" if network.recovery is not None else "peak", ("rms", "peak")) == "rms"
     m.close()
@@ -294,19 +278,10 @@ def _torque_and_speed(m: Table, inputs: dict[str, Array]) -> tuple[Array, Array]
 
 def _induction(top: Table, network: Network, inputs: dict[str, Array]) -> tuple[Drive, dict[str, str], dict[str, Law]]:
     m = top.table(INDUCTION)
-    machine = InductionMachine(
-        int(m.number("pole_pairs")),
-        m.number("Rs20_ohm"),
-        m.number("Rr20_ohm"),
-        m.number("Ls_leakage_H"),
-        m.number("Lr_leakage_H"),
-        m.number("Lm_H"),
-        m.number("magnetising_A"),
-        m.number("current_limit_A"),
-        m.number("voltage_limit_V"),
-        m.number("alpha_stator_1_K", ALPHA_CU),
-        m.number("alpha_cage_1_K", ALPHA_AL),
-    )
+    needed = ("Rs20_ohm", "Rr20_ohm", "Ls_leakage_H", "Lr_leakage_H", "Lm_H", "magnetising_A")
+    numbers = _numbers(m, **dict.fromkeys((*needed, "current_limit_A", "voltage_limit_V")))
+    slopes = _numbers(m, alpha_stator_1_K=ALPHA_CU, alpha_cage_1_K=ALPHA_AL)
+    machine = InductionMachine(int(m.number("pole_pairs")), *numbers, *slopes)
     if machine.magnetising > machine.current_limit:
         what = f"magnetising_A = {machine.magnetising:g} is above current_limit_A = {machine.current_limit:g}"
         raise m.error(what, "less: the rated flux has to be within the current")

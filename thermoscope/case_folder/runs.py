@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
+from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
-from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
@@ -131,14 +131,14 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
     return run.time[rows], np.ascontiguousarray(network.on_parts(nodes.parts, states.T).T)
 
 
-def at_instant(test: Test, time: float) -> str:
+def instant_words(test: Test, time: float) -> str:
     """Which test and which instant (s) a picture shows."""
     return f"{test.name} at {time / 60:.0f} min"
 
 
-def end_of(test: Test) -> str:
+def end_words(test: Test) -> str:
     """The same of its end."""
-    return at_instant(test, test.time[-1])
+    return instant_words(test, test.time[-1])
 
 
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
@@ -148,19 +148,19 @@ def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     Kept by content: every one of them asks for it.
     """
     file = _range_file(folder)
-    cached = recalled_result(file, _range_in)
+    cached = recalled(file, _range_in)
     if cached is not None:
         return cached
     runs = [(of.case, test) for of in _now_and_before(folder) for test in of.case.tests]
     every = side_by_side(lambda run: fields(*run, nodes, RANGE_FRAMES)[1], runs)
     low, high = min(float(T.min()) for T in every), max(float(T.max()) for T in every)
-    store_result(file, json.dumps([low, high]), "range")
+    store(file, json.dumps([low, high]))
     return low, high
 
 
 def stored_range(folder: Folder) -> tuple[float, float] | None:
     """The same (degC) where it is known already, else that of the model before; None where neither is."""
-    of_all = (recalled_result(_range_file(of), _range_in) for of in _now_and_before(folder))
+    of_all = (recalled(_range_file(of), _range_in) for of in _now_and_before(folder))
     return next((limits for limits in of_all if limits is not None), None)
 
 
@@ -228,7 +228,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
                 "value": last.values[p.name],
                 "unit": p.unit,
                 "ci95": [a, b],
-                "prior": {"from": low, "to": high},
+                "prior": [p.value, low, high],
                 "identified": b - a < BLIND * (high - low),
             }
         )

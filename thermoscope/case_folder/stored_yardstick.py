@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from measured.case import Case
-from thermoscope.caches import recalled_result, store_result
-from thermoscope.case_folder.content import code_digest, recorded_arrays
+from thermoscope.case_folder.content import code_digest, digest, recorded_arrays
 from validation.comparison.compare import Comparison
 from validation.yardstick.terms import Term
 from validation.yardstick.words import model_error, sentence, warning
@@ -29,29 +26,21 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison) -> dict[s
 
 
 def stored_yardstick(case: Case) -> Yardstick | None:
-    """From the cache, or learnt now; None where the tests teach nothing."""
-    file = cache_folder() / f"yardstick-{_key(case)}.json"
-    earlier = recalled_result(file, _read)
-    if earlier is not None:
-        return earlier
-    new = yardstick(case)
-    if new is not None:
-        store_result(file, json.dumps(asdict(new)), "yardstick")
-    return new
+    """From the cache, or learnt now; None where the tests teach nothing.
+
+    Its key is of all that a yardstick is made from: readings, inputs and roles of the tests, the nodes' capacities.
+    """
+    tests = [
+        (t.name, t.role, [*t.inputs], [*t.boundaries], [(c.name, c.place) for c in t.channels]) for t in case.tests
+    ]
+    key = digest(code_digest("validation"), case.model.network.C, tests, *recorded_arrays(case.tests))
+    file = cache_folder() / f"yardstick-{key}.json"
+    yard = recalled(file, _read)
+    if yard is None and (yard := yardstick(case)) is not None:
+        store(file, json.dumps(asdict(yard)))
+    return yard
 
 
 def _read(file: Path) -> Yardstick:
     document = json.loads(file.read_text(encoding="utf-8"))
     return Yardstick(**{**document, "terms": tuple(Term(**term) for term in document["terms"])})
-
-
-def _key(case: Case) -> str:
-    """Of all that a yardstick is made from: the readings, inputs and roles of the tests, and the nodes' capacities."""
-    content = hashlib.sha256(code_digest("validation"))
-    content.update(case.model.network.C.tobytes())
-    for test in case.tests:
-        channels = [(c.name, c.place) for c in test.channels]
-        content.update(repr((test.name, test.role, [*test.inputs], [*test.boundaries], channels)).encode())
-    for array in recorded_arrays(case.tests):
-        content.update(np.ascontiguousarray(array, float).tobytes())
-    return content.hexdigest()[:20]

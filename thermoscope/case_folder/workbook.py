@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.description.names import file_stem
 from geom.escapes import csv_lines
 from geom.storage import write_whole
+from geom.table import Table
 from geom.text import visible
 from measured.recordings.data_table import rows_of
 
@@ -20,63 +20,50 @@ if TYPE_CHECKING:
     from measured.case import Test
     from thermoscope.case_folder.folder import Folder
 
-Worksheet = Mapping[str, Sequence[Any] | NDArray[Any]]  # column -> its cells
 UNREADABLE = str.maketrans("[]:*?/\\'", "________")  # what Excel forbids in the name of a worksheet, or at its ends
 
 
-def tables(folder: Folder) -> dict[str, Worksheet]:
-    """Worksheet -> table: parameters, errors, and for each test its inputs and its results side by side."""
+def tables(folder: Folder) -> list[Table]:
+    """A worksheet each: parameters, errors, and for each test its inputs and its results side by side."""
+    from thermoscope.case_folder.runs import readings
+
     errors = [{"test": t.name, "role": t.role, **c.document()} for t in folder.compared.tests for c in t.channels]
-    model = folder.case.model
-    parameters = [
-        {
-            "parameter": p.name,
-            "value": model.values.get(p.name, p.value),
-            "unit": p.unit,
-            "prior sd": p.prior_sd,
-            "source": p.source,
-        }
-        for p in model.network.parameters
+    keys = dict.fromkeys(key for record in errors for key in record)
+    columns = "parameter=name | value | unit | prior sd=prior_sd | source"
+    values = folder.case.model.values
+    out = [
+        Table.of(
+            "parameters", folder.case.model.network.parameters, columns, value=lambda p: values.get(p.name, p.value)
+        ),
+        Table("errors", list(keys), [[record.get(key) for key in keys] for record in errors]),
     ]
-    out: dict[str, Worksheet] = {"parameters": _columns(parameters), "errors": _columns(errors)}
     for test in folder.case.tests:
-        out[f"{test.name} input"] = _inputs(test)
-        out[f"{test.name} results"] = _results(folder, test)
+        boundaries = {f"{name} (degC)": v for name, v in test.boundaries.items()}
+        out.append(_over_time(f"{test.name} input", test, {**test.inputs, **boundaries}))
+        calculated, both = readings(folder.case, test), dict[str, Any]()
+        for c in test.channels:
+            both |= {f"{c.name} measured (degC)": c.y, f"{c.name} calculated (degC)": calculated[c.name]}
+        out.append(_over_time(f"{test.name} results", test, both))
     return out
 
 
-def _columns(records: Sequence[Mapping[str, Any]]) -> Worksheet:
-    """Records as columns, None where one lacks a key."""
-    keys = dict.fromkeys(key for record in records for key in record)
-    return {key: [record.get(key) for record in records] for key in keys}
+def _over_time(title: str, test: Test, columns: Mapping[str, Any]) -> Table:
+    """Columns of a test beside its time (s)."""
+    names, *rows = rows_of(
+        {"time_s": test.time, **{n: np.broadcast_to(v, test.time.shape) for n, v in columns.items()}}
+    )
+    return Table(title, names, rows)
 
 
-def _inputs(test: Test) -> Worksheet:
-    boundaries = {f"{name} (degC)": np.broadcast_to(v, test.time.shape) for name, v in test.boundaries.items()}
-    inputs = {name: np.broadcast_to(v, test.time.shape) for name, v in test.inputs.items()}
-    return {"time_s": test.time, **inputs, **boundaries}
-
-
-def _results(folder: Folder, test: Test) -> Worksheet:
-    from thermoscope.case_folder.runs import readings
-
-    calculated = readings(folder.case, test)
-    columns = {"time_s": test.time}
-    for channel in test.channels:
-        columns[f"{channel.name} measured (degC)"] = channel.y
-        columns[f"{channel.name} calculated (degC)"] = calculated[channel.name]
-    return columns
-
-
-def write_xlsx(path: Path, content: Mapping[str, Worksheet]) -> Path:
+def write_xlsx(path: Path, content: Iterable[Table]) -> Path:
     """One worksheet per table; its header stays in sight."""
     from openpyxl import Workbook
 
     book, memory = Workbook(write_only=True), io.BytesIO()
-    for name, table in content.items():
-        sheet = book.create_sheet(visible(name).translate(UNREADABLE)[:31])
+    for table in content:
+        sheet = book.create_sheet(visible(table.title).translate(UNREADABLE)[:31])
         sheet.freeze_panes = "A2"
-        for row in rows_of(table):
+        for row in (table.columns, *table.rows):
             sheet.append([_typed(sheet, value) for value in row])
     book.save(memory)
     return write_whole(path, memory.getvalue())
@@ -95,9 +82,9 @@ def _typed(sheet: Any, value: Any) -> Any:
     return cell
 
 
-def write_csvs(folder: Path, content: Mapping[str, Worksheet]) -> list[Path]:
+def write_csvs(folder: Path, content: Iterable[Table]) -> list[Path]:
     """One file per table, named after it."""
     return [
-        write_whole(folder / f"{file_stem(name.replace(' ', '-'))}.csv", csv_lines(rows_of(table)))
-        for name, table in content.items()
+        write_whole(folder / f"{file_stem(table.title.replace(' ', '-'))}.csv", csv_lines([table.columns, *table.rows]))
+        for table in content
     ]

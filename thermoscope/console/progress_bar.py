@@ -20,6 +20,8 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
+from geom.errors import InputError
+from geom.storage import cache_folder, write_whole
 from geom.text import visible
 
 if TYPE_CHECKING:
@@ -278,15 +280,9 @@ def _line(message: str) -> None:
     print(visible(message), file=sys.stderr, flush=True)
 
 
-def _file() -> Path:
-    from geom.storage import cache_folder
-
-    return cache_folder() / FILE
-
-
 def _remembered() -> dict[str, dict[str, float]]:
     """What the cache knows; nothing where it is damaged or was never written."""
-    return _stages_in(_file())
+    return _stages_in(cache_folder() / FILE)
 
 
 def _usual() -> dict[str, dict[str, float]]:
@@ -301,10 +297,5 @@ def _stages_in(file: Path) -> dict[str, dict[str, float]]:
 
 
 def _remember(stages: dict[str, dict[str, float]]) -> None:
-    with suppress(OSError):
-        file = _file()
-        file.parent.mkdir(parents=True, exist_ok=True)
-        newest = dict(list(stages.items())[-MOST:])
-        partial = file.with_name(f".{file.name}.{time.time_ns()}")
-        partial.write_text(json.dumps(newest), encoding="utf-8")
-        partial.replace(file)
+    with suppress(InputError):  # a folder that can only be read
+        write_whole(cache_folder() / FILE, json.dumps(dict(list(stages.items())[-MOST:])))

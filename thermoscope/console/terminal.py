@@ -6,7 +6,7 @@ import json
 import math
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
@@ -14,22 +14,11 @@ from typing import Any
 
 from geom.storage import write_whole
 from geom.text import visible
-from thermoscope.console.answer import Answer, Grid, printed, to_stdout
 from thermoscope.console.progress_bar import Progress, progress
+from thermoscope.console.summary import Summary, printed, to_stdout
 
 STDOUT = "-"
-__all__ = [
-    "Progress",
-    "give",
-    "notes",
-    "notes_once",
-    "plain",
-    "progress",
-    "ranges_as_notes",
-    "say",
-    "value_with_interval",
-    "table",
-]
+__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "ranges_as_notes", "say"]
 
 
 def _line(message: str) -> None:
@@ -92,8 +81,8 @@ def plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Answer | None]) -> None:
-    """The document to a file or to stdout, and the answer, except when stdout belongs to the document."""
+def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Summary | None]) -> None:
+    """The document to a file or to stdout, and the summary, except when stdout belongs to the document."""
     text = json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n"
     if target == STDOUT:
         with to_stdout():
@@ -101,22 +90,10 @@ def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Ans
         return
     if target is not None:
         write_whole(Path(target), text)
-    answer = show()
-    if answer is not None:
-        printed(answer)
-
-
-def table(title: str, headers: Sequence[str], rows: Iterable[Sequence[Any]], marked: Sequence[str] = ()) -> None:
-    """A table on stdout, as wide as the terminal; rows that hold a `marked` word stand out."""
-    printed(Answer("", [Grid(title, headers, [list(row) for row in rows], marked)]))
+    if (summary := show()) is not None:
+        printed(summary)
 
 
 def say(message: str) -> None:
     """A sentence on stdout."""
-    printed(Answer(message))
-
-
-def value_with_interval(value: float | None, low: float | None, high: float | None) -> str:
-    """A value with its interval: three digits tell what an interval leaves sure."""
-    one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))
-    return f"{one} ({' ... '.join(two)})"
+    printed(Summary(message))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, NoSolution
 from geom.text import counted, table
 from thermoscope.case_folder.folder import load_machine_file
+from thermoscope.interface.case import Progress, silent
 from thermoscope.parts import explained
 
 if TYPE_CHECKING:
@@ -25,11 +26,6 @@ if TYPE_CHECKING:
     from lumped.model.network import Network
 
 Array = NDArray[np.float64]
-Progress = Callable[[str], None]
-
-
-def silent(message: str) -> None:
-    """No progress."""
 
 
 @dataclass(frozen=True)

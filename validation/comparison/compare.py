@@ -9,6 +9,7 @@ import numpy as np
 
 from geom.description.identity import Identity
 from geom.errors import ThermoscopeError
+from geom.table import Table
 from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
@@ -18,6 +19,7 @@ from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.counting import counted
 from validation.parameters.unknowns import measured, standing
+from validation.tables import comparison_tables
 
 Budget = Mapping[str, float]
 
@@ -106,6 +108,10 @@ class Comparison:
     def __repr__(self) -> str:
         rows = [[t.name, t.role, len(t.channels), t.over, t.rmse_K] for t in sorted(self.tests, key=lambda t: -t.over)]
         return f"{self.words}\n{table(['test', 'role', 'sensors', 'over', 'rms (K)'], rows)}"
+
+    def tables(self) -> tuple[Table, ...]:
+        """The tests, the sensors of each test, and the roles that nobody declares."""
+        return comparison_tables(self.document())
 
     @property
     def words(self) -> str:

@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
+from geom.table import Table
 from geom.text import table
 from validation.inference.missing_heat import MissingHeat
+from validation.tables import diagnosis_tables
 
 if TYPE_CHECKING:
     from validation.bases.which_base import Hypothesis
@@ -246,6 +248,10 @@ class Diagnosis:
         likely = [o for o in self.odds if o.probability > LEAST_PROBABILITY] or self.odds[:1]
         rows = [[o.hypothesis, f"{100 * o.probability:.1f} %"] for o in likely[:MOST_ODDS]]
         return f"{self.verdict}: {self.words}\n{table(['hypothesis', 'probability'], rows)}"
+
+    def tables(self) -> tuple[Table, ...]:
+        """Hypotheses, candidates, events, contradictions, what would decide, and what cannot be seen."""
+        return diagnosis_tables(self.document())
 
     @property
     def best(self) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geom.errors import InputError
+from geom.table import Table
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
@@ -24,6 +25,7 @@ from validation.effects.during import During
 from validation.effects.time_window import checked, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, working
 from validation.revision.acceptance import Check, checks, failures
+from validation.tables import revision_tables
 from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
@@ -75,6 +77,10 @@ class Revision:
             f"Revision {self.revision}, {what}, {accepted}: {self.why}\n"
             f"{table(['test', 'role', 'rms before (K)', 'after (K)'], rows)}"
         )
+
+    def tables(self) -> tuple[Table, ...]:
+        """The error of every test before and after, and the parameters with their intervals."""
+        return revision_tables(self.document())
 
     @property
     def revision(self) -> int:

@@ -39,17 +39,11 @@ def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png:
     Where no sensor reads, model and band are orange.
     """
     widest = sorted(places, key=lambda p: -float(p.half95.max()))[:MOST]
-    columns = min(COLUMNS, len(widest))
-    rows = -(-len(widest) // columns)
-    figure, axes = paper.subplots(3.4 * columns, 2.1 * rows + 0.5, rows, columns)
+    left = f"; {len(widest)} of {len(places)} places, the least sure" if len(widest) < len(places) else ""
+    words = f"{title}{left}", "time (min)", "temperature, 95 % band (°C)"
+    figure, axes = paper.panels(len(widest), COLUMNS, (3.4, 2.1), *words, more=0.5)
     for ax, place in zip(axes, widest, strict=False):
         _panel(ax, np.asarray(time, float) / 60.0, place)
-    for ax in axes[len(widest) :]:
-        ax.set_visible(False)
-    left = f"; {len(widest)} of {len(places)} places, the least sure" if len(widest) < len(places) else ""
-    figure.suptitle(f"{title}{left}", fontsize=10, color=LIGHT.ink)
-    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
-    figure.supylabel("temperature, 95 % band (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.save(figure, png)
 
 

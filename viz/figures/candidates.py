@@ -14,6 +14,7 @@ from viz.figures import paper
 from viz.labels import minus
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are not drawn
@@ -24,16 +25,13 @@ DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LI
 def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
     """The highest log evidence as bars with each candidate's threshold, coloured by decision."""
     best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
-    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
+    figure, ax = _bars([c["effect"] for c in best], [c["score"] for c in best], [DECISION[c["decision"]] for c in best])
     for y, c in enumerate(best):
-        ax.barh(y, c["score"], height=0.62, color=DECISION[c["decision"]])
         ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
         note = amplitude(c) if c["decision"] != "no" else ""
         ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}", va="center", fontsize=8.5)
-    ax.set_yticks(range(len(best)), [c["effect"] for c in best])
     for label, c in zip(ax.get_yticklabels(), best, strict=True):
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")
-    ax.grid(False, axis="y")
     ax.margins(x=0.2, y=0.02)
     ax.set(xlabel="log evidence against nothing missing (nats); black mark: as probable as nothing")
     return paper.save(figure, png)
@@ -43,13 +41,10 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
 def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | Path | None = None) -> Figure:
     """The probability of every hypothesis that carries weight as bars, most probable first.  odds : of a diagnosis"""
     best = [o for o in odds if o["probability"] >= LEAST_PROBABILITY][:most][::-1]
-    figure, (ax,) = paper.subplots(8.4, 0.3 * len(best) + 1.2)
     colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
-    ax.barh(range(len(best)), [100.0 * o["probability"] for o in best], height=0.62, color=colours)
+    figure, ax = _bars([o["hypothesis"] for o in best], [100.0 * o["probability"] for o in best], colours)
     for y, o in enumerate(best):
         ax.text(100.0 * o["probability"], y, f"\u00a0{100.0 * o['probability']:.0f} %", va="center", fontsize=8.5)
-    ax.set_yticks(range(len(best)), [o["hypothesis"] for o in best])
-    ax.grid(False, axis="y")
     ax.set(xlabel="probability (%)", xlim=(0.0, 112.0))
     return paper.save(figure, png)
 
@@ -61,25 +56,26 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
     contradiction : the contradiction of a diagnosis or comparison
     """
     rows = contradiction["differences"][:most][::-1]
-    figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
-    ax.barh(
-        range(len(rows)),
-        [d["sd"] for d in rows],
-        height=0.62,
-        color=[BLUE if d["possible"] else VERMILION for d in rows],
-    )
+    names = [f"{d['parameter']} in {d['test']}" for d in rows]
+    figure, ax = _bars(names, [d["sd"] for d in rows], [BLUE if d["possible"] else VERMILION for d in rows])
     for y, d in enumerate(rows):
-        ax.text(
-            d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha="left" if d["sd"] > 0 else "right", fontsize=8.5
-        )
+        side = "left" if d["sd"] > 0 else "right"
+        ax.text(d["sd"], y, f"\u00a0{factor(d)}\u00a0", va="center", ha=side, fontsize=8.5)
     for limit in (-contradiction["limit"], contradiction["limit"]):
         ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
     ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
-    ax.set_yticks(range(len(rows)), [f"{d['parameter']} in {d['test']}" for d in rows])
-    ax.grid(False, axis="y")
     ax.margins(x=0.25, y=0.04)
     ax.set(xlabel="standard deviations from the other tests; blue can differ, red cannot; dotted: chance")
     return paper.save(figure, png)
+
+
+def _bars(names: Sequence[str], values: Sequence[float], colours: Sequence[str]) -> tuple[Figure, Axes]:
+    """Named bars, one below the other, the first at the bottom."""
+    figure, (ax,) = paper.subplots(8.4, 0.3 * len(names) + 1.2)
+    ax.barh(range(len(names)), values, height=0.62, color=colours)
+    ax.set_yticks(range(len(names)), names)
+    ax.grid(False, axis="y")
+    return figure, ax
 
 
 def factor(d: Mapping[str, Any]) -> str:

@@ -36,9 +36,7 @@ class Panel:
 def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = None) -> Figure:
     """Temperatures are blue, inputs orange, what is left out grey; the meaning stands under the name."""
     visible_panels = panels[:MOST]
-    across = min(ACROSS, len(visible_panels))
-    rows = -(-len(visible_panels) // across)
-    figure, axes = paper.subplots(3.0 * across, 1.8 * rows + 0.5, rows, across)
+    figure, axes = paper.panels(len(visible_panels), ACROSS, (3.0, 1.8), title, more=0.5)
     for ax, panel in zip(axes, visible_panels, strict=False):
         thin = slice(None, None, max(1, panel.time.size // POINTS))
         colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
@@ -46,7 +44,4 @@ def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = Non
         ax.set_title(panel.name[:SHORT], fontsize=8.5)
         ax.set_xlabel(panel.meaning or "left out", fontsize=8)
         ax.margins(x=0)
-    for ax in axes[len(visible_panels) :]:
-        ax.set_visible(False)
-    figure.suptitle(title, fontsize=10)
     return paper.save(figure, png)

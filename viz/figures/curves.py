@@ -6,13 +6,13 @@ Measured is ink, the model is blue, an earlier model is dashed orange; nothing e
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from geom.errors import InputError
 from validation.comparison.uncertainty import RULE
-from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
+from viz.colours import LIGHT, ORANGE, VERMILION
 from viz.data import Comparison, short
 from viz.figures import paper
 from viz.labels import end_labels
@@ -27,18 +27,15 @@ if TYPE_CHECKING:
 @paper.styled
 def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
     """A panel per sensor: readings with the band that counts as within, the model, and the earlier model if given."""
-    channels = _read(comparison)
-    columns = min(columns, len(channels))
-    rows = -(-len(channels) // columns)
-    figure, axes = paper.subplots(3.4 * columns, 2.2 * rows + 0.4, rows, columns)
+    channels, title = _read(comparison), f"{comparison.test.name}: measured and modelled"
+    time = f"time ({comparison.clock[1]})"
+    figure, axes = paper.panels(len(channels), columns, (3.4, 2.2), title, time, "temperature (°C)")
     for ax, channel in zip(axes, channels, strict=False):
         _panel(ax, comparison, channel)
-    for ax in axes[len(channels) :]:
-        ax.set_visible(False)
-    _name_lines(axes[0], comparison)
-    figure.suptitle(f"{comparison.test.name}: measured and modelled", fontsize=10.5, color=LIGHT.ink)
-    figure.supxlabel(f"time ({comparison.clock[1]})", fontsize=9.5, color=LIGHT.ink)
-    figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
+    names = comparison.temperatures(channels[0])
+    for i, curve in enumerate(sorted(names, key=lambda c: c.dashed)):  # once, top left, in the colour of their lines
+        place: dict[str, Any] = {"transform": axes[0].transAxes, "va": "top", "fontsize": 8.5}
+        axes[0].text(0.03, 0.97 - 0.12 * i, curve.name, color=curve.colour, **place)
     return paper.save(figure, png)
 
 
@@ -49,14 +46,13 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
     shade(ax, comparison)
-    colours = []
-    for channel in channels:
-        r = comparison.residual(channel)
-        colours.append(wrongness(r, comparison.limit_K(channel)))
-        ax.plot(t[thin], r[thin], color=colours[-1], lw=1.6 if colours[-1] != LIGHT.faint else 1.0)
-        alone(ax, t, r, colours[-1])
-    ends = [float(r[np.isfinite(r)][-1]) for r in map(comparison.residual, channels)]
-    end_labels(ax, ends, [short(c.name) for c in channels], [LIGHT.ink if c == LIGHT.faint else c for c in colours])
+    curves = [comparison.residual_curve(channel) for channel in channels]
+    for c in curves:
+        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.6 if c.colour != LIGHT.faint else 1.0)
+        alone(ax, t, c.y, c.colour)
+    ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
+    inks = [LIGHT.ink if c.colour == LIGHT.faint else c.colour for c in curves]
+    end_labels(ax, ends, [c.name for c in curves], inks)
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(
@@ -73,24 +69,23 @@ def _read(comparison: Comparison) -> tuple[Channel, ...]:
 
 
 def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
-    thin = comparison.thin
-    t, y = comparison.clock[0][thin], np.asarray(channel.y, float)[thin]
+    (t, _), thin, limit = comparison.clock, comparison.thin, comparison.limit_K(channel)
     shade(ax, comparison)
-    limit = comparison.limit_K(channel)
-    ax.fill_between(t, y - limit, y + limit, color=LIGHT.faint, alpha=0.45, lw=0)
-    ax.plot(t, y, color=LIGHT.ink, lw=1.0)
-    read = np.asarray(channel.y, float)
-    alone(ax, comparison.clock[0], read, LIGHT.ink, limit)
-    if comparison.before is not None:
-        ax.plot(t, comparison.before[channel.name][thin], color=ORANGE, lw=1.4, ls=(0, (4, 2)))
-    ax.plot(t, comparison.model[channel.name][thin], color=BLUE)
+    for curve in comparison.temperatures(channel):
+        if curve.ink:
+            y = curve.y[thin]
+            ax.fill_between(t[thin], y - limit, y + limit, color=LIGHT.faint, alpha=0.45, lw=0)
+            alone(ax, t, curve.y, curve.colour, limit)
+        dashes = (0, (4, 2)) if curve.dashed else "-"
+        ax.plot(
+            t[thin], curve.y[thin], color=curve.colour, lw=1.0 if curve.ink else 1.4 if curve.dashed else 1.6, ls=dashes
+        )
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    over = comparison.rmse(channel) > limit
-    colour = VERMILION if over else LIGHT.ink
-    ax.set_title(
-        f"rms {comparison.rmse(channel):.1f} K", loc="right", color=colour, fontweight="bold" if over else "normal"
-    )
+    error = comparison.rmse(channel)
+    ax.set_title(f"rms {error:.1f} K", loc="right", fontweight="normal")
+    if error > limit:
+        ax.set_title(f"rms {error:.1f} K", loc="right", color=VERMILION, fontweight="bold")
 
 
 def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0.0) -> None:
@@ -101,26 +96,8 @@ def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0
         ax.errorbar(t[lone], y[lone], yerr=within or None, fmt="o", ms=3.5, color=colour, elinewidth=1.0, zorder=3)
 
 
-def _name_lines(ax: Axes, comparison: Comparison) -> None:
-    """Names written once, top left of the first panel, in the colour of their lines."""
-    lines = [("measured ± limit", LIGHT.ink), ("model", BLUE)] + [("earlier model", ORANGE)] * (
-        comparison.before is not None
-    )
-    for i, (text, colour) in enumerate(lines):
-        ax.text(0.03, 0.97 - 0.12 * i, text, transform=ax.transAxes, va="top", color=colour, fontsize=8.5)
-
-
 def shade(ax: Axes, comparison: Comparison) -> None:
     """When something was different."""
     unit_s = 60.0 if comparison.clock[1] == "min" else 3600.0
     for begin, end in comparison.events:
         ax.axvspan(begin / unit_s, end / unit_s, color=ORANGE, alpha=0.15, lw=0)
-
-
-def wrongness(residual: np.ndarray, limit: float) -> str:
-    """Faint where the rms of the test is within the limit; else by sign: vermilion where the machine, once warm, is
-    hotter than the model, blue where it is colder."""
-    finite = residual[np.isfinite(residual)]
-    if not finite.size or np.sqrt(np.mean(finite**2)) <= limit:
-        return LIGHT.faint
-    return VERMILION if finite[len(finite) // 2 :].mean() > 0 else BLUE

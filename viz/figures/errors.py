@@ -30,19 +30,11 @@ def before_after(
         raise InputError("no tests to draw", "before_after", "the `tests` list of an add, remove or calibrate result")
     figure, (ax,) = paper.subplots(8.4, 0.55 * len(tests) + 1.3)
     for y, test in enumerate(reversed(tests)):
-        before, after = test["rmse_K"]["before"], test["rmse_K"]["after"]
-        ax.barh(y + 0.19, before, height=0.34, color=ORANGE)
-        ax.barh(y - 0.19, after, height=0.34, color=BLUE)
-        ax.text(
-            before,
-            y + 0.19,
-            f"\u00a0{before:.2f} K{' before' if y == len(tests) - 1 else ''}",
-            va="center",
-            fontsize=8.5,
-        )
-        ax.text(
-            after, y - 0.19, f"\u00a0{after:.2f} K{' after' if y == len(tests) - 1 else ''}", va="center", fontsize=8.5
-        )
+        for aside, word, colour in ((0.19, "before", ORANGE), (-0.19, "after", BLUE)):
+            error = test["rmse_K"][word]
+            ax.barh(y + aside, error, height=0.34, color=colour)
+            name = f" {word}" if y == len(tests) - 1 else ""
+            ax.text(error, y + aside, f"\u00a0{error:.2f} K{name}", va="center", fontsize=8.5)
     ax.set_yticks(range(len(tests)), [f"{t['name']}\n({t['role']})" for t in reversed(tests)])
     for label, test in zip(ax.get_yticklabels(), reversed(tests), strict=True):
         label.set_fontweight("bold" if test["role"] == "hold-out" else "normal")
@@ -72,23 +64,14 @@ def staircase(
         raise InputError("no revisions to draw", "staircase", "a model with at least one revision")
     figure, (ax,) = paper.subplots(8.4, 4.2)
     paths = error_paths(history)
-    ends, names, colours = [], [], []
-    for (name, role), errors in paths.items():
-        strong = role == "hold-out"
-        colour, width = (BLUE, 2.4) if strong else (PALE, 1.4)
-        ax.step(range(len(errors)), errors, where="post", color=colour, lw=width)
-        ax.plot(
-            [len(errors) - 1, len(errors) - 0.5],
-            [errors[-1]] * 2,
-            color=BLUE if strong else PALE,
-            lw=2.4 if strong else 1.4,
-        )
-        ends.append(errors[-1])
-        names.append(f"{name} ({role})")
-        colours.append(BLUE if strong else LIGHT.ink)
+    for (_, role), errors in paths.items():
+        style: dict[str, Any] = {"color": BLUE, "lw": 2.4} if role == "hold-out" else {"color": PALE, "lw": 1.4}
+        ax.step(range(len(errors)), errors, where="post", **style)
+        ax.plot([len(errors) - 1, len(errors) - 0.5], [errors[-1]] * 2, **style)
+    colours = [BLUE if role == "hold-out" else LIGHT.ink for _, role in paths]
     ax.set_ylim(0, 1.12 * max(max(e) for e in paths.values()))
     ax.set_xlim(-0.1, len(history) + 0.5)
-    end_labels(ax, ends, names, colours)
+    end_labels(ax, [e[-1] for e in paths.values()], [f"{name} ({role})" for name, role in paths], colours)
     if floor_K is not None:
         _level(ax, floor_K, "sensors' uncertainty")
     if plain_K is not None and plain_K < ax.get_ylim()[1]:

@@ -30,20 +30,19 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
     at = plan.decisive()
     thin = slice(None, None, max(1, -(-len(time) // POINTS)))
     t = (time - time[0])[thin] / unit_s
-    rows = -(-len(channels) // 2)
-    figure, axes = paper.subplots(8.6, 2.6 * rows + 0.4, rows, 2)
+    words = "", f"time ({unit})", "temperature (°C)"
+    figure, axes = paper.panels(len(channels), 2, (4.3, 2.6), *words)
     for ax, channel in zip(axes, channels, strict=False):
         for colour, curves in zip(COLOURS, plan.curves.values(), strict=False):
             y, band = curves[channel.name][thin], 2 * float(np.hypot(channel.sigma_K, channel.model_K))
             ax.fill_between(t, y - band, y + band, color=colour, alpha=0.15, lw=0)
             ax.plot(t, y, color=colour)
-        ax.set_title(f"{short(channel.name)}: up to {_largest(plan, channel.name):.1f} K apart")
+        spread_K = np.ptp([curves[channel.name] for curves in plan.curves.values()], axis=0).max()
+        ax.set_title(f"{short(channel.name)}: up to {spread_K:.1f} K apart")
         ax.margins(x=0)
         ax.axvline((time[at] - time[0]) / unit_s, color=LIGHT.ink, lw=0.8, ls=":")
         ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]
         end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
-    for ax in axes[len(channels) :]:
-        ax.set_visible(False)
     names = list(plan.curves)[: len(COLOURS)]
     figure.legend(
         axes[0].get_lines()[: len(names)],
@@ -55,11 +54,4 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
         handlelength=1.2,
         fontsize=8.5,
     )
-    figure.supxlabel(f"time ({unit})", fontsize=9.5, color=LIGHT.ink)
-    figure.supylabel("temperature (°C)", fontsize=9.5, color=LIGHT.ink)
     return paper.save(figure, png)
-
-
-def _largest(plan: PredictedCurves, channel: str) -> float:
-    every = np.array([curves[channel] for curves in plan.curves.values()])
-    return float(np.ptp(every, axis=0).max())

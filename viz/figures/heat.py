@@ -26,9 +26,8 @@ def missing_heat(
     """
     best = max(where, key=lambda w: w["evidence_nats"])
     tests = list(best["heat"].items())
-    columns = min(3, len(tests))
-    rows = -(-len(tests) // columns)
-    figure, axes = paper.subplots(3.2 * columns, 2.1 * rows + 0.5, rows, columns)
+    words = f"{best['place']}: {best['evidence_nats']:.0f} nats", "time (min)", "missing heat (W)"
+    figure, axes = paper.panels(len(tests), 3, (3.2, 2.1), *words, more=0.5)
     for ax, (name, series) in zip(axes, tests, strict=False):
         t, q, sd = (np.asarray(series[key], float) for key in ("time_s", "heat_W", "sd_W"))
         ax.fill_between(t / 60, q - 2 * sd, q + 2 * sd, color=LIGHT.faint, alpha=0.4, lw=0)
@@ -39,9 +38,4 @@ def missing_heat(
             ax.axvspan(span["begin_s"] / 60, span["end_s"] / 60, color=ORANGE, alpha=shade, lw=0)
         ax.margins(x=0)
         ax.set_title(name)
-    for ax in axes[len(tests) :]:
-        ax.set_visible(False)
-    figure.suptitle(f"{best['place']}: {best['evidence_nats']:.0f} nats", fontsize=10, color=LIGHT.ink)
-    figure.supxlabel("time (min)", fontsize=9.5, color=LIGHT.ink)
-    figure.supylabel("missing heat (W)", fontsize=9.5, color=LIGHT.ink)
     return paper.save(figure, png)

@@ -54,6 +54,21 @@ def subplots(width: float, height: float, rows: int = 1, columns: int = 1) -> tu
     return figure, list(axes.ravel())
 
 
+def panels(
+    count: int, across: int, size: tuple[float, float], title: str = "", x: str = "", y: str = "", more: float = 0.4
+) -> tuple[Figure, list[Axes]]:
+    """As many panels of a size (inches), at most so many `across`, with words above, below and beside all of them."""
+    across = min(across, count)
+    rows = -(-count // across)
+    figure, axes = subplots(size[0] * across, size[1] * rows + more, rows, across)
+    for ax in axes[count:]:
+        ax.set_visible(False)
+    figure.suptitle(title, fontsize=10, color=LIGHT.ink)
+    figure.supxlabel(x, fontsize=9.5, color=LIGHT.ink)
+    figure.supylabel(y, fontsize=9.5, color=LIGHT.ink)
+    return figure, axes
+
+
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     """Draw in the house style, whatever the user's matplotlib is set to."""
 

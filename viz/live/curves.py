@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT, ORANGE, Theme
-from viz.data import Comparison, short
-from viz.figures.curves import wrongness
+from viz.colours import LIGHT, Theme
+from viz.data import Comparison, Curve, short
 from viz.live.style import as_text, faded, figure, plain
 
 if TYPE_CHECKING:
@@ -32,23 +32,15 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
     c = channel_of(comparison, channel)
     (t, unit), thin = comparison.clock, comparison.thin
     x, y, band = plain(t[thin]), np.asarray(c.y, float)[thin], comparison.limit_K(c)
-    out = figure(
-        theme,
-        (0.66, 0.34),
-        title={"text": as_text(f"{short(c.name)} ({c.place})"), "x": 0.02, "y": 0.98, "font": {"size": 14}},
-    )
+    title = {"text": as_text(f"{short(c.name)} ({c.place})"), "x": 0.02, "y": 0.98, "font": {"size": 14}}
+    out = figure(theme, (0.66, 0.34), title=title)
     shade = {"fill": "tonexty", "fillcolor": faded(theme.faint, 0.4), "line": {"width": 0}, "hoverinfo": "skip"}
     for values, style in ((y - band, {"line": {"width": 0}, "hoverinfo": "skip"}), (y + band, shade)):
         out.add_scatter(x=x, y=plain(values), mode="lines", showlegend=False, row=1, col=1, **style)
-    _line(out, x, y, "measured ± limit", theme.ink, 1)
-    if comparison.before is not None:
-        _line(out, x, comparison.before[c.name][thin], "earlier model", ORANGE, 1, "dash")
-    _line(out, x, comparison.model[c.name][thin], "model", BLUE, 1)
     out.add_hrect(-band, band, fillcolor=faded(theme.faint, 0.3), line_width=0, row=2, col=1)
-    if comparison.before is not None:
-        earlier = np.asarray(c.y, float) - comparison.before[c.name]
-        _line(out, x, earlier[thin], "earlier residual", ORANGE, 2, "dash")
-    _line(out, x, comparison.residual(c)[thin], "residual", BLUE, 2)
+    for row, curves in enumerate((comparison.temperatures(c), comparison.residuals(c)), 1):
+        for curve in curves:
+            _line(out, x, replace(curve, y=curve.y[thin]), row, theme)
     out.update_yaxes(title="°C", row=1, col=1)
     out.update_yaxes(title="residual (K)", row=2, col=1)
     out.update_xaxes(title=f"time ({unit})", row=2, col=1)
@@ -60,9 +52,8 @@ def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{as_text(comparison.test.name)}: what the model misses", "x": 0.02})
     for c in comparison.channels:
-        r = comparison.residual(c)
-        colour = wrongness(r, comparison.limit_K(c))
-        _line(out, plain(t[thin]), r[thin], short(c.name), theme.faint if colour == LIGHT.faint else colour, 1)
+        curve = comparison.residual_curve(c)
+        _line(out, plain(t[thin]), replace(curve, y=curve.y[thin]), 1, theme)
     out.update_xaxes(title=f"time ({unit})")
     out.update_yaxes(title="measured − model (K)", zeroline=True, zerolinecolor=theme.ink)
     return out
@@ -103,16 +94,8 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     return out
 
 
-def _line(out: go.Figure, x: list, y: np.ndarray, name: str, colour: str, row: int, dash: str = "solid") -> None:
-    style = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": dash}
-    out.add_scatter(
-        x=x,
-        y=plain(y),
-        mode="lines",
-        name=as_text(name),
-        line=style,
-        showlegend=row == 1,
-        row=row,
-        col=1,
-        hovertemplate="%{y:.2f}",
-    )
+def _line(out: go.Figure, x: list, curve: Curve, row: int, theme: Theme) -> None:
+    colour = theme.ink if curve.ink else theme.faint if curve.colour == LIGHT.faint else curve.colour
+    line = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": "dash" if curve.dashed else "solid"}
+    style = {"line": line, "showlegend": row == 1, "row": row, "col": 1, "hovertemplate": "%{y:.2f}"}
+    out.add_scatter(x=x, y=plain(curve.y), mode="lines", name=as_text(curve.name), **style)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.errors import InputError, MissingDependency
-from viz.colours import LIGHT, Theme
+from viz.colours import LIGHT, Theme, rgb
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -46,8 +46,7 @@ def as_text(name: str) -> str:
 
 def faded(colour: str, opacity: float) -> str:
     """'#rrggbb' as rgba."""
-    r, g, b = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    return f"rgba({r},{g},{b},{opacity})"
+    return f"rgba({','.join(map(str, rgb(colour)))},{opacity})"
 
 
 def plain(values: Any) -> list[float | None]:

@@ -13,7 +13,7 @@ from geom.errors import InputError
 from viz.colours import LIGHT, Theme
 from viz.machine.field import UNIT, paint
 from viz.rendering import scene
-from viz.rendering.callouts import on_top
+from viz.rendering.callouts import draw_on_top
 from viz.rendering.cut import QUARTER, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import TITLE, Room, View
@@ -105,4 +105,4 @@ def _arrows(p: pyvista.Plotter, at: Array, flux: Array, length: float, theme: Th
     cloud["length"] = np.sqrt(size[long] / size.max(initial=1.0))
     arrow = pyvista.Arrow(shaft_radius=0.06, tip_radius=0.16, tip_length=0.35)
     shapes = cloud.glyph(orient="flux", scale="length", factor=LONGEST * length, geom=arrow)
-    on_top(p.add_mesh(shapes, color=theme.ink, lighting=False, show_scalar_bar=False), 1)
+    draw_on_top(p.add_mesh(shapes, color=theme.ink, lighting=False, show_scalar_bar=False), 1)

@@ -16,7 +16,7 @@ from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
 from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
-from viz.rendering.callouts import beside, on_top
+from viz.rendering.callouts import draw_on_top, label_room
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.ghost import OPACITY, Ghosted
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -191,7 +191,7 @@ def paint_cut(
     limits, out = limits or (float(T.min()), float(T.max())), []
     for one in cut.windows:
         rim = pyvista.lines_from_points(np.concatenate([one.rim, one.rim[:1]]))
-        on_top(p.add_mesh(rim, color=theme.ink, line_width=1.5, lighting=False), 1)
+        draw_on_top(p.add_mesh(rim, color=theme.ink, line_width=1.5, lighting=False), 1)
     if cut.ghost is not None:
         clear = scene.polydata(cut.ghost)
         clear.point_data["T"] = cut.ghost.values(T)
@@ -215,5 +215,5 @@ def paint_cut(
 def room_for(labels: Sequence[str], title: str, note: bool = False) -> Room:
     """Beside the machine for labels and a colour bar, above it for a title, below it for a footnote."""
     top, bottom = TITLE if title else 0.0, NOTE if labels or note else 0.0
-    wide = beside(labels, least=0.14) if labels else 0.0
+    wide = label_room(labels, least=0.14) if labels else 0.0
     return Room(wide, wide + BAR, top, bottom)

@@ -14,7 +14,7 @@ from geom.meshing.mesh import NamedMesh
 from viz.colours import LIGHT, Theme, heat, power
 from viz.figures.flows import Heat
 from viz.rendering import scene
-from viz.rendering.callouts import Label, beside, callouts, on_top, pixel, text
+from viz.rendering.callouts import Label, callouts, draw_on_top, label_room, pixel, text
 from viz.rendering.cut import HALF, cut_away
 from viz.rendering.nodes import SplitMesh, split
 from viz.rendering.scale import rounded
@@ -72,7 +72,7 @@ def network_in_machine(
     at = {name: xyz + front for name, xyz in at.items() if xyz[1] > 0 and name in temperatures}
     low, high = surface.framed.min(axis=0), surface.framed.max(axis=0)
     words = {name: f"{name}  {temperatures[name]:.0f} °C" for name in at}
-    wide = beside(list(words.values()), LETTERS, 0.17)
+    wide = label_room(list(words.values()), LETTERS, 0.17)
     room = Room(wide, wide + scene.BAR, scene.TITLE)
     scene.look(p, front + np.array([[0, low[1], low[2]], [0, high[1], high[2]]]), SIDE, room)
     at = spread_out(at, max(CLOSEST * nodes.length, 2 * NODE * pixel(p)))
@@ -163,7 +163,7 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
             name=f"link {i}",
             line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
         )
-        on_top(actor, 1)
+        draw_on_top(actor, 1)
         place = clear_place(a, b, list(at.values()), labels, pixel_m) if len(labels) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)
@@ -201,5 +201,5 @@ def _nodes(
     halo = p.add_mesh(cloud.copy(), color="white", point_size=50, **style)
     ends = rounded(*(limits or (min(T[name] for name in at), max(T[name] for name in at))))
     dots = p.add_mesh(cloud, scalars="T", cmap=heat(), clim=ends, point_size=42, name="nodes", **style)
-    on_top(halo, 4)
-    on_top(dots, 5)
+    draw_on_top(halo, 4)
+    draw_on_top(dots, 5)

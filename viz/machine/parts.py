@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from geom.description.identity import Identity
 from geom.description.roles import Role
-from viz.colours import LIGHT, Theme, heat, part_colours
+from viz.colours import LIGHT, Theme, heat, part_colours, rgb
 from viz.rendering import scene
-from viz.rendering.callouts import Label, beside, callouts, text
+from viz.rendering.callouts import Label, callouts, label_room, text
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
@@ -48,7 +48,7 @@ def regions(
     surface = cut_away(nodes, wedge)
     _paint(p, surface, None, theme, mesh=mesh)
     scene.headline(p, title, theme)
-    wide = beside(nodes.parts, LETTERS, 0.2)
+    wide = label_room(nodes.parts, LETTERS, 0.2)
     room = Room(wide, wide, TITLE if title else 0.0)
     scene.look(p, surface.framed, view, room)
     anchor_points = anchors(surface, view, room, surface.framed)
@@ -151,16 +151,12 @@ def _paint(
     light: dict[str, Any] = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "culling": "back"}
     light |= {"show_edges": mesh, "edge_color": theme.ink, "edge_opacity": 0.45, "line_width": 1.0}
     if T is None:
-        rgb = np.array(
-            [_rgb(colour) for colour in part_colours(surface.nodes.parts, surface.nodes.identities).values()], np.uint8
+        colours = np.array(
+            [rgb(colour) for colour in part_colours(surface.nodes.parts, surface.nodes.identities).values()], np.uint8
         )
-        data.cell_data["colour"] = rgb[surface.part]
+        data.cell_data["colour"] = colours[surface.part]
         p.add_mesh(data, scalars="colour", rgb=True, **light)
     else:
         data.point_data["T"] = surface.values(T)
         ends = rounded(*(limits or (float(T.min()), float(T.max()))))
         p.add_mesh(data, scalars="T", cmap=heat(), clim=ends, show_scalar_bar=False, **light)
-
-
-def _rgb(colour: str) -> tuple[int, ...]:
-    return tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5))

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from viz.colours import VERDICT
+from viz.colours import VERDICT, rgb
 from viz.data import Sensor
-from viz.rendering.callouts import HOLLOW, on_top
+from viz.rendering.callouts import HOLLOW, draw_on_top
 from viz.rendering.cut import Surface
 from viz.rendering.visibility import covered, obstacle
 
@@ -31,7 +31,7 @@ class Pulses:
 
     def show(self, sensors: Sequence[Sensor], second: float) -> None:
         """The sensors as they are at this instant of the film (s); they stay in the order in which they came."""
-        colours = np.array([_rgb(VERDICT[s.verdict]) for s in sensors], np.uint8).reshape(-1, 3)
+        colours = np.array([rgb(VERDICT[s.verdict]) for s in sensors], np.uint8).reshape(-1, 3)
         wrong = np.array([s.verdict in ("hot", "cold") for s in sensors], bool)
         phase = second * HERTZ % 1.0
         self._dots("pulse", wrong, colours, SIZE * (1.4 + SWELL * np.sin(np.pi * phase)), 1)
@@ -53,8 +53,4 @@ class Pulses:
                 reset_camera=False,
                 render=False,
             )
-            on_top(actor, order)
-
-
-def _rgb(colour: str) -> tuple[int, ...]:
-    return tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5))
+            draw_on_top(actor, order)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from geom.disk_cache import atomic_write
+from geom.storage import write_whole
+from geom.table import Table
+from validation.tables import currents
 from viz.data import short
 from viz.figures.experiment import SENSORS, predicted
 from viz.pages import html
-from viz.pages.next_tests import currents
 
 if TYPE_CHECKING:
     from validation.revision.predicted_curves import PredictedCurves
@@ -37,11 +38,7 @@ class BenchPage:
 
 def write_bench_page(page: BenchPage, path: str | Path) -> Path:
     """Write the page and return its path."""
-    path, text = Path(path), render(page)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(path) as partial:
-        partial.write_text(text, encoding="utf-8")
-    return path
+    return write_whole(Path(path), render(page))
 
 
 def render(page: BenchPage) -> str:
@@ -52,7 +49,8 @@ def render(page: BenchPage) -> str:
     closest = plan.closest()
     word = "decides" if closest >= DECISIVE else "does not decide"
     says = f"The two closest hypotheses come apart by {closest:.1f} of the sensors' own sigma (rms): this test {word}."
-    table = html.table(["hold", "from", "to", "at"], [*_steps(page), *_scaled_records(page)])
+    steps = [[name, _clock(a), _clock(b), value] for name, a, b, value in page.holding]
+    table = html.table(Table("", ["hold", "from", "to", "at"], [*steps, *_scaled_records(page)]))
     table += html.text(f"All else as in the record of {page.driven}, again and again until the time is over.")
     table += _currents(page)
     caption = "Predicted by each hypothesis, with the sensor's 2-sigma band; the line is where they are furthest apart."
@@ -65,11 +63,7 @@ def render(page: BenchPage) -> str:
     return html.page(f"thermoscope: {plan.experiment.name}", parts)
 
 
-def _steps(page: BenchPage) -> list[list[html.Cell]]:
-    return [[name, _clock(a), _clock(b), value] for name, a, b, value in page.holding]
-
-
-def _scaled_records(page: BenchPage) -> list[list[html.Cell]]:
+def _scaled_records(page: BenchPage) -> list[list[Any]]:
     """Currents that go as they were recorded, but smaller."""
     plan, listed = page.plan, {name for name, *_ in page.holding}
     factor, end = plan.experiment.current_factor, _clock(plan.test.time[-1] - plan.test.time[0])
@@ -103,11 +97,11 @@ def _decisive(plan: PredictedCurves) -> str:
     """Temperatures by hypothesis where they are furthest apart; a column to write into."""
     at = plan.decisive()
     channels = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
-    rows: list[list[html.Cell]] = [
+    rows: list[list[Any]] = [
         [short(c.name), *(_degrees(y[c.name][at]) for y in plan.curves.values()), BLANK] for c in channels
     ]
     return f"<h3>At {_clock(plan.test.time[at] - plan.test.time[0])} (°C)</h3>" + html.table(
-        ["sensor", *plan.curves, "read"], rows
+        Table("", ["sensor", *plan.curves, "read"], rows)
     )
 
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 from importlib.resources import files
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from geom.table import Table, cell
 from viz.figures import paper
 from viz.labels import minus
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Cell = str | float | int | None
 
 
 def page(title: str, body: Iterable[str]) -> str:
@@ -57,22 +56,28 @@ def inner_page(page: str, title: str) -> str:
     return f'<iframe {inside} srcdoc="{escape(page, quote=True)}"></iframe>{_caption(title)}\n'
 
 
-def table(headers: Sequence[str], rows: Iterable[Sequence[Cell]], strong: Sequence[bool] = ()) -> str:
-    """Numbers to the right, words to the left; '' and None are shown as a dash."""
-    body = [list(row) for row in rows]
-    if not body:
+def table(content: Table) -> str:
+    """Numbers to the right, words to the left; rows with a marked word are strong, empty columns left out."""
+    rows, empty = content.rows, ("", "-", None)
+    columns = [i for i in range(len(content.columns)) if i == 0 or any(row[i] not in empty for row in rows)]
+    if not rows:
         return ""
-    numeric = [
-        all(isinstance(row[i], float | int) or row[i] in (None, "") for row in body) for i in range(len(headers))
+    style = [
+        "" if any(isinstance(row[i], str) and row[i] not in empty for row in rows) else ' class="n"' for i in columns
     ]
-    top = "".join(f"<th{_n(n)}>{escape(h)}</th>" for h, n in zip(headers, numeric, strict=True))
+    top = "".join(f"<th{s}>{escape(content.columns[i])}</th>" for i, s in zip(columns, style, strict=True))
     lines = [
-        f"<tr{' class=strong' if i < len(strong) and strong[i] else ''}>"
-        + "".join(f"<td{_n(n)}>{_cell(v)}</td>" for v, n in zip(row, numeric, strict=True))
+        f"<tr{' class=strong' if any(cell(value) in content.marked for value in row) else ''}>"
+        + "".join(f"<td{s}>{_cell(row[i])}</td>" for i, s in zip(columns, style, strict=True))
         + "</tr>"
-        for i, row in enumerate(body)
+        for row in rows
     ]
     return f'<div class="scroll"><table><thead><tr>{top}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>\n'
+
+
+def headed(content: Table) -> str:
+    """A table under its title; nothing at all if it has no rows."""
+    return f"<h3>{escape(content.title)}</h3>{table(content)}" if content.rows else ""
 
 
 def cards(items: Iterable[tuple[str, str]]) -> str:
@@ -89,16 +94,11 @@ def _caption(caption: str) -> str:
     return f"<figcaption>{escape(caption)}</figcaption>"
 
 
-def _n(numeric: bool) -> str:
-    return ' class="n"' if numeric else ""
-
-
-def _cell(value: Cell) -> str:
-    if value is None or value == "":
-        return "–"
-    if isinstance(value, float):
-        if not isfinite(value):
-            return "–"
+def _cell(value: Any) -> str:
+    if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
-    css = {"over": "bad", "within": "ok"}.get(str(value))
-    return f'<span class="{css}">{escape(str(value))}</span>' if css else escape(str(value))
+    word = cell(value).replace("->", "→").replace(" ... ", " … ")
+    if word in ("", "-"):
+        return "–"
+    css = {"over": "bad", "within": "ok"}.get(word)
+    return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)

@@ -13,13 +13,14 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from geom.disk_cache import atomic_write
+from geom.storage import write_whole
+from geom.table import Table
+from validation import tables
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import candidates, curves, errors, heat
 from viz.machine.missing import placed
 from viz.pages import html, words
-from viz.pages.next_tests import deciding, undecided
 
 Document = Mapping[str, Any]
 
@@ -57,10 +58,7 @@ class Report:
 
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
-    path, page = Path(path), render(report)
-    with atomic_write(path) as partial:
-        partial.write_text(page, encoding="utf-8")
-    return path
+    return write_whole(Path(path), render(report))
 
 
 def render(report: Report) -> str:
@@ -135,156 +133,72 @@ def _curves(r: Report) -> str:
 def _missing(r: Report) -> str:
     if r.diagnosis is None or not r.diagnosis["candidates"]:
         return ""
-    by_score = sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     parts = [
-        html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance.")
+        html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance."),
+        html.table(tables.candidates_table(by_score[:12])),
+        html.headed(tables.events_table(d.get("events", []))),
+        _contradiction(d.get("contradiction")),
     ]
-    parts.append(html.table(_HEADERS, [_row(c) for c in by_score[:12]], [c["decision"] == "named" for c in by_score]))
-    parts.append(_events(r.diagnosis))
-    parts.append(_contradiction(r.diagnosis))
-    if placed(r.diagnosis) and r.diagnosis["where"][0].get("heat"):
+    if placed(d) and d["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
-        figure = heat.missing_heat(r.diagnosis["where"], events=r.diagnosis.get("events", []))
-        parts.append(html.plot(figure, "heat", caption))
+        parts.append(html.plot(heat.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
-    alike = [(c["effect"], ", ".join(c["confused_with"])) for c in by_score[:12] if c["confused_with"]]
-    likeness = html.table(["effect", "looks like"], alike)
+    alike = [c for c in by_score[:12] if c["confused_with"]]
+    likeness = html.table(Table.of("", alike, "effect | looks like=confused_with"))
     names = [c["effect"] for c in by_score[:10]]
-    if r.diagnosis.get("confusion"):
-        likely = candidates.confusion(names, candidates.matrix(r.diagnosis["confusion"], names))
+    if d.get("confusion"):
+        likely = candidates.confusion(names, candidates.matrix(d["confusion"], names))
         likeness += html.plot(likely, "confusion", "Likeness of their traces.")
-    if likeness:
-        parts.append(html.more("Which of them look alike", likeness))
+    parts.append(html.more("Which of them look alike", likeness) if likeness else "")
     return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
 
 
-def _events(diagnosis: Document) -> str:
-    """When something may have been different for a while."""
-    rows: list[list[html.Cell]] = [
-        [e["words"], f"{100 * e['probability']:.0f} %", e["title"], e["effect"], _number(e["value"]), e["unit"]]
-        for e in diagnosis.get("events", [])
-    ]
-    headers = ["when", "probability", "most likely", "effect", "size", "unit"]
-    return "<h3>What may have differed for a while</h3>" + html.table(headers, rows) if rows else ""
-
-
-def _contradiction(diagnosis: Document) -> str:
+def _contradiction(row: Document | None) -> str:
     """Which test stands against the others, and what it would need."""
-    row = diagnosis.get("contradiction")
     if not row or not row["differences"]:
         return ""
-    rows: list[list[html.Cell]] = [
-        [
-            d["test"],
-            d["parameter"],
-            _number(d["others"]),
-            _number(d["here"]),
-            "" if d["unit"] == "1" else d["unit"],
-            _number(abs(d["sd"])),
-            "yes" if d["possible"] else "no",
-        ]
-        for d in row["differences"][:12]
-    ]
-    headers = ["test", "parameter", "other tests", "this test", "unit", "standard deviations", "can it differ?"]
-    table = html.table(headers, rows, [d["possible"] is False for d in row["differences"][:12]])
     figure = html.plot(candidates.differences(row), "differences", "What would have to differ between tests.")
     head = f"<h3>Tests that contradict each other</h3>{html.text(row['words'])}"
-    return f"{head}{figure}{html.more('In numbers', table)}"
-
-
-_HEADERS = ["effect", "decision", "score", "threshold", "size", "95 % interval", "refitted, error (K)", "held-out (K)"]
-
-
-def _row(c: Document) -> list[html.Cell]:
-    """Errors: all else fitted anew, without it and with it."""
-    errors = [f"{e['before']:.2f} → {e['after']:.2f}" if e else "" for e in (c.get("rmse_K"), c.get("holdout_rmse_K"))]
-    return [c["effect"], c["decision"], c["score"], c["threshold"], candidates.size(c), candidates.interval(c), *errors]
+    return f"{head}{figure}{html.more('In numbers', html.table(tables.contradiction_table(row)))}"
 
 
 def _hidden(r: Report) -> str:
     """What these tests cannot see, and which test would show more."""
     if r.diagnosis is None:
         return ""
-    hidden = [(b["effect"], _number(b["smallest_detectable"]), b["unit"]) for b in r.diagnosis.get("cannot_see", [])]
-    blind = [(name, "none that physics allows" if size is None else size, unit) for name, size, unit in hidden]
-    limits = html.table(["effect", "smallest that would be seen", "unit"], blind)
+    limits = html.table(tables.limits_table(r.diagnosis.get("cannot_see", [])))
     return html.section(
         "What these tests cannot see, and what would help",
         limits and html.more("Effects that could be there unseen", limits),
-        _next_tests(r.diagnosis),
+        html.headed(tables.offers_table(tables.offers(r.diagnosis))) or html.text(tables.undecided(r.diagnosis)),
     )
-
-
-def _next_tests(diagnosis: Document) -> str:
-    """Tests and sensors that would tell a group apart, or that no test would."""
-    rows = [
-        (o.kind, o.what, ", ".join(o.separates), _number(o.gain), _number(o.hours), o.how) for o in deciding(diagnosis)
-    ]
-    if not rows:
-        return html.text(undecided(diagnosis))
-    headers = ["kind", "what", "separates", "gain (20 decides)", "hours", "how"]
-    return "<h3>What would decide</h3>" + html.table(headers, rows)
 
 
 def _values(r: Report) -> str:
     """What the data fix is in sight; what they leave as it was expected opens on a click."""
-    fixed = [_value(p) for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
-    left = [_value(p) for p in r.parameters if not p.get("identified", True) and "@" not in p["name"]]
-    headers = ["parameter", "value", "unit", "95 % interval", "expected before"]
-    rest = html.more(f"{len(left)} values that the data do not fix", html.table(headers, left)) if left else ""
-    return html.section("Calibrated values", html.table(headers, fixed), rest)
-
-
-def _value(p: Document) -> list[html.Cell]:
-    unit = "" if p["unit"] == "1" else p["unit"]
-    return [p["name"], _number(p["value"]), unit, _interval(p.get("ci95")), _prior(p.get("prior"))]
+    fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
+    left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
+    rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
+    return html.section("Calibrated values", html.table(tables.parameters_table("", fixed)), rest)
 
 
 def _sensors(r: Report) -> str:
     if r.comparison is None:
         return ""
-    parts = []
-    for test in r.comparison["tests"]:
-        rows = [
-            (
-                c["channel"],
-                c["place"],
-                c["n"],
-                _number(c["rmse_K"]),
-                _number(c["bias_K"]),
-                _number(c["max_abs_K"]),
-                _number(c.get("limit_K")),
-                _number(c["sigma_K"]),
-                _number(c["percent_of_rise"]),
-                c["verdict"],
-            )
-            for c in test["channels"]
-        ]
-        headers = [
-            "sensor",
-            "place",
-            "readings",
-            "rms (K)",
-            "bias (K)",
-            "largest (K)",
-            "limit (K)",
-            "1σ (K)",
-            "% of rise",
-            "verdict",
-        ]
-        name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-        parts.append(html.more(name, html.table(headers, rows), expanded=test["role"] == "hold-out"))
     rule = f"<p>Error is measured − model; {RULE}.</p>"
-    return html.section("Every sensor", rule, *parts)
+    return html.section("Every sensor", rule, *(_sensors_of(test) for test in r.comparison["tests"]))
+
+
+def _sensors_of(test: Document) -> str:
+    name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
+    return html.more(name, html.table(tables.sensors_table("", [test])), expanded=test["role"] == "hold-out")
 
 
 def _numerical(r: Report) -> str:
     """What mesh, condensation and time steps leave in every temperature, test by test."""
-    keys = ("mesh_K", "condensation_K", "time_K", "total_K")
-    headers = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
-    tests = {name: [(p["place"], *(_number(p[k]) for k in keys)) for p in at] for name, at in r.error_budget.items()}
-    parts = [html.more(name, html.table(headers, rows)) for name, rows in tests.items()]
-    return html.section("Error budget: what the model's own numbers may be wrong by", *parts)
+    parts = [html.more(name, html.table(tables.budget_table(places))) for name, places in r.error_budget.items()]
+    return html.section(tables.budget_table([]).title, *parts)
 
 
 def _assumed(r: Report) -> str:
@@ -297,19 +211,3 @@ def _repeat(r: Report) -> str:
     return html.section("How to repeat this", commands) + (
         f"<footer>{escape(r.provenance)}</footer>" if r.provenance else ""
     )
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
-
-
-def _interval(ci95: Sequence[float] | None) -> str:
-    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 else ""
-
-
-def _prior(prior: Any) -> str:
-    if isinstance(prior, Mapping) and set(prior) == {"from", "to"}:
-        return _interval([prior["from"], prior["to"]])
-    if isinstance(prior, Mapping):
-        return ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in prior.items())
-    return "" if prior is None else str(prior)

@@ -75,7 +75,7 @@ def in_view(
     return (points - eye(machine)) @ np.stack([right, up], axis=1) / distance[:, None], distance
 
 
-def beside(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
+def outside_outline(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
     _, right, up = View().axes()
     (at, distance), outline = in_view(places, machine), in_view(machine, machine)[0]

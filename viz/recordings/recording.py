@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT, ORANGE, VERDICT, heat
-from viz.data import Comparison, Sensor, short
-from viz.figures.curves import wrongness
+from viz.colours import BLUE, LIGHT, VERDICT, heat
+from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
-from viz.recordings.arrangement import beside, blueprint, eye, non_overlapping
+from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
@@ -154,7 +154,7 @@ def _names(
 
     places = np.array([positions[channel.name] for channel in channels])
     hidden = covered(obstacle(surface), places, eye(surface.points))
-    at = np.where(hidden[:, None], beside(places, surface.points), places)
+    at = np.where(hidden[:, None], outside_outline(places, surface.points), places)
     visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
     labels = rr.Points3D(
         at[visible],
@@ -185,26 +185,25 @@ def _markers(
 
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
+    """Entities: measured and model of each channel, the earlier model where there is one, and the residual."""
     import rerun as rr
 
     for channel in c.channels:
         name = rr.escape_entity_path_part(channel.name)
-        _series(stream, f"curves/{name}/measured", c.test.time, channel.y, LIGHT.faint, "measured")
-        _series(stream, f"curves/{name}/model", c.test.time, c.model[channel.name], BLUE, "model")
-        if c.before is not None:
-            earlier = c.before[channel.name]
-            _series(stream, f"curves/{name}/earlier", c.test.time, earlier, ORANGE, "earlier model")
-        colour = wrongness(c.residual(channel), c.limit_K(channel))
-        _series(stream, f"residual/{name}", c.test.time, c.residual(channel), colour, short(channel.name))
+        for curve in c.temperatures(channel):
+            word = curve.name.split()[0]
+            curve = replace(curve, name=word, colour=LIGHT.faint) if curve.ink else curve
+            _series(stream, f"curves/{name}/{word}", c.test.time, curve)
+        _series(stream, f"residual/{name}", c.test.time, c.residual_curve(channel))
 
 
-def _series(stream: rr.RecordingStream, path: str, time: Array, values: Array, colour: str, name: str) -> None:
+def _series(stream: rr.RecordingStream, path: str, time: Array, curve: Curve) -> None:
     import rerun as rr
 
-    finite = np.isfinite(values)
-    stream.log(path, rr.SeriesLines(colors=_rgba(colour), widths=2.0, names=name), static=True)
+    finite = np.isfinite(curve.y)
+    stream.log(path, rr.SeriesLines(colors=_rgba(curve.colour), widths=2.0, names=curve.name), static=True)
     index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[finite])
-    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=np.asarray(values)[finite]))
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=curve.y[finite]))
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:

@@ -77,17 +77,17 @@ def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
 
     flat: dict[str, Any] = {"lighting": False, "render_points_as_spheres": True}
     here = pyvista.PolyData(np.array([label.xyz]))
-    on_top(p.add_mesh(here, color="white", point_size=26 * size, **flat), 2)
-    on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19 * size, **flat), 3)
+    draw_on_top(p.add_mesh(here, color="white", point_size=26 * size, **flat), 2)
+    draw_on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19 * size, **flat), 3)
     if label.covered:
-        on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19 * size, **flat), 4)
+        draw_on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19 * size, **flat), 4)
 
 
 def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
     import pyvista
 
     line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
-    on_top(line, 1)
+    draw_on_top(line, 1)
     p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
 
 
@@ -96,7 +96,7 @@ def width(text: str, size: int) -> float:
     return 0.55 * size * (len(text) + 1) / SIZE[0]
 
 
-def beside(texts: Sequence[str], size: int = SMALL, least: float = 0.0) -> float:
+def label_room(texts: Sequence[str], size: int = SMALL, least: float = 0.0) -> float:
     """Share of the picture's width that labels on one side take, with the gap to the machine; `least` in any case."""
     return max([least, *(GAP + width(text, size) for text in texts)])
 
@@ -124,7 +124,7 @@ def text(text: str, at: Array, colour: str, side: int, size: int) -> Any:
     return actor
 
 
-def on_top(actor: Any, order: int) -> None:
+def draw_on_top(actor: Any, order: int) -> None:
     """Draw the actor over everything else: a thermocouple inside the machine must be seen."""
     mapper = actor.GetMapper()
     mapper.SetResolveCoincidentTopologyToPolygonOffset()

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geom.description.machine import Machine
 from geom.meshing.mesh import NamedMesh
 from geom.plugins import plugins
-from viz.colours import VERDICT, heat, missing, part_colours, power
+from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
@@ -112,7 +112,7 @@ def machine_document(
         "heat": _palette(heat()),
         "missing": _palette(missing()),
         "power": _palette(power()),
-        "tints": [[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in VERDICT.values()],
+        "tints": [[part / 255 for part in rgb(c)] for c in VERDICT.values()],
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.plugin import Answer, give, hypotheses_table, open_case, progress
+from thermoscope.plugin import Summary, bases_table, give, open_case, progress
 
 
 def bases(case: str, target: str | None) -> int:
@@ -22,15 +22,15 @@ def bases(case: str, target: str | None) -> int:
         "wrong": [h.test for h in wrong],
         "hypotheses": [h.document() for h in hypotheses],
     }
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: bases_summary(document))
     return 1 if wrong else 0
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def bases_summary(document: Mapping[str, Any]) -> Summary:
     """Every base for every test, with what it carries off by mechanism, and which test was elsewhere."""
     words = []
     for test in document["wrong"]:
         better = [h["base"] for h in document["hypotheses"] if h["test"] == test and not h["excluded"]]
         words.append(f"{test} did not stand on the base its sheet says; the readings allow: {', '.join(better)}")
     sentence = "; ".join(words) or "No test's readings exclude the base that its sheet says"
-    return Answer(f"{sentence}.", [hypotheses_table(document["hypotheses"])])
+    return Summary(f"{sentence}.", [bases_table(document["hypotheses"])])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.plugin import Answer, Grid, cell, give, open_case, progress
+from thermoscope.plugin import Summary, Table, cell, give, open_case, progress
 
 
 def curves(case: str, resolution: float, target: str | None) -> int:
@@ -17,11 +17,11 @@ def curves(case: str, resolution: float, target: str | None) -> int:
         tell("fitting the warming curves")
         result = found_in(folder.case, resolution)
     document = result.document()
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: curves_summary(document))
     return 0 if result.agrees else 1
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def curves_summary(document: Mapping[str, Any]) -> Summary:
     """The rule assembly by assembly, the repeats, then eq. 8 and eq. 9 sensor by sensor."""
     rows_of_tests = [(t["name"], a) for t in document["tests"] for a in t["assemblies"]]
     over = sum(a["verdict"] != "within" for _, a in rows_of_tests)
@@ -48,7 +48,7 @@ def answer(document: Mapping[str, Any]) -> Answer:
         "reading's 95 % (%)",
         "verdict",
     ]
-    rule = Grid(
+    rule = Table(
         "Within 3 to 4 % of the measured temperature, never above 7 %",
         headers,
         rows,
@@ -56,18 +56,18 @@ def answer(document: Mapping[str, Any]) -> Answer:
         ["test", "%", "verdict"],
     )
     sentence = f"{len(rows_of_tests) - over} of {len(rows_of_tests)} assemblies are within the 3 to 4 % rule."
-    parts: list[Grid | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
-    return Answer(sentence, parts, "--json FILE")
+    parts: list[Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
+    return Summary(sentence, parts, "--json FILE")
 
 
-def _warming(document: Mapping[str, Any]) -> Grid:
+def _warming(document: Mapping[str, Any]) -> Table:
     headers = ["sensor", "test", "a (degC)", "b", "c (1/min)", "rms (K)", "T(0)", "tau_95 (min)", "steady", "K/h"]
     rows = [[c["channel"], t["name"], *_row(c)] for t in document["tests"] for c in t["curves"]]
     keep = ["test", "tau_95 (min)", "steady", "rms (K)"]
-    return Grid("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
+    return Table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
 
 
-def _repeats(document: Mapping[str, Any]) -> Grid:
+def _repeats(document: Mapping[str, Any]) -> Table:
     rows = [
         [
             r["place"],
@@ -81,7 +81,7 @@ def _repeats(document: Mapping[str, Any]) -> Grid:
         for r in document["repeats"]
     ]
     headers = ["place", "equal tests", "mean rise (K)", "1 sigma (K)", "largest difference", "95 % limit", "repeat"]
-    return Grid("Equal tests pooled", headers, rows, ["no"], ["repeat", "mean rise (K)", "equal tests"])
+    return Table("Equal tests pooled", headers, rows, ["no"], ["repeat", "mean rise (K)", "equal tests"])
 
 
 def _doubts(document: Mapping[str, Any]) -> list[str]:

@@ -47,11 +47,11 @@ from thermoscope.plugin import (
     NDFEB,
     OHMMETER,
     VOLTMETER,
-    Answer,
-    Grid,
     PropagatedUncertainty,
     Reading,
+    Summary,
     Table,
+    TomlTable,
     give,
     meter_of,
     pairs,
@@ -70,7 +70,7 @@ def protocol(file: Path | None, target: str | None) -> int:
     with progress() as tell:
         tell("checking the record")
         result = judged(Record(1.0) if file is None else read_record(file))
-    give(result.document(), target, lambda: answer(result))
+    give(result.document(), target, lambda: protocol_summary(result))
     if result.refused:
         first = result.refused[0]
         more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
@@ -80,7 +80,7 @@ def protocol(file: Path | None, target: str | None) -> int:
 
 def read_record(file: Path) -> Record:
     """The record of a test; InputError for unknown keys and values that cannot be."""
-    top = Table(read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
+    top = TomlTable(read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
     machine, cold, load, hot = (top.table(name) for name in ("machine", "cold", "load", "hot"))
     coefficients, meters = top.table("coefficients"), top.table("meters")
     top.close()
@@ -101,11 +101,11 @@ def read_record(file: Path) -> Record:
     return record
 
 
-def _optional(table: Table, key: str) -> float | None:
+def _optional(table: TomlTable, key: str) -> float | None:
     return table.number(key) if key in table else None
 
 
-def _cold(table: Table) -> Cold:
+def _cold(table: TomlTable) -> Cold:
     cold = Cold(
         table.number("room_degC"),
         table.number("machine_degC"),
@@ -119,7 +119,7 @@ def _cold(table: Table) -> Cold:
     return cold
 
 
-def _hot(table: Table, file: Path) -> Hot:
+def _hot(table: TomlTable, file: Path) -> Hot:
     hot = Hot(
         table.number("ambient_degC"),
         _pairs(table, file, 1.0),
@@ -131,7 +131,7 @@ def _hot(table: Table, file: Path) -> Hot:
     return hot
 
 
-def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
+def _pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
     """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
     if "readings" in source:
         rows = source.rows("readings", of="value")
@@ -149,7 +149,7 @@ def _pairs(source: Table, beside: Path, unit_s: float) -> Pairs:
     return tuple((float(t) / unit_s, float(v)) for t, v in pairs(frame, time, column, file))
 
 
-def _range(table: Table, key: str, usual: Reading) -> Reading:
+def _range(table: TomlTable, key: str, usual: Reading) -> Reading:
     if key not in table:
         return usual
     values = table.numbers(key)
@@ -159,18 +159,18 @@ def _range(table: Table, key: str, usual: Reading) -> Reading:
     return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
 
 
-def answer(result: Protocol) -> Answer:
+def protocol_summary(result: Protocol) -> Summary:
     """What to do next; the temperatures with their three uncertainties; then all steps."""
     spreads = [(n, s) for n, s in (("winding", result.winding), ("magnets", result.magnets)) if s is not None]
     headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
-    rises = Grid("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads], keep=["K", "GUM 95 %"])
+    rises = Table("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads], keep=["K", "GUM 95 %"])
     ways = [[w.method, w.at_s, w.value, w.sd, w.words] for w in result.ways]
-    off = Grid("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], ways)
+    off = Table("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], ways)
     rows: list[list[Any]] = [[s.name, s.state, s.when, s.what, s.words] for s in result.steps]
-    steps = Grid(
+    steps = Table(
         "Thermal test", ["step", "state", "when", "what", "found"], rows, ["refused"], ["state", "when", "what"]
     )
-    return Answer(_in_short(result), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
+    return Summary(_in_short(result), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
 
 
 def _in_short(result: Protocol) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermoscope import InputError
-from thermoscope.plugin import Answer, Grid, Role, give, load_machine_file, notes, open_case, progress, required
+from thermoscope.plugin import Role, Summary, Table, give, load_machine_file, notes, open_case, progress, required
 
 if TYPE_CHECKING:
     from thermoscope.plugin import MachineDescription as Machine
@@ -33,7 +33,7 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
             _by_shares(design_machine, design) if design in ("morris", "sobol") else _by_effects(design_machine, design)
         )
     document = {"machine": design_machine.name, "design": design, **document}
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: screening_summary(document))
     if out is not None:
         notes(f"written: {path}" for path in plots(document, out))
     return 0
@@ -60,7 +60,7 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
     return {"rankings": {name: method(factors, response).document() for name, response in responses.items()}}
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def screening_summary(document: Mapping[str, Any]) -> Summary:
     """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
     tables = [_effects(name, effects) for name, effects in document.get("effects", {}).items()]
     tables += [_ranking(name, effects) for name, effects in document.get("rankings", {}).items()]
@@ -69,24 +69,24 @@ def answer(document: Mapping[str, Any]) -> Answer:
         for g in tables
         if g.rows
     )
-    return Answer(
+    return Summary(
         f"{document['machine']}, {document['design']}: what moves most. {leading}.",
         tables,
         "--out DIR for plots; --json FILE",
     )
 
 
-def _effects(name: str, effects: Mapping[str, Any]) -> Grid:
+def _effects(name: str, effects: Mapping[str, Any]) -> Table:
     rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in effects["effects"]]
     title = f"{name}: beyond {effects['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
     headers = ["effect", "factors", f"high - low ({unit_of(name)})", "active"]
-    return Grid(title, headers, rows, ["yes"], headers[2:])
+    return Table(title, headers, rows, ["yes"], headers[2:])
 
 
-def _ranking(name: str, indices: Mapping[str, Any]) -> Grid:
+def _ranking(name: str, indices: Mapping[str, Any]) -> Table:
     rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in indices["ranking"]]
     title = f"{name}: {indices['method']}, {indices['runs']} runs"
-    return Grid(title, ["factor", "measure", "+- 95 %", "spread"], rows)
+    return Table(title, ["factor", "measure", "+- 95 %", "spread"], rows)
 
 
 def unit_of(response: str) -> str:
@@ -126,13 +126,15 @@ def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
     return 0
 
 
-def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Answer:
+def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Summary:
     """Two resistances per test."""
     headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
     keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
     left = max(one["largest_residual_K"] for one in resistances.values())
     sentence = f"Two resistances describe {len(resistances)} tests to {left:.2g} K at other loads."
-    return Answer(sentence, [Grid("", headers, [[name, *(one[k] for k in keys)] for name, one in resistances.items()])])
+    return Summary(
+        sentence, [Table("", headers, [[name, *(one[k] for k in keys)] for name, one in resistances.items()])]
+    )
 
 
 def carry(source: str, targets: list[str], target: str | None) -> int:
@@ -151,7 +153,7 @@ def carry(source: str, targets: list[str], target: str | None) -> int:
     return 0 if all(one.agrees for one in transfers) else 1
 
 
-def show_transfer(document: Mapping[str, Any]) -> Answer:
+def show_transfer(document: Mapping[str, Any]) -> Summary:
     """Where the model of one machine is over on the others."""
     keys = ("test", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
     headers = [
@@ -177,6 +179,6 @@ def show_transfer(document: Mapping[str, Any]) -> Answer:
         "sensors are over."
     )
     keep = ["case", "difference (K)", "95 % (K)", "verdict"]
-    return Answer(
-        sentence, [Grid("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]
+    return Summary(
+        sentence, [Table("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]
     )

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from extras.export.compilers import compiler, here
 from thermoscope import InputError, MissingDependency, ThermoscopeError
 from thermoscope.plugin import (
-    Answer,
     Folder,
     Progress,
+    Summary,
     give,
     notes,
     open_case,
@@ -63,8 +63,12 @@ def export(
         content = tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
     paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
-    document = {"case": folder.case.name, "files": [str(p) for p in paths], "worksheets": list(content)}
-    give(document, target, lambda: Answer(f"{len(paths)} files written.", [str(p) for p in paths]))
+    document = {
+        "case": folder.case.name,
+        "files": [str(p) for p in paths],
+        "worksheets": [table.title for table in content],
+    }
+    give(document, target, lambda: Summary(f"{len(paths)} files written.", [str(p) for p in paths]))
     return 0
 
 
@@ -97,7 +101,7 @@ def _model(
         ],
         "difference_K": differences,
     }
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: export_summary(document))
     return 0
 
 
@@ -156,7 +160,7 @@ def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[
     return {"model.mat": mat(model), **solver}, []
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def export_summary(document: Mapping[str, Any]) -> Summary:
     """What was written and how well it agrees."""
     sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
     lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
@@ -165,4 +169,4 @@ def answer(document: Mapping[str, Any]) -> Answer:
         lines.append(
             f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
         )
-    return Answer(sentence, [*lines, *document["files"]], "--json FILE")
+    return Summary(sentence, [*lines, *document["files"]], "--json FILE")

@@ -16,8 +16,8 @@ from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
 from thermoscope import InputError
 from thermoscope.plugin import (
     NORMAL_95,
-    Answer,
-    Grid,
+    Summary,
+    Table,
     dask_cluster,
     give,
     load_sheet,
@@ -56,7 +56,7 @@ def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | Non
         "recordings": len(files),
         **_document(spread, fits),
     }
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: fleet_summary(document))
     return 0
 
 
@@ -119,7 +119,7 @@ def _factor(mean: float, sd: float) -> list[float]:
     return [float(np.exp(mean - NORMAL_95 * sd)), float(np.exp(mean + NORMAL_95 * sd))]
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def fleet_summary(document: Mapping[str, Any]) -> Summary:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
     worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
@@ -138,12 +138,12 @@ def answer(document: Mapping[str, Any]) -> Answer:
         for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])
     ]
     parts = [
-        Grid("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
-        Grid(
+        Table("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
+        Table(
             "Parameters over the fleet",
             ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"],
             differ,
             keep=["mean", "spread (%)", "differs", "drift (%/year)"],
         ),
     ]
-    return Answer(sentence, [p for p in parts if p.rows], "--json FILE")
+    return Summary(sentence, [p for p in parts if p.rows], "--json FILE")

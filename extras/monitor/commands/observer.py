@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from thermoscope.plugin import Answer, give, open_case, progress, write_whole
+from thermoscope.plugin import Summary, give, open_case, progress, write_whole
 
 
 def export_observer(
@@ -50,5 +50,5 @@ def export_observer(
         "outputs": [o.name for o in looks],
     }
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
-    give(document, target, lambda: Answer(sentence, [str(p) for p in paths], "--json FILE"))
+    give(document, target, lambda: Summary(sentence, [str(p) for p in paths], "--json FILE"))
     return 0

@@ -21,10 +21,10 @@ from thermoscope.plugin import (
     NORMAL_95,
     PACKAGE,
     STDOUT,
-    Answer,
     Channel,
     Folder,
-    Grid,
+    Summary,
+    Table,
     csv_lines,
     give,
     initial_state,
@@ -71,7 +71,7 @@ def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: P
         **session.document(),
         "file": str(file),
     }
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: watch_summary(document))
     return 0
 
 
@@ -235,7 +235,7 @@ def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> 
     return f"sensor {where} {kind}{size}"
 
 
-def answer(document: dict[str, Any]) -> Answer:
+def watch_summary(document: dict[str, Any]) -> Summary:
     """Where the machine stands, what was dropped, where the model failed."""
     hottest = max(document["places"], key=lambda p: p["max_C"])
     sentence = (
@@ -248,11 +248,11 @@ def answer(document: dict[str, Any]) -> Answer:
     ]
     withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [
-        Grid("What was said", ["event", "from (s)", "to (s)"], events),
-        Grid("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
-        Grid("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
+        Table("What was said", ["event", "from (s)", "to (s)"], events),
+        Table("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
+        Table("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
     ]
-    return Answer(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
+    return Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
 
 
 def _number(value: float | None) -> float:

@@ -23,8 +23,8 @@ from thermoscope.plugin import (
     case_key,
     model_of,
     one_blas_thread,
-    recalled_result,
-    store_result,
+    recalled,
+    store,
     suggestion,
 )
 from thermoscope.plugin import LAW_RUNNING as RUNNING
@@ -41,7 +41,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     network = narrowed(network, values, folder.case)
     tests = [t for t in folder.case.fitted if t.role == "calibrate"]
     file = cache_folder() / f"observer-{LAYOUT}-{case_key(folder)}.npz"
-    cached = recalled_result(file, _from_cache)
+    cached = recalled(file, _from_cache)
     if cached is not None:
         return design_of(network, values, cached, tests, folder.case.doubt)
     progress("missing heat that the table of doubt allows")
@@ -49,7 +49,7 @@ def designed(folder: Folder, progress: Progress) -> Design:
     lesson = taught(network, values, bodies, table, tests, folder.case.doubt, progress)
     out = io.BytesIO()
     np.savez_compressed(out, bodies=np.array(bodies), table=table, constants=lesson.constants)
-    store_result(file, out.getvalue(), "observer")
+    store(file, out.getvalue())
     return design_of(network, values, lesson, tests, folder.case.doubt)
 
 

@@ -16,7 +16,7 @@ from extras.rating.design.machine_keys import MachineFile, machine_file_text, sh
 from extras.rating.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, pareto_set
 from thermoscope import InputError
-from thermoscope.plugin import Answer, Grid, csv_lines, file_stem, give, notes, progress, read_limits, write_whole
+from thermoscope.plugin import Summary, Table, csv_lines, file_stem, give, notes, progress, read_limits, write_whole
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -56,7 +56,7 @@ def optimise(
         tell(f"writing {where}")
         document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
     notes(messages)
-    give(document, target, lambda: answer(document, where))
+    give(document, target, lambda: optimisation_summary(document, where))
     return 0
 
 
@@ -149,7 +149,7 @@ def _write(
     return [str(path) for path in out]
 
 
-def answer(document: Mapping[str, Any], where: Path) -> Answer:
+def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
     designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
     ends = ", ".join(
@@ -163,7 +163,7 @@ def answer(document: Mapping[str, Any], where: Path) -> Answer:
     rows = [_row("as it is" + (" (too hot)" if not reference["feasible"] else ""), reference, objectives, names)]
     picked = [designs[round(k)] for k in np.linspace(0, len(designs) - 1, min(12, len(designs)))]
     rows += [_row(d["design"], d, objectives, names) for d in picked]
-    parts: list[Grid | str] = [Grid("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
+    parts: list[Table | str] = [Table("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
     if error := document.get("interpolation_error"):
         parts.append(
             f"Against models condensed anew for three of them: rises within {100.0 * _rises(error):.2g} %, settling "
@@ -174,7 +174,7 @@ def answer(document: Mapping[str, Any], where: Path) -> Answer:
     torque = "" if document["torque_Nm"] is None else f"{document['torque_Nm']:.4g} N m; "
     point = {**document["operating_point"]["inputs"], **document["operating_point"]["boundaries"]}
     parts.append(f"At {torque}{', '.join(f'{n} = {u:.4g}' for n, u in point.items())}.")
-    return Answer(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
+    return Summary(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
 
 
 def _rises(error: Mapping[str, float]) -> float:

@@ -20,13 +20,14 @@ from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import derated, load_of, point, row
 from thermoscope import InputError
 from thermoscope.plugin import (
-    Answer,
     Folder,
-    Grid,
     Progress,
     RangeWarning,
     Settings,
+    Summary,
+    Table,
     as_number,
+    bands_requested,
     before_last,
     find_case,
     give,
@@ -40,7 +41,6 @@ from thermoscope.plugin import (
     short_of,
     standing_reference,
     toml_value,
-    wanted,
 )
 
 POINTS = 6  # speeds of the envelope
@@ -81,7 +81,7 @@ def rate(
             **document_of(folder, request, sure, tell),
         }
     notes(messages)
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: rating_summary(document))
     return 0
 
 
@@ -135,7 +135,7 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     here = {form: rated(model, op, limits, form, None) for form in DUTIES}
     old = _before(folder, request, tell)
     before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
-    posterior = posterior_of(folder, tell) if request.losses is None and wanted(model.network, sure) else None
+    posterior = posterior_of(folder, tell) if request.losses is None and bands_requested(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, request)
     envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]
@@ -228,7 +228,7 @@ def _overload(it: Rated, request: RatingRequest, load: float) -> dict[str, Any]:
     return {"percent": 100.0 * request.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def rating_summary(document: Mapping[str, Any]) -> Summary:
     """The continuous rating with its band; the other forms; cycle, map, envelope and derating."""
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
@@ -244,8 +244,8 @@ def answer(document: Mapping[str, Any]) -> Answer:
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
-    table = Grid("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
-    parts: list[Grid | str] = [table, f"At {at}; S2 from {begin}."]
+    table = Table("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
+    parts: list[Table | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(
             f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
@@ -259,14 +259,14 @@ def answer(document: Mapping[str, Any]) -> Answer:
         for d in document["derating"]
     ]
     elsewhere = ["over", "value", "unit", "% of it", "95 % from", "to", "before (%)"]
-    parts.append(Grid("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
+    parts.append(Table("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
     envelope = [
         [e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
         for e in document["envelope"]
     ]
     over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
-    parts.append(Grid("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
-    return Answer(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+    parts.append(Table("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
+    return Summary(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
 
 
 def _change(first: Mapping[str, Any]) -> str:
@@ -289,10 +289,10 @@ def _of_cycle(cycle: Mapping[str, Any]) -> str:
     return f"Cycle {cycle['name']}: {share} may be repeated for ever ({cycle['at'] or 'nothing'} limits); {whole}."
 
 
-def _of_map(grid: Mapping[str, Any], main: str) -> Grid:
+def _of_map(grid: Mapping[str, Any], main: str) -> Table:
     """A row per load, the largest first; a column per speed."""
     rows = [
         [u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
         for k, u in reversed(list(enumerate(grid[main])))
     ]
-    return Grid("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)
+    return Table("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)

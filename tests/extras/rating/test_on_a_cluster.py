@@ -23,7 +23,7 @@ def cluster():
 
 
 def document(file: Path, *arguments: object) -> dict:
-    done = CliRunner().invoke(whole_app(), [*map(str, arguments), "--json", str(file)])
+    done = CliRunner().invoke(whole_app(), ["use", *map(str, arguments), "--json", str(file)])
     assert done.exit_code == 0, done.exception
     return json.loads(file.read_text())
 

@@ -83,7 +83,7 @@ def test_what_is_wrong_is_one_message(tmp_path, contents, arguments, message):
     case, out = small_case(tmp_path), tmp_path / "designs"
     before = contents(tmp_path)
     given = CliRunner().invoke(
-        whole_app(), ["optimise", str(case), "--at", "ambient=20", "--out", str(out), *arguments]
+        whole_app(), ["use", "optimise", str(case), "--at", "ambient=20", "--out", str(out), *arguments]
     )
     assert isinstance(given.exception, InputError)
     assert message in str(given.exception)
@@ -161,7 +161,7 @@ def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
         out, file = tmp_path / f"designs{word}", tmp_path / f"{word}.json"
         case = small_case(tmp_path / f"case{word}")
         given = [*asked, *filter(None, [word]), "--at", "ambient=20", "--out", str(out), "--json", str(file)]
-        done = CliRunner().invoke(whole_app(), ["optimise", str(case), *given])
+        done = CliRunner().invoke(whole_app(), ["use", "optimise", str(case), *given])
         assert done.exit_code == 0, done.exception
         found[word] = json.loads(file.read_text())["reference"]
     rise = found[""]["peak_degC"] - 20.0

@@ -246,7 +246,7 @@ def test_workbook_holds_input_and_results(tmp_path):
     road = folder.case.tests[1]
     assert back["T_yoke measured (degC)"].to_numpy() == pytest.approx(road.channels[1].y)
     gap = back["T_yoke calculated (degC)"] - back["T_yoke measured (degC)"]
-    errors = content["errors"]
+    (errors,) = (table.frame() for table in content if table.title == "errors")
     rmse = dict(zip(zip(errors["test"], errors["channel"]), errors["rmse_K"]))
     assert np.sqrt((gap**2).mean()) == pytest.approx(rmse["road", "T_yoke"])
     written = write_csvs(tmp_path / "csv", content)

@@ -9,7 +9,7 @@ import pytest
 from extras.bench.commands.protocol import protocol, read_record
 from extras.bench.measuring.protocol import protocol as judged
 from geom.errors import InputError
-from thermoscope.console.answer import within
+from thermoscope.console.summary import limited_lines
 
 RECORD = """
 [machine]
@@ -50,7 +50,7 @@ def record(tmp_path):
 
 
 def test_the_list_needs_no_record(capsys):
-    with within(None):
+    with limited_lines(None):
         assert protocol(None, None) == 0
     assert "before connecting the motor" in capsys.readouterr().out
 

@@ -15,8 +15,9 @@ from measured.importing.source import read_source
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
-from thermoscope.commands.test.new import Wishes, new, places
-from thermoscope.console.answer import within
+from thermoscope.commands.test.new import Wishes, places
+from thermoscope.commands.test.new import new_case as new
+from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
 
 S = signals(5.0)
@@ -225,7 +226,7 @@ def test_published_recordings_of_a_cell_and_a_house(root, tmp_path):
         pytest.skip("the data of others are not here")
     cell, house = tmp_path / "cell", tmp_path / "house"
     files = [data / "leaf-cell/temperature-3c.lvm", data / "leaf-cell/cycler-3c.csv"]
-    with within(None):
+    with limited_lines(None):
         assert new(files, Wishes(out=cell, yes=True), None) == 0
         assert new([data / "house/demo_data.csv"], Wishes(out=house, yes=True), None) == 0
     (test,) = load_case(cell).case.tests

@@ -12,9 +12,9 @@ from command_line import answered
 from small_case import small_case
 
 from geom.disk_cache import recalled
+from geom.storage import cache_folder
 from lumped.condensation.basis_cache import BasisCache, Centre
 from measured.importing.case_files import folder_whole
-from thermoscope import caches
 
 pytestmark = pytest.mark.nightly
 
@@ -137,7 +137,7 @@ def test_a_damaged_cache_is_made_again(original, tmp_path, monkeypatch, damage):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
     case = shutil.copytree(original, tmp_path / "case")
     assert answered("simulate", case).code == 0
-    (kept,) = caches.cache_folder().glob("belief-*.npz")
+    (kept,) = cache_folder().glob("belief-*.npz")
     sound = kept.read_bytes()
     damage(kept)
     assert answered("simulate", case).code == 0

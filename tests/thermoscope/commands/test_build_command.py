@@ -51,7 +51,7 @@ def coarse(tmp_path_factory):
         pictures = command.pictures  # one family is enough
         drawn = lambda built, *rest: pictures(built, *rest) if built.machine.family != "series-dc" else []  # noqa: E731
         patch.setattr(command, "pictures", drawn)
-        yield command.build
+        yield lambda machine, out, target: command.build_machine(machine, out, target, None)
 
 
 @pytest.fixture(scope="module", params=FEW)

@@ -2,8 +2,9 @@
 
 import pytest
 
-from thermoscope.commands.explain.diagnose import _candidates, _leader, _lost, events
-from thermoscope.console.answer import LINES, Answer, lay_out
+from thermoscope.commands.explain.diagnose import _leader, _lost
+from thermoscope.console.summary import LINES, Summary, lay_out
+from validation.tables import candidates_table, events_table
 
 
 def candidate(effect, unit, probability=0.99, decision="named", limit=14.14):
@@ -25,7 +26,7 @@ def candidate(effect, unit, probability=0.99, decision="named", limit=14.14):
 def test_the_detection_limit_stands_beside_the_size(unit):
     other = candidate("gap_convection@airgap|rotor", "W/K", 0.01, "no", 3.5)
     found = [candidate("convection@flange.right", unit), other]
-    lines = [line for line, _ in lay_out(Answer("x", [_candidates(found), *_leader(found)]), 80, LINES)]
+    lines = [line for line, _ in lay_out(Summary("x", [candidates_table(found), *_leader(found)]), 80, LINES)]
     head = next(line for line in lines if line.startswith("effect"))
     assert "size (95 %)" in head
     assert "detectable" in head
@@ -56,6 +57,6 @@ def test_why_the_rivals_lost():
 
 def test_improbable_stretches_wait_for_all():
     row = {"words": "from 9 to 46 min", "effect": "mass@yoke in town", "value": 1.0, "unit": "kg"}
-    document = {"events": [{**row, "probability": 0.0}, {**row, "probability": 0.4}]}
-    assert [r[0] for grid in events(document) for r in grid.rows] == ["event@2"]
-    assert [r[0] for grid in events(document, likely=False) for r in grid.rows] == ["event@1"]
+    events = [{**row, "probability": 0.0}, {**row, "probability": 0.4}]
+    assert [r[0] for r in events_table(events).rows] == ["event@2"]
+    assert [r[0] for r in events_table(events, likely=False).rows] == ["event@1"]

@@ -5,8 +5,9 @@ import json
 import pytest
 
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
-from thermoscope.commands.explain.effects import effects, quantities
-from thermoscope.quantities_page import PAGE, page
+from scripts.quantities import PAGE, page
+from thermoscope.commands.explain.effects import effects
+from thermoscope.commands.test.quantities import quantities
 from validation.effects.base import Effect
 from validation.effects.registry import kinds
 
@@ -54,5 +55,5 @@ def test_quantities_and_what_memory_holds(tmp_path, capsys):
 
 
 def test_the_page_is_up_to_date():
-    """After a change of quantities or effects: python -m thermoscope.quantities_page"""
+    """After a change of quantities or effects: python scripts/quantities.py"""
     assert PAGE.read_text(encoding="utf-8") == page()

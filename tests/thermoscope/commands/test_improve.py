@@ -48,7 +48,7 @@ def test_the_history_keeps_the_evidence(improved):
 
 def test_undo_brings_the_model_before_back_and_forgets_nothing(improved, capsys):
     with pytest.raises(SystemExit) as done:
-        whole_app()(["undo", str(improved[2]), "--to", "1", "--json", "-"])
+        whole_app()(["model", "undo", str(improved[2]), "--to", "1", "--json", "-"])
     assert done.value.code == 0
     document = json.loads(capsys.readouterr().out)
     assert document["effects"] == []

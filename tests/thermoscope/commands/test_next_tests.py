@@ -1,6 +1,6 @@
 """What would decide is shown only where something would."""
 
-from thermoscope.commands.explain.next_tests import next_tests
+from validation.tables import next_tests
 
 
 def shown(**document):

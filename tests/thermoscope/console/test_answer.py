@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_case import small_case
 
-from thermoscope.console import answer
-from thermoscope.console.answer import LINES, Answer, Grid, folded, lay_out
+from geom.table import Table
+from thermoscope.console import summary
+from thermoscope.console.summary import LINES, Summary, folded, lay_out
 from thermoscope.console.terminal import notes, notes_once
 
 WORDS = st.text("abcdefgh ", min_size=1, max_size=60).map(str.strip).filter(bool)
@@ -20,10 +21,10 @@ def grids(draw):
     n = draw(st.integers(1, 12))
     headers = [f"h{i} {draw(WORDS)[:12]}" for i in range(n)]
     rows = draw(st.lists(st.lists(CELLS, min_size=n, max_size=n), max_size=60))
-    return Grid(draw(WORDS), headers, rows, keep=headers[: n // 2])
+    return Table(draw(WORDS), headers, rows, keep=headers[: n // 2])
 
 
-ANSWERS = st.builds(Answer, WORDS, st.lists(st.one_of(grids(), WORDS.map(lambda w: f"{w} " * 9)), max_size=6), WORDS)
+ANSWERS = st.builds(Summary, WORDS, st.lists(st.one_of(grids(), WORDS.map(lambda w: f"{w} " * 9)), max_size=6), WORDS)
 
 
 def after_the_sentence(answer, width, most):
@@ -44,8 +45,8 @@ def test_what_follows_the_sentence_fits_on_a_screen(answer):
 def test_wide_tables_lose_columns_by_priority_and_no_number():
     headers = ["sensor", "test", "a", "b", "c", "verdict"]
     rows = [["T_winding", "a long name of a test", 1234.5678, -0.000123456, 98765.4321, "over"]] * 3
-    table = Grid("", headers, rows, keep=["verdict", "a"])
-    wide, small = (after_the_sentence(Answer("x", [table]), width, LINES) for width in (80, 36))
+    table = Table("", headers, rows, keep=["verdict", "a"])
+    wide, small = (after_the_sentence(Summary("x", [table]), width, LINES) for width in (80, 36))
     assert wide[0].split() == headers
     assert small[0].split() == ["sensor", "a", "verdict"]
     assert small[1].split() == ["T_winding", "1235", "over"]
@@ -56,13 +57,13 @@ def test_wide_tables_lose_columns_by_priority_and_no_number():
 @given(st.lists(st.floats(-1e9, 1e9), min_size=2, max_size=9), st.integers(20, 80))
 def test_a_number_is_shown_whole_or_not_at_all(values, width):
     headers = [f"column {i}" for i in range(len(values))]
-    head, body = after_the_sentence(Answer("x", [Grid("", ["name", *headers], [["w", *values]])]), width, LINES)
+    head, body = after_the_sentence(Summary("x", [Table("", ["name", *headers], [["w", *values]])]), width, LINES)
     assert "…" not in body
     assert len(body.split()) - 1 == head.count("column")
 
 
 def test_rows_that_do_not_fit_are_counted_and_all_shows_them():
-    answer = Answer("many", [Grid("t", ["n"], [[i] for i in range(100)])], "report")
+    answer = Summary("many", [Table("t", ["n"], [[i] for i in range(100)])], "report")
     lines = after_the_sentence(answer, 80, LINES)
     assert lines[-2:] == ["  ... and 79 more", "More: --all; report"]
     assert len(after_the_sentence(answer, 80, None)) == 103
@@ -123,10 +124,10 @@ def test_commands_in_a_row_say_each_note_once(capsys):
 
 def test_a_table_of_thousands_of_rows_is_laid_out_a_few_times(monkeypatch):
     """Row by row it took most of a minute to shorten 1600 rows to twenty."""
-    usual, calls = answer.grid, []
-    monkeypatch.setattr(answer, "grid", lambda *given: calls.append(1) or usual(*given))
-    table = Grid("", ["sensor", "rms (K)"], [[f"T{i}", 1.0 * i] for i in range(5000)])
-    lines = lay_out(Answer("All.", [table], "more"), 80, 20)
+    usual, calls = summary.grid, []
+    monkeypatch.setattr(summary, "grid", lambda *given: calls.append(1) or usual(*given))
+    table = Table("", ["sensor", "rms (K)"], [[f"T{i}", 1.0 * i] for i in range(5000)])
+    lines = lay_out(Summary("All.", [table], "more"), 80, 20)
     assert len(calls) < 10
     assert len(lines) == 21
     assert "and 4983 more" in lines[-2][0]

@@ -16,7 +16,7 @@ from validation.comparison.compare import channel_error, compare, errors
 from validation.comparison.uncertainty import COVERAGE, RULE
 from viz.colours import LIGHT, VERMILION
 from viz.data import Comparison, sensors
-from viz.figures.curves import residuals, wrongness
+from viz.figures.curves import residuals
 from viz.pages import report
 
 
@@ -80,7 +80,7 @@ def test_table_dot_curve_bar_and_page_say_the_same(off):
     assert shown.rmse(channel) == pytest.approx(mine.rmse_K, abs=0.02)
     assert mine.verdict == ("within" if abs(off) < mine.limit_K else "over")
     assert (mine.verdict == "within") == (dot.verdict == "within") == (bar["tone"] == "within")
-    colour = wrongness(shown.residual(channel), shown.limit_K(channel))
+    colour = shown.residual_curve(channel).colour
     assert (colour == LIGHT.faint) == (mine.verdict == "within")
     if off > mine.limit_K:
         assert dot.verdict == bar["tone"] == "hot"

@@ -10,6 +10,7 @@ from PIL import Image
 
 from extras.bench import figure as screening
 from geom.errors import InputError
+from viz.colours import BLUE, LIGHT
 from viz.data import Comparison
 from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
@@ -80,9 +81,9 @@ def test_figure_is_drawn_and_labelled(name, tmp_path):
 
 def test_wrong_sensor_is_coloured_and_the_others_are_faint():
     c = comparison()
-    colours = {ch.name: curves.wrongness(c.residual(ch), 2 * ch.sigma_K) for ch in c.test.channels}
-    assert colours.pop("flange.right") == curves.BLUE
-    assert set(colours.values()) == {curves.LIGHT.faint}
+    colours = {ch.name: c.residual_curve(ch).colour for ch in c.test.channels}
+    assert colours.pop("flange.right") == BLUE
+    assert set(colours.values()) == {LIGHT.faint}
 
 
 def test_sensor_that_was_never_read_is_left_out():

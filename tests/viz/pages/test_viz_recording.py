@@ -13,7 +13,7 @@ from rerun_pictures import verify
 from small_motor import motor
 
 from geom.errors import InputError
-from viz.recordings.arrangement import beside, blueprint, in_view, non_overlapping
+from viz.recordings.arrangement import blueprint, in_view, non_overlapping, outside_outline
 from viz.recordings.recording import TIME as TIME_LINE
 from viz.recordings.recording import write_recording
 from viz.rendering.nodes import split
@@ -103,7 +103,7 @@ def test_names_of_sensors_cover_none_before_them():
 def test_names_of_what_is_hidden_stand_beside_the_machine():
     """On the line from the middle through the sensor as it is first seen, beyond every point of the machine."""
     places = np.array([[0.01, 0.0, 0.3], [0.1, -0.1, 0.5], [-0.12, 0.1, 0.2]])
-    at, outline = (in_view(points, NODES.points)[0] for points in (beside(places, NODES.points), NODES.points))
+    at, outline = (in_view(points, NODES.points)[0] for points in (outside_outline(places, NODES.points), NODES.points))
     for end, before in zip(at, in_view(places, NODES.points)[0], strict=True):
         away = end / np.linalg.norm(end)
         assert away == pytest.approx(before / np.linalg.norm(before))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Annotated
+
+import typer
 
 from geom.errors import InputError
 from measured.case import Test
@@ -11,7 +14,8 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import last_diagnosis
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from validation.effects import kinds
 from validation.effects.time_window import checked, event
@@ -19,8 +23,13 @@ from validation.effects.time_window import checked, event
 WORDS = {"yes": True, "y": True, "no": False, "n": False}
 
 
-def answer(case: str, word: str, about: str | None, target: str | None) -> int:
-    """The answer as a step of the model's history; effects and values stay as they are."""
+def answer(
+    case: Case,
+    word: Annotated[str, typer.Argument(metavar="yes|no", help="To the question that `diagnose` ended with.")],
+    about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
+    target: Json = None,
+) -> int:
+    """Summary what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
     if word.lower() not in WORDS:
         raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
@@ -32,7 +41,7 @@ def answer(case: str, word: str, about: str | None, target: str | None) -> int:
     save_history(folder.settings.model_file, history, folder.history)
     document = {"case": folder.case.name, "revision": history.last.number, "answers": dict(history.last.answers)}
     sentence = f"Revision {history.last.number}: {why}. The next diagnosis takes it as evidence."
-    give(document, target, lambda: Answer(sentence, more=f"Next: thermoscope explain diagnose {case}"))
+    give(document, target, lambda: Summary(sentence, more=f"Next: thermoscope explain diagnose {case}"))
     return 0
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.commands.explain.bases_table import hypotheses_table
-from thermoscope.commands.explain.next_tests import next_tests
+from geom.table import cell
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
-from thermoscope.console.answer import Answer, Grid, cell
-from thermoscope.console.terminal import Progress, give, notes, progress, value_with_interval
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
+from thermoscope.console.terminal import Progress, give, progress
+from validation import tables
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -21,16 +23,13 @@ if TYPE_CHECKING:
 
 RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
-LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in --json
 
 
-def diagnose(case: str, target: str | None, older: bool = False) -> int:
-    """Exit code 1 when no effect is named.  older : an option of older versions was given"""
-    if older:
-        notes(["--draws is no longer needed: nothing is drawn"])
+def diagnose(case: Case, target: Json = None) -> int:
+    """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     with progress() as tell:
         diagnosis, document = diagnosed(open_case(case, tell), tell)
-    give(document, target, lambda: answer(document, case))
+    give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
 
@@ -49,68 +48,47 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     return diagnosis, document
 
 
-def answer(document: Mapping[str, Any], called: str) -> Answer:
+def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
-    bases, steps = document.get("bases", []), document.get("sampling", {})
+    bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
-        return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")
-    effects = document.get("named", [])
-    step = (
-        f"Next: thermoscope model add {case} {effects[0]}" if effects else f"Next: thermoscope explain effects {case}"
-    )
+        return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
+    effects, candidates = document.get("named", []), document["candidates"]
+    step = f"model add {case} {effects[0]}" if effects else f"explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
-    remaining = " ".join(row["words"] for row in document.get("remainder", []))
-    candidates = document["candidates"]
+    events, odds, candidate_rows = (
+        document.get("events", []),
+        tables.odds_table(document["odds"]),
+        tables.candidates_table(tables.weighty_candidates(candidates)),
+    )
     parts = [
-        _odds(document),
-        _candidates(candidates),
+        replace(odds, rows=odds.rows[:ODDS]),
+        replace(candidate_rows, rows=candidate_rows.rows[:ROWS]),
         *_leader(candidates),
         *_lost(candidates, effects),
-        remaining,
-        *events(document),
+        " ".join(row["words"] for row in document.get("remainder", [])),
+        tables.events_table(events),
         *contradiction(document.get("contradiction")),
-        *next_tests(document),
-        in_short(document.get("error_budget", {}), steps),
+        *tables.next_tests(document),
+        in_short(budgets or {}, steps or {}),
         hidden_words,
         question(document, case),
     ]
-    rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
-    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
+    rest = [tables.events_table(events, likely=False), *budget(budgets or {}, steps or {}), *hidden]
+    return Summary(sentence, parts, f"Next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
 
 
 def question(document: Mapping[str, Any], case: str) -> str:
     """What to ask the user, if an answer would tell more than a guess."""
     best = document.get("question")
-    if not best:
-        return ""
-    return f"One question: {best['words']} Then: thermoscope explain answer {case} yes|no"
-
-
-def _odds(document: Mapping[str, Any]) -> Grid:
-    """Every hypothesis with its probability."""
-    rows = [
-        [o["hypothesis"], f"{100 * o['probability']:.1f}"]
-        for o in document["odds"]
-        if o["probability"] > LEAST_PROBABILITY
-    ]
-    return Grid("What the readings say", ["hypothesis", "probability (%)"], rows[:ODDS])
-
-
-def _candidates(candidates: Sequence[Mapping[str, Any]]) -> Grid:
-    """Size with interval and detection limit, and what it buys."""
-    headers = ["effect", "%", "size (95 %)", "detectable", "unit", "refitted (K)", "held out (K)", "decision"]
-    keep = ["size (95 %)", "%", "detectable", "unit", "refitted (K)"]
-    rows = [_row(c) for c in candidates if c["probability"] > LEAST_PROBABILITY or c["decision"] != "no"] or [
-        _row(c) for c in candidates[:1]
-    ]
-    return Grid("Candidates", headers, rows[:ROWS], ["named", "group"], keep)
+    return f"One question: {best['words']} Then: thermoscope explain answer {case} yes|no" if best else ""
 
 
 def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
-    if not candidates or candidates[0]["probability"] <= LEAST_PROBABILITY:
+    if not candidates or candidates[0]["probability"] <= tables.LEAST_PROBABILITY:
         return []
     first = candidates[0]
     lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
@@ -128,7 +106,7 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
     refitted = [
         f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}."
         for c in candidates[1:ROWS]
-        if c["note"] and c["probability"] > LEAST_PROBABILITY and c["effect"] not in effects
+        if c["note"] and c["probability"] > tables.LEAST_PROBABILITY and c["effect"] not in effects
     ]
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
@@ -138,8 +116,7 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
 
 def limit(candidate: Mapping[str, Any]) -> str:
     """The smallest size that the tests would show, with its unit."""
-    unit = candidate["amplitude"]["unit"]
-    return f"{cell(candidate['smallest_detectable'])} {'' if unit == '1' else unit}".strip()
+    return f"{cell(candidate['smallest_detectable'])} {tables.unit_of(candidate['amplitude'])}".strip()
 
 
 def bought(candidate: Mapping[str, Any]) -> str:
@@ -148,40 +125,3 @@ def bought(candidate: Mapping[str, Any]) -> str:
     each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
     star = " (* never used)" if any(t["held_out"] for t in tests) else ""
     return f"Refitted without -> with {candidate['effect']}, error (K): {', '.join(each)}{star}."
-
-
-def events(document: Mapping[str, Any], likely: bool = True) -> list[Grid]:
-    """When something may have been different, or the improbable stretches that were tried as well."""
-    rows = [
-        [
-            f"event@{i}",
-            e["words"],
-            f"{100 * e['probability']:.1f}",
-            e["effect"].split(" in ")[0],
-            e["value"],
-            "" if e["unit"] == "1" else e["unit"],
-        ]
-        for i, e in enumerate(document.get("events", []), 1)
-        if likely == (e["probability"] > LEAST_PROBABILITY)
-    ]
-    headers = ["to add", "when", "%", "most likely", "size", "unit"]
-    title = "What may have differed for a while" if likely else "Stretches in which hardly anything differed"
-    return [Grid(title, headers, rows)] if rows else []
-
-
-def _row(c: Mapping[str, Any]) -> list[Any]:
-    size, share = c["amplitude"], f"{100 * c['probability']:.1f}"
-    return [
-        c["effect"],
-        share,
-        value_with_interval(size["value"], *size["ci95"]),
-        cell(c["smallest_detectable"]),
-        "" if size["unit"] == "1" else size["unit"],
-        _arrow(c["rmse_K"]),
-        _arrow(c["holdout_rmse_K"]),
-        c["decision"],
-    ]
-
-
-def _arrow(pair: Mapping[str, float] | None) -> str:
-    return f"{pair['before']:.2f} -> {pair['after']:.2f}" if pair else "-"

@@ -1,14 +1,17 @@
-"""thermoscope explain effects [CASE], thermoscope test quantities"""
+"""thermoscope explain effects [CASE]"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
+
+from geom.table import Table
 from lumped.model.quantities import INPUTS
-from measured.recordings.units import MEMORY_UNIT, QUANTITIES
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 
 if TYPE_CHECKING:
@@ -17,8 +20,11 @@ if TYPE_CHECKING:
 PLACES = 4  # named in a row of the table; all in --json
 
 
-def effects(case: str | None, target: str | None) -> int:
-    """Every kind of effect: what it needs, and in a case where it could sit or what is missing."""
+def effects(
+    case: Annotated[str | None, typer.Argument(metavar="[CASE]", help="Say where each could sit in this case.")] = None,
+    target: Json = None,
+) -> int:
+    """All effects the diagnosis knows: what each needs, where it could sit in a case, what the others lack."""
     from thermoscope.commands.open_case import open_case
     from validation.effects.registry import kinds
     from validation.parameters.unknowns import scene_of
@@ -28,7 +34,7 @@ def effects(case: str | None, target: str | None) -> int:
         with progress() as tell:
             scene = scene_of(open_case(case, tell).case)
     document = {"case": case, "effects": [_described(kind, scene) for kind in kinds().values()]}
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: effects_summary(document))
     return 0
 
 
@@ -52,52 +58,26 @@ def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
     return {**about, "places": list(kind.places(scene)), "missing": missing}
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def effects_summary(document: Mapping[str, Any]) -> Summary:
     """Those that can sit in the case first, then what the others lack."""
-    rows = document["effects"]
-    if document["case"] is None:
-        catalogue = [[e["effect"], e["title"], e["sits"], ", ".join(e["needs"])] for e in rows]
+    rows, case = document["effects"], document["case"]
+    if case is None:
         sentence = f"{len(rows)} effects are known; with a CASE this says where each could sit in it."
-        return Answer(
-            sentence, [Grid("", ["effect", "what", "sits at", "needs"], catalogue)], "docs/reference/quantities.md"
-        )
-    able = [e for e in rows if e["places"]]
-    unable = [e for e in rows if not e["places"]]
-    places = sum(len(e["places"]) for e in able)
+        table = Table.of("", rows, "effect | what=title | sits at=sits | needs")
+        return Summary(sentence, [table], "docs/reference/quantities.md")
+    able, unable = ([e for e in rows if bool(e["places"]) == sits] for sits in (True, False))
     sentence = (
-        f"{len(able)} of {len(rows)} effects can sit in {Path(document['case']).name}, at {places} places; "
-        f"{len(unable)} lack an input or a role."
+        f"{len(able)} of {len(rows)} effects can sit in {Path(case).name}, at "
+        f"{sum(len(e['places']) for e in able)} places; {len(unable)} lack an input or a role."
     )
-    lacking = [[e["effect"], "; ".join(e["missing"]), e["title"]] for e in unable]
-    sitting = [[e["effect"], named(e["places"]), e["title"]] for e in able]
-    parts = [
-        Grid("Cannot sit here", ["effect", "missing", "what"], lacking, keep=["missing"]),
-        Grid("Can sit here", ["effect", "places", "what"], sitting, keep=["places"]),
-    ]
-    return Answer(sentence, parts[::-1], "--json FILE with tests that isolate them")
+    lacking = Table.of(
+        "Cannot sit here", unable, "effect | *missing | what=title", missing=lambda e: "; ".join(e["missing"])
+    )
+    sitting = Table.of("Can sit here", able, "effect | *places | what=title", places=lambda e: named(e["places"]))
+    return Summary(sentence, [sitting, lacking], "--json FILE with tests that isolate them")
 
 
 def named(places: list[str]) -> str:
     """The first few places, and how many more there are."""
     more = len(places) - PLACES
     return ", ".join(places[:PLACES]) + (f" and {more} more" if more > 0 else "")
-
-
-def quantities(target: str | None) -> int:
-    """What a column may measure, its units, and what memory holds."""
-    rows = [
-        {"quantity": name, "units": list(q.units), "held_as": MEMORY_UNIT[name], "input": q.feeds}
-        for name, q in QUANTITIES.items()
-    ]
-    document = {"quantities": rows}
-    give(document, target, lambda: show_quantities(rows))
-    return 0
-
-
-def show_quantities(rows: list[dict[str, Any]]) -> Answer:
-    """A row per quantity."""
-    body = [[r["quantity"], ", ".join(r["units"]), r["held_as"], r["input"]] for r in rows]
-    sentence = f"A column measures one of {len(rows)} quantities; other units of the same dimension are read as well."
-    return Answer(
-        sentence, [Grid("", ["quantity", "units", "held as", "input it drives"], body)], "docs/reference/quantities.md"
-    )

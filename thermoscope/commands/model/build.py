@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,28 +10,29 @@ import numpy as np
 
 from geom.errors import InputError, MissingDependency
 from geom.plugins import plugins
+from geom.table import Table
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.model import crosscheck
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Accuracy, Json, Machine, Out
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 
 if TYPE_CHECKING:
-    from geom import Machine
+    from geom import Machine as MachineDescription
     from geom.meshing.mesh import NamedMesh
     from geom.solids.surfaces import CadCheck
     from lumped.build.network_size import NetworkSize
     from lumped.build.pipeline import Built
     from thermoscope.console.terminal import Progress
 
-ERRORS = ("mean", "hot", "point")
+
+def build(machine: Machine, out: Out = None, target: Json = None, accuracy: Accuracy = 2.0) -> int:
+    """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
+    return build_machine(machine, out, target, accuracy)
 
 
-def build(machine: str, out: Path | None, target: str | None, accuracy: float | None = None) -> int:
-    """Solids, mesh and network of a machine to a folder, and the network against the field.
-
-    accuracy : percent of a part's own rise, mesh included; the smallest network that meets it is kept.
-        None: the mesh and the size that a case runs.
-    """
+def build_machine(machine: str, out: Path | None, target: str | None, accuracy: float | None) -> int:
+    """The same.  accuracy : percent of a part's own rise, mesh included; None: mesh and size that a case runs"""
     from geom import check_cad, export_cad, write_vtu
 
     source = load_machine_file(Path(machine))
@@ -49,7 +50,7 @@ def build(machine: str, out: Path | None, target: str | None, accuracy: float | 
         document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: build_summary(document, folder))
     return 0 if size is None or size.met else 1
 
 
@@ -72,9 +73,9 @@ def pictures(built: Built, folder: Path, tell: Progress) -> list[Path]:
 
 
 def built_from(
-    source: Machine, accuracy: float | None, tell: Progress, size_m: float = 0.06
+    source: MachineDescription, accuracy: float | None, tell: Progress, size_m: float = 0.06
 ) -> tuple[Built, NetworkSize | None]:
-    """At the size a case runs, or at the smallest that is accurate enough.  size_m : of the mesh's triangles (m)"""
+    """The network of an accuracy; of None, with the mesh and the size that a case runs.  size_m : of triangles (m)"""
     from lumped.build.network_size import accurate_network
     from lumped.build.pipeline import build as usual
     from lumped.machine.bases import on_all
@@ -120,63 +121,47 @@ def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
     return dict(zip(mesh.parts, np.bincount(mesh.region, sizes, len(mesh.parts)).tolist(), strict=True))
 
 
-def answer(document: Mapping[str, Any], folder: Path) -> Answer:
+def build_summary(document: Mapping[str, Any], folder: Path) -> Summary:
     """How well the network agrees with the field, part by part, and where the files are."""
     mesh, network = document["mesh"], document["network"]
     sentence = (
         f"{document['machine']}: a network of {network['nodes']} states from {mesh['tets']} tetrahedra; "
         f"of the rise it has {crosscheck.agreement(document)}."
     )
-    headers = [
-        "part",
-        "material",
-        "volume (l)",
-        "in the mesh (l)",
-        "mass (kg)",
-        "to fluids (m2)",
-        "to parts (m2)",
-        "watertight",
-    ]
-    parts = Grid("Parts", headers, [_row(part) for part in document["parts"]], ["NO"], ["mass (kg)", "watertight"])
-    sizes = _sizes(document["sizes"]) if "sizes" in document else []
-    tables = [*sizes, crosscheck.parts(document), parts]
-    rest = [crosscheck.links(document), crosscheck.analytical_table(document)]
-    return Answer(sentence, tables, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
-
-
-def _row(part: Mapping[str, Any]) -> list[Any]:
-    litres = [1e3 * part["volume_m3"], 1e3 * part["mesh_volume_m3"]]
-    areas = [sum(part["faces_m2"].values()), sum(part["contacts_m2"].values())]
-    return [part["name"], part["material"], *litres, part["mass_kg"], *areas, "yes" if part["watertight"] else "NO"]
-
-
-def _sizes(sizes: Mapping[str, Any]) -> list[Grid | str]:
-    """Error against number of states, and what the guard saw at points nothing was fitted to."""
-    requested = sizes["wish_percent"]
-    rows = [["means only" if not s["asked"] else f"up to {s['asked']}", *_errors(s)] for s in sizes["sizes"]]
-    rows += [
-        ["learned", g["states"], "-", "-", "-", *(g["random"][k] for k in ERRORS), _word(g)] for g in sizes["guard"]
-    ]
-    title = (
-        f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})"
+    parts = Table.of(
+        "Parts",
+        document["parts"],
+        "part=name | material | volume (l)=litres | in the mesh (l)=mesh_litres | *mass (kg)=mass_kg | "
+        "to fluids (m2)=faces | to parts (m2)=contacts | *watertight",
+        ["NO"],
+        litres=lambda part: 1e3 * part["volume_m3"],
+        mesh_litres=lambda part: 1e3 * part["mesh_volume_m3"],
+        faces=lambda part: sum(part["faces_m2"].values()),
+        contacts=lambda part: sum(part["contacts_m2"].values()),
+        watertight=lambda part: "yes" if part["watertight"] else "NO",
     )
-    headers = ["network", "states", "mean", "hot spot", "point", "mean, random", "hot, random", "point, random", "met"]
-    notes: list[Grid | str] = []
+    tables = [*(_sizes(document["sizes"]) if "sizes" in document else []), crosscheck.parts(document), parts]
+    rest = [crosscheck.links(document), crosscheck.analytical_table(document)]
+    return Summary(sentence, tables, f"solids, mesh, tables and pictures in {folder}; --json FILE", rest)
+
+
+def _sizes(sizes: Mapping[str, Any]) -> list[Table | str]:
+    """Error against number of states, and what was seen at points nothing was fitted to."""
+    requested, trials = sizes["wish_percent"], sizes["guard"]
+    table = Table.of(
+        f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})",
+        [*sizes["sizes"], *({**g, "asked": None} for g in trials)],
+        "network | *states | mean=nominal.mean | hot spot=nominal.hot | point=nominal.point | "
+        "*mean, random=random.mean | *hot, random=random.hot | point, random=random.point | *met",
+        network=lambda s: "learned" if s["asked"] is None else f"up to {s['asked']}" if s["asked"] else "means only",
+        met=lambda s: "yes" if s["met"] else "no",
+    )
+    notes: list[Table | str] = []
     if mesh := sizes["mesh"]:
         left = f"{mesh['worst']:.2g} % of the rise at the hot spot of {mesh['worst_part']}"
         notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}.")
-    if sizes["guard"] and not sizes["guard"][-1]["met"]:
-        bad = sizes["guard"][-1]["random"]
-        notes.append(
-            f"The accuracy is missed: mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}."
-        )
-    return [Grid(title, headers, rows, keep=["states", "mean, random", "hot, random", "met"]), *notes]
-
-
-def _errors(size: Mapping[str, Any]) -> Sequence[Any]:
-    values = [size[at][kind] for at in ("nominal", "random") for kind in ERRORS]
-    return [size["states"], *values, _word(size)]
-
-
-def _word(row: Mapping[str, Any]) -> str:
-    return "yes" if row["met"] else "no"
+    if trials and not trials[-1]["met"]:
+        bad = trials[-1]["random"]
+        where = f"mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}"
+        notes.append(f"The accuracy is missed: {where}.")
+    return [table, *notes]

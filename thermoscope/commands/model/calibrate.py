@@ -6,15 +6,19 @@ from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from geom.errors import InputError
+from geom.table import Table
 from lumped.schemas.reader import suggestion
 from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
 from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Anyway, Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes
 
 if TYPE_CHECKING:
@@ -24,17 +28,14 @@ NAME = "calibration.json"
 
 
 def calibrate(
-    case: str,
-    anyway: bool,
-    target: str | None,
-    profile: tuple[str, ...] = (),
-    starts: int | None = None,
-    seed: int | None = None,
+    case: Case,
+    anyway: Anyway = False,
+    target: Json = None,
+    profile: Annotated[list[str] | None, typer.Option(metavar="GLOB", help="Profile these parameters too.")] = None,
+    starts: Annotated[int | None, typer.Option(min=1, max=1000, help="Fits from so many points of the prior.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, max=2**32 - 1, help="Of the points.")] = None,
 ) -> int:
-    """Exit code 1, and nothing written, when the fit does not converge. An interrupted fit goes on where it was.
-
-    starts, seed : None for what case.toml says
-    """
+    """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
     from validation.calibration.staged_fit import Search
     from validation.revision.revise import calibrate as fitted
 
@@ -42,10 +43,10 @@ def calibrate(
         unfinished = Unfinished(folder)
         usual = folder.settings
         many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed
-        _profilable(folder, profile)
+        _profilable(folder, profile or ())
         search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
         try:
-            result = fitted(folder.case, progress=tell, profiled=profile, search=search)
+            result = fitted(folder.case, progress=tell, profiled=tuple(profile or ()), search=search)
         except KeyboardInterrupt:
             unfinished.show(folder, case)
             raise
@@ -98,12 +99,12 @@ class Unfinished:
         rows = [[p.name, *values[p], "" if p.unit == "1" else p.unit] for p in farthest_first]
         if not rows:
             return
-        grid = Grid(
+        grid = Table(
             "As far as the fit came", ["parameter", "before", "now", "unit"], rows, keep=["before", "now", "unit"]
         )
         sentence = f"Stopped before the fit converged: {len(rows)} parameters had moved; model.toml is as it was."
         more = f"thermoscope model calibrate {quote(called)} goes on from there"
-        give({}, None, lambda: Answer(sentence, [grid], more))
+        give({}, None, lambda: Summary(sentence, [grid], more))
         notes([f"stopped: the values reached so far are kept in {self.path}, and the same command goes on from them"])
 
     def done(self) -> None:

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 from geom.errors import ThermoscopeError
 from geom.escapes import csv_lines
 from geom.storage import write_whole
+from geom.table import Table
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Accuracy, Json, Machine, Out
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, plain, progress
 
 if TYPE_CHECKING:
@@ -24,8 +26,8 @@ HOT = 200.0  # degC, what insulation bears
 MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 
-def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | None) -> int:
-    """Where network and field disagree, which link is responsible, and every hand formula beside the field's value."""
+def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, target: Json = None) -> int:
+    """Where network and field disagree, which link is responsible, and the hand formula beside the field's value."""
     from lumped.build.network_size import accurate_network
 
     source = load_machine_file(Path(machine))
@@ -34,7 +36,7 @@ def crosscheck(machine: str, out: Path | None, accuracy: float, target: str | No
         size = accurate_network(source, accuracy, progress=tell, say=lambda message: notes([message]))
         document = {"machine": source.name, **checked(size.built, size, tell)}
         save(document, folder)
-    give(document, target, lambda: answer(document, folder))
+    give(document, target, lambda: crosscheck_summary(document, folder))
     return 0 if size.met else 1
 
 
@@ -106,7 +108,7 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
     return csv_lines([list(rows[0]), *(list(plain(row).values()) for row in rows)] if rows else [])
 
 
-def answer(document: Mapping[str, Any], folder: Path) -> Answer:
+def crosscheck_summary(document: Mapping[str, Any], folder: Path) -> Summary:
     """Parts, the links that differ most, and the hand formulas furthest off."""
     sentence = (
         f"Steady at the rated point the network has {agreement(document)}; the field's energy balance "
@@ -114,7 +116,9 @@ def answer(document: Mapping[str, Any], folder: Path) -> Answer:
     )
     point = ", ".join(f"{name} {value:.4g}" for name, value in document["operating_point"].items())
     tables = [parts(document), links(document), analytical_table(document)]
-    return Answer(sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"])
+    return Summary(
+        sentence, tables, f"all rows in {folder}/crosscheck*.csv; --json FILE", [f"Operating point: {point}"]
+    )
 
 
 def agreement(document: Mapping[str, Any]) -> str:
@@ -134,34 +138,25 @@ def _furthest(rows: Sequence[Mapping[str, Any]], key: str) -> str:
     return f"{worst[key]:.2g} % ({worst['place']})"
 
 
-def parts(document: Mapping[str, Any]) -> Grid:
+def parts(document: Mapping[str, Any]) -> Table:
     """Temperatures by field and network, the largest difference first."""
-    headers = [
-        "part",
-        "field mean",
-        "network mean",
-        "field max",
-        "network max",
-        "mean off (%)",
-        "max off (%)",
-        "heated",
-        "field max, laws local",
-        "link that differs most",
-    ]
-    rows = sorted(document["crosscheck"], key=lambda part: -max(part["mean_percent"], part["hot_percent"]))
-    title, keep = "Temperatures (degC), 20 degC around; % of the rise", ["mean off (%)", "max off (%)", "field max"]
-    body = [["yes" if key == "heated" and x else "no" if key == "heated" else x for key, x in r.items()] for r in rows]
-    return Grid(title, headers, body, keep=keep)
+    return Table.of(
+        "Temperatures (degC), 20 degC around; % of the rise",
+        sorted(document["crosscheck"], key=lambda part: -max(part["mean_percent"], part["hot_percent"])),
+        "part=place | field mean=fem_mean_C | network mean=network_mean_C | *field max=fem_max_C | "
+        "network max=network_max_C | *mean off (%)=mean_percent | *max off (%)=hot_percent | heated | "
+        "field max, laws local=local_max_C | link that differs most=responsible",
+    )
 
 
-def links(document: Mapping[str, Any]) -> Grid:
+def links(document: Mapping[str, Any]) -> Table:
     """Heat through links, the largest difference first."""
-    rows = [[link["link"], link["fem_W"], link["network_W"], link["percent_of_heat"]] for link in document["links"]]
-    return Grid("Heat through links (W)", ["link", "field", "network", "off (% of all heat)"], rows[:MOST_ROWS])
+    columns = "link | field=fem_W | network=network_W | off (% of all heat)=percent_of_heat"
+    return Table.of("Heat through links (W)", document["links"][:MOST_ROWS], columns)
 
 
-def analytical_table(document: Mapping[str, Any]) -> Grid:
+def analytical_table(document: Mapping[str, Any]) -> Table:
     """Hand formulas, the furthest off first."""
     rows = sorted(document["hand"], key=lambda row: -abs(row["ratio"] - 1.0))
-    body = [list(row.values()) for row in rows[:MOST_ROWS]]
-    return Grid("Hand formulas (K/W)", ["link", "formula", "textbook", "field", "ratio"], body, keep=["ratio", "field"])
+    columns = "link | formula | textbook=textbook_K_W | *field=field_K_W | *ratio"
+    return Table.of("Hand formulas (K/W)", rows[:MOST_ROWS], columns)

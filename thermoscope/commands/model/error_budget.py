@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.console.answer import Grid
+from geom.table import Table
+from validation.tables import budget_table
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -13,8 +14,6 @@ if TYPE_CHECKING:
 Places = Sequence[Mapping[str, Any]]
 Steps = Mapping[str, Mapping[str, Any]]
 LEAST_K = 0.001  # below it a number only says that arithmetic is exact; no thermometer shows as much
-KEYS = ("place", "mesh_K", "condensation_K", "time_K", "total_K")
-HEADERS = ["place", "mesh (K)", "condensation (K)", "time steps (K)", "sum (K)"]
 
 
 def sampling(folder: Folder) -> dict[str, dict[str, Any]]:
@@ -22,23 +21,13 @@ def sampling(folder: Folder) -> dict[str, dict[str, Any]]:
     return {"sampling": {name: step.document() for name, step in folder.steps.items()}}
 
 
-def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Grid | str]:
+def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Table | str]:
     """budgets : run -> places;  steps : test -> sample step, both as in the documents"""
-    rows = sorted(worst(budgets), key=_total, reverse=True)
-    if not rows:
-        return _sampled(steps)
-    cells = [["-" if row[key] is None else row[key] for key in KEYS] for row in rows]
-    return [
-        Grid("Error budget: what the model's own numbers may be wrong by", HEADERS, cells, keep=["sum (K)"]),
-        words(rows),
-        *_sampled(steps),
-    ]
-
-
-def _sampled(steps: Steps) -> list[Grid | str]:
     from measured.sensors.sampling import SampleStep, sampled
 
-    return [sampled({name: SampleStep(**step) for name, step in steps.items()})] if steps else []
+    rows = sorted(worst(budgets), key=_total, reverse=True)
+    sampling = [sampled({name: SampleStep(**step) for name, step in steps.items()})] if steps else []
+    return [budget_table(rows), words(rows), *sampling] if rows else [*sampling]
 
 
 def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:

@@ -7,20 +7,22 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.console.answer import Answer, Grid
+from geom.table import Table
+from thermoscope.console.options import Json, Out
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
 
 if TYPE_CHECKING:
     from geom.drawings.gallery import Entry
 
 
-def machines(out: Path | None, target: str | None) -> int:
-    """The library: a table or a document, and with a folder also a page with a thumbnail of each machine."""
+def machines(out: Out = None, target: Json = None) -> int:
+    """The machines that come along; with --out also a page with a thumbnail of each."""
     from geom import catalogue, write_library
 
     entries = catalogue()
     page = write_library(out) if out is not None else None
-    give({"machines": [described(entry, page) for entry in entries]}, target, lambda: answer(entries, page))
+    give({"machines": [described(entry, page) for entry in entries]}, target, lambda: machines_summary(entries, page))
     return 0
 
 
@@ -32,13 +34,13 @@ def described(entry: Entry, page: Path | None) -> dict[str, Any]:
     return fields if page is None else {**fields, "thumbnail": page.parent / "thumbnails" / f"{entry.name}.svg"}
 
 
-def answer(entries: Sequence[Entry], page: Path | None) -> Answer:
+def machines_summary(entries: Sequence[Entry], page: Path | None) -> Summary:
     """A row per machine."""
-    rows = [
-        [e.name, e.family, e.parts, e.mass, " x ".join(f"{1e3 * size:.0f}" for size in e.envelope), e.cooling, e.source]
-        for e in entries
-    ]
-    headers = ["machine", "family", "parts", "mass (kg)", "l x w x h (mm)", "cooling", "numbers from"]
+    table = Table.of(
+        "",
+        entries,
+        "machine=name | family | parts | mass (kg)=mass | l x w x h (mm)=envelope | cooling | numbers from=source",
+        envelope=lambda e: " x ".join(f"{1e3 * size:.0f}" for size in e.envelope),
+    )
     where = f"thumbnails: {page}" if page is not None else "--out DIR for thumbnails"
-    more = f"{where}; thermoscope model build MACHINE"
-    return Answer(f"{len(rows)} machines come along.", [Grid("", headers, rows)], more)
+    return Summary(f"{len(table.rows)} machines come along.", [table], f"{where}; thermoscope model build MACHINE")

@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from shlex import quote
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from geom.errors import InputError
+from geom.table import Table
 from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
@@ -16,9 +19,11 @@ from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import current_diagnosis
-from thermoscope.console.answer import Answer, Grid, cell
+from thermoscope.console.options import Anyway, Case, Effect, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
+from validation.tables import parameters_table, revision_tables
 
 if TYPE_CHECKING:
     from validation.revision import revise
@@ -29,11 +34,8 @@ CHANGE_K = 1.0  # what a step has to move where no sensor is, to be told
 LINE = 75  # letters, so that its unit still fits into 80
 
 
-def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
-    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn.
-
-    "event@N" is the likeliest explanation of the N-th event of the last diagnosis
-    """
+def add(case: Case, effect: Effect, anyway: Anyway = False, target: Json = None) -> int:
+    """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
     from validation.revision.revise import add as added
 
     return revised(case, lambda folder, tell: added(folder.case, meant(folder, effect), tell), anyway, target)
@@ -52,15 +54,21 @@ def meant(folder: Folder, effect: str) -> str:
     return str(names[which])
 
 
-def remove(case: str, effect: str, target: str | None) -> int:
-    """Whatever the error does: taking a step back is the user's right."""
+def remove(case: Case, effect: Effect, target: Json = None) -> int:
+    """Take an effect out again and recalibrate."""
     from validation.revision.revise import remove as removed
 
     return revised(case, lambda folder, tell: removed(folder.case, effect, tell), True, target)
 
 
-def undo(case: str, number: int | None, target: str | None) -> int:
-    """One revision more, equal to the one before the last, or to `number`; nothing is forgotten."""
+def undo(
+    case: Case,
+    number: Annotated[
+        int | None, typer.Option("--to", min=0, help="Revision; 0 is the model as declared. Else the last.")
+    ] = None,
+    target: Json = None,
+) -> int:
+    """Step back: one revision more, equal to an earlier one. The history stays whole."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         checked_columns(folder)
@@ -76,7 +84,7 @@ def undo(case: str, number: int | None, target: str | None) -> int:
     model = {"case": folder.case.name, "revision": history.last.number, "why": history.last.why}
     document = {**model, "effects": list(history.last.effects), "rmse_K": rms}
     sentence, rows = f"Revision {history.last.number}: {history.last.why}.", list(rms.items())
-    give(document, target, lambda: Answer(sentence, [Grid("", ["test", "rms (K)"], rows)]))
+    give(document, target, lambda: Summary(sentence, [Table("", ["test", "rms (K)"], rows)]))
     return 0
 
 
@@ -94,7 +102,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         write_columns(folder, longer.last.effects)
     places = unmeasured(folder, result)
     document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
-    give(document, target, lambda: answer(document, folder, case))
+    give(document, target, lambda: revision_summary(document, folder, case))
     return 0 if keep else 1
 
 
@@ -149,34 +157,17 @@ def named(p: Mapping[str, Any]) -> str:
     return f"{p['name']} (trades with {p['partner']})" if p["partner"] else str(p["name"])
 
 
-def profiled(p: Mapping[str, Any]) -> str:
-    """The profile's interval; an end in brackets is only the bound."""
-    if p["profile"] is None:
-        return ""
-    ends = zip(p["profile"]["ci95"], p["profile"]["open"], strict=True)
-    return " ... ".join(f"({cell(x)})" if is_open else cell(x) for x, is_open in ends)
-
-
-def note(p: Mapping[str, Any]) -> str:
-    return "at its bound" if p["at_bound"] else f"trades with {p['partner']}" if p["partner"] else ""
-
-
-def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
+def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -> Summary:
     """Whether it stands, the error before and after, and the values that the data fixed."""
     name = f"{document['action']} {document['effect'] or ''}".strip()
     verdict = "accepted" if document["accepted"] else "not accepted"
     where = f"written to {folder.settings.model_file} as revision {document['revision']}"
     outcome = where if document["written"] else "nothing written (--anyway writes it)"
-    rows = [
-        [t["name"], t["role"], t["rmse_K"]["before"], t["rmse_K"]["after"], t["fitted_rmse_K"]["after"]]
-        for t in document["tests"]
-    ]
-    headers = ["test", "role", "error before (K)", "after (K)", "sensors as fitted (K)"]
-    errors = Grid("", headers, rows, ["hold-out"], keep=headers[2:])
+    errors = revision_tables(document)[0]
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
-    parts: list[Grid | str] = [
+    parts: list[Table | str] = [
         errors,
         *failed,
         _unmeasured_words(document["unmeasured"]),
@@ -184,18 +175,16 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         _fixed(document["parameters"]),
         _blind(document["parameters"]),
     ]
-    return Answer(
+    return Summary(
         f"{name}: {verdict}; {document['why']}; {outcome}.",
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
 
 
-def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Grid:
+def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
     identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
-    rows = [[p["name"], p["value"], p["unit"], *p["ci95"], profiled(p), *p["prior"][1:], note(p)] for p in identifiable]
-    headers = ["parameter", "value", "unit", "from", "to", "by profile", "prior from", "prior to", "note"]
-    return Grid("What the data fixed (95 %)", headers, rows, keep=["value", "unit", "from", "to"])
+    return parameters_table("What the data fixed (95 %)", identifiable)
 
 
 def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+import typer
 from numpy.typing import NDArray
 
 from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import at_instant, before_last, by_interest, fields, readings, temperature_range
+from thermoscope.case_folder.runs import before_last, by_interest, fields, instant_words, readings, temperature_range
 from thermoscope.commands.open_case import needs_geometry, open_case
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case as CaseName
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import required
 
@@ -26,8 +29,12 @@ FRAMES = 44  # of one run of the test: with two runs eight seconds
 SUFFIXES = (".gif", ".mp4")
 
 
-def film(case: str, out: Path | None, target: str | None) -> int:
-    """The most telling test on the machine; with the model before its last step first, if there is one."""
+def film(
+    case: CaseName,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A GIF or MP4 file.")] = None,
+    target: Json = None,
+) -> int:
+    """The machine warming up in its most telling test, before and after the model's last step."""
     if out is not None and (out.suffix not in SUFFIXES or out.is_dir()):
         raise InputError("is no name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
     needs_geometry(case)
@@ -59,7 +66,7 @@ def film(case: str, out: Path | None, target: str | None) -> int:
             limits=temperature_range(folder, nodes),
             tell=lambda k: tell(f"drawing picture {k}/{len(T)}"),
         )
-    give({"case": folder.case.name, "film": str(file)}, target, lambda: Answer(f"{file}"))
+    give({"case": folder.case.name, "film": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
 
@@ -77,7 +84,7 @@ def now(folder: Folder) -> str:
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
     """Which test, which instant (s), which model, and what that misses most."""
-    return f"{at_instant(test, time)}, {words}{largest(sensors)}"
+    return f"{instant_words(test, time)}, {words}{largest(sensors)}"
 
 
 def largest(sensors: Sequence[Sensor]) -> str:

@@ -12,54 +12,44 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import viz
 from geom.description.names import file_stem
 from geom.errors import MissingDependency
 from measured.case import Case, Test
 from measured.sensors.sampling import sampled
+from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.case_folder.runs import (
-    ORDER,
-    at_revision,
-    before_last,
-    by_interest,
-    comparison_of,
-    end_of,
-    fields,
-    parameters,
-    readings,
-    steps,
-    temperature_range,
-)
 from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case as CaseName
+from thermoscope.console.options import Json, Out
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
+from viz.machine.missing import placed
 
 if TYPE_CHECKING:
     from viz.data import Comparison
-    from viz.rendering.nodes import SplitMesh
 
 FRAMES = 61  # instants of a test that a page can step through
 NO_PDF = "No PDF: WeasyPrint or Chromium prints it; thermoscope check says how to install one."
 LIKELY = 0.5  # probability from which an event is drawn
 
 
-def report(case: str, out: Path | None, target: str | None) -> int:
-    """One page, as PDF too where this computer can. Its diagnosis is the last one there was; none is started here."""
-    from viz import write_pdf
-
+def report(case: CaseName, out: Out = None, target: Json = None) -> int:
+    """One self-contained HTML page: verdict, pictures, numbers with their uncertainty."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         path = write_page(folder, case, out or folder.settings.out, tell)
         tell("printing")
-        pdf = write_pdf(path)
+        pdf = viz.write_pdf(path)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "report": str(path)}
     printed = [f"As PDF: {pdf}" if pdf else NO_PDF]
     if not (folder.settings.out / "diagnosis.json").exists():
         printed.append(f"It has no diagnosis yet: thermoscope explain diagnose {case}")
-    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Answer(f"The report is {path}.", printed))
+    give({**document, "pdf": pdf and str(pdf)}, target, lambda: Summary(f"The report is {path}.", printed))
     return 0
 
 
@@ -72,7 +62,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     tell("running the model and its error budget")
     compared = {**folder.compared.document(), **yardstick_document(folder.yardstick, folder.compared)}
     diagnosis, earlier = _diagnosis(folder)
-    curves = [marked(comparison_of(folder, test), diagnosis) for test in by_interest(folder)]
+    curves = [marked(runs.comparison_of(folder, test), diagnosis) for test in runs.by_interest(folder)]
     tell("drawing")
     viewed = "" if folder.built is None else viewer_page(folder, tell)
     page = Report(
@@ -80,8 +70,8 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
         folder.settings.description,
         compared,
         diagnosis,
-        steps(folder),
-        parameters(folder),
+        runs.steps(folder),
+        runs.parameters(folder),
         curves,
         _pictures(folder, into, None if earlier else diagnosis),
         assumptions(folder),
@@ -101,8 +91,8 @@ def marked(comparison: Comparison, diagnosis: Mapping[str, Any] | None) -> Compa
     return replace(comparison, events=(*comparison.events, *spans))
 
 
-def render(case: str, out: Path | None, target: str | None) -> int:
-    """Curves and errors always; the field and the recording where the geometry is known."""
+def render(case: CaseName, out: Out = None, target: Json = None) -> int:
+    """Pictures (PNG) and a recording (.rrd) for the rerun viewer."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
         into = out or folder.settings.out
@@ -110,7 +100,7 @@ def render(case: str, out: Path | None, target: str | None) -> int:
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
-    give(document, target, lambda: Answer(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
+    give(document, target, lambda: Summary(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
     return 0
 
 
@@ -137,17 +127,15 @@ def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
 
 
 def _plots(folder: Folder, into: Path) -> list[Path]:
-    from viz.figures import curves, errors
-
     paths = []
-    for test in by_interest(folder):
-        comparison = marked(comparison_of(folder, test), current_diagnosis(folder))
-        for name, draw in (("curves", curves.measured_and_model), ("residuals", curves.residuals)):
+    for test in runs.by_interest(folder):
+        comparison = marked(runs.comparison_of(folder, test), current_diagnosis(folder))
+        for name, draw in (("curves", viz.measured_and_model), ("residuals", viz.residuals)):
             paths.append(into / f"{name}-{file_stem(test.name)}.png")
             draw(comparison, png=paths[-1])
     if folder.history.revisions:
         paths.append(into / "error.png")
-        errors.staircase(steps(folder), png=paths[-1])
+        viz.staircase(runs.steps(folder), png=paths[-1])
     return paths
 
 
@@ -158,74 +146,52 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     """
     if folder.built is None:
         return {}
-    from viz import cutaway, pair, require_gl, sensors, split
-    from viz.data import LATE
-
     try:
-        require_gl()
+        viz.require_gl()
     except MissingDependency as fault:
         notes([str(fault)])
         return {}
     into.mkdir(parents=True, exist_ok=True)
-    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
-    now, file = fields(folder.case, test, nodes, 1)[1][-1], into / "field.png"
-    all_sensors = sensors(comparison_of(folder, test), folder.positions)
-    title = f"{end_of(test)}: temperature of the model"
-    limits = temperature_range(folder, nodes)
-    cutaway(nodes, now, sensors=all_sensors, title=title, limits=limits, note=LATE, png=file)
-    out = {f"Temperature at the end of {test.name}; labels: measured minus modelled.": file}
-    out |= _missing_heat(diagnosis, nodes, into)
-    earlier = before_last(folder)
+    s, file = Subject(folder, lambda message: None), into / "field.png"
+    draw_field(s, file)
+    out = {f"Temperature at the end of {s.test.name}; labels: measured minus modelled.": file}
+    if diagnosis is not None and placed(diagnosis):
+        where, missing = diagnosis["where"], into / "missing-heat.png"
+        test = list(where[0]["heat"])[-1]
+        viz.missing_in_machine(s.nodes, where, test, png=missing).close()
+        caption = f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey."
+        out[caption] = missing
+    earlier = runs.before_last(folder)
     if earlier is not None:
-        both = into / "field-before-after.png"
-        titles = (f"{end_of(test)}, before the last step", f"{end_of(test)}, now")
-        pair(nodes, fields(earlier, test, nodes, 1)[1][-1], now, titles=titles, limits=limits, png=both)
-        out[f"End of {test.name} before and after the last step of the model."] = both
+        both, titles = into / "field-before-after.png", (f"{s.when}, before the last step", f"{s.when}, now")
+        viz.pair(s.nodes, s.field(earlier), s.field(), titles=titles, limits=s.limits, png=both)
+        out[f"End of {s.test.name} before and after the last step of the model."] = both
     return out
 
 
-def _missing_heat(diagnosis: Mapping[str, Any] | None, nodes: SplitMesh, into: Path) -> dict[str, Path]:
-    """Caption -> picture of where a diagnosis puts the missing heat; none where it cannot tell."""
-    from viz import missing_in_machine
-    from viz.machine.missing import placed
-
-    if diagnosis is None or not placed(diagnosis):
-        return {}
-    where = diagnosis["where"]
-    test, file = list(where[0]["heat"])[-1], into / "missing-heat.png"
-    missing_in_machine(nodes, where, test, png=file).close()
-    return {f"Heat that would have to enter (or leave, below zero) during {test}; unlikely places are grey.": file}
-
-
 def _recording(folder: Folder, into: Path) -> Path:
-    from viz import split, write_recording
-
-    assert folder.built is not None
-    nodes, test = split(folder.built.mesh), by_interest(folder)[0]
-    frames = fields(folder.case, test, nodes, FRAMES)
-    path = into / f"{file_stem(test.name)}.rrd"
-    ends = np.array([fields(case, test, nodes, 1)[1][-1] for case in every_revision(folder)])
-    return write_recording(
-        path,
-        nodes,
-        comparison_of(folder, test),
-        frames,
+    s, cases = Subject(folder, lambda message: None), every_revision(folder)
+    return viz.write_recording(
+        into / f"{file_stem(s.test.name)}.rrd",
+        s.nodes,
+        s.comparison,
+        runs.fields(folder.case, s.test, s.nodes, FRAMES),
         folder.positions,
-        history=steps(folder),
-        revision_fields=ends,
-        revision_residuals=[residual_at_end(case, test) for case in every_revision(folder)],
-        limits=temperature_range(folder, nodes),
+        history=runs.steps(folder),
+        revision_fields=np.array([s.field(case) for case in cases]),
+        revision_residuals=[residual_at_end(case, s.test) for case in cases],
+        limits=s.limits,
     )
 
 
 def every_revision(folder: Folder) -> list[Case]:
     """The case with each model of its history, as declared first."""
-    return [at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
+    return [runs.at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
 
 
 def residual_at_end(case: Case, test: Test) -> dict[str, float]:
     """Sensor -> measured - modelled (K) over the last fifth of a test, where the machine is warm."""
-    model, late = readings(case, test), slice(int(0.8 * len(test.time)), None)
+    model, late = runs.readings(case, test), slice(int(0.8 * len(test.time)), None)
     return {c.name: float(np.nanmean((c.y - model[c.name])[late])) for c in test.channels if np.isfinite(c.y).any()}
 
 
@@ -233,7 +199,7 @@ def assumptions(folder: Folder) -> list[str]:
     """What the numbers of the page rest on."""
     s, case = folder.settings, folder.case
     kind = "a network declared by hand" if s.machine is None else "a network condensed from the machine's field"
-    roles = {role: [t.name for t in case.tests if t.role == role] for role in ORDER}
+    roles = {role: [t.name for t in case.tests if t.role == role] for role in runs.ORDER}
     summary = "; ".join(f"{role}: {', '.join(names)}" for role, names in roles.items() if names)
     sigma = sorted({f"{c.sigma_K:g}" for t in case.tests for c in t.channels}, key=float)
     spread = " to ".join(sigma[:: max(1, len(sigma) - 1)])

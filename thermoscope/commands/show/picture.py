@@ -4,48 +4,57 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+import typer
 from numpy.typing import NDArray
 
+import viz
 from geom.description.names import file_stem
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.integration.balance import balance
 from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
+from thermoscope.bands import field_half95, posterior_of, predicted_bands
+from thermoscope.case_folder import runs
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
-from thermoscope.case_folder.runs import (
-    at_instant,
-    before_last,
-    by_interest,
-    comparison_of,
-    end_of,
-    fields,
-    named_rows,
-    steps,
-    temperature_range,
-)
 from thermoscope.commands.open_case import open_case
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case as CaseName
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing
+from viz.data import LATE
 
 if TYPE_CHECKING:
     from lumped.build.pipeline import Built
+    from viz.data import Comparison, Sensor
     from viz.figures.flows import Heat
     from viz.rendering.nodes import SplitMesh
 
 Array = NDArray[np.float64]
 
 
-def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
-    """One picture of a case, at the end of its most telling test, as a PNG file."""
+def picture(
+    case: CaseName,
+    what: Annotated[
+        str,
+        typer.Argument(
+            metavar="WHAT",
+            help="machine, temperature, field, difference, misses, uncertainty, exploded, parts, mesh, flux, network, "
+            "losses, curves, bands, residuals or errors.",
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
+    target: Json = None,
+) -> int:
+    """One picture: of the temperatures, the parts, the heat, or the model against its most telling test."""
     pictures = {**PICTURES, **plugins("pictures")}
     if what not in pictures:
         raise InputError(f"unknown picture '{what}'", "show picture", suggestion(what, pictures))
@@ -58,7 +67,7 @@ def picture(case: str, what: str, out: Path | None, target: str | None) -> int:
         file = out or Path("out") / f"{file_stem(subject.folder.case.name)}-{what}.png"
         tell(f"drawing {file}")
         pictures[what](subject, file)
-    give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Answer(f"{file}"))
+    give({"case": subject.folder.case.name, "picture": what, "file": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
 
@@ -71,11 +80,11 @@ class Subject:
 
     @cached_property
     def test(self) -> Test:
-        return by_interest(self.folder)[0]
+        return runs.by_interest(self.folder)[0]
 
     @property
     def when(self) -> str:
-        return end_of(self.test)
+        return runs.end_words(self.test)
 
     @property
     def built(self) -> Built:
@@ -86,25 +95,31 @@ class Subject:
 
     def require_drawing(self) -> None:
         """InputError without geometry, MissingDependency without OpenGL: said before anything is run."""
-        from viz import require_gl
-
         _ = self.built
-        require_gl()
+        viz.require_gl()
 
     @cached_property
     def nodes(self) -> SplitMesh:
-        from viz import split
+        return viz.split(self.built.mesh)
 
-        return split(self.built.mesh)
+    @property
+    def comparison(self) -> Comparison:
+        """The test against the model."""
+        return runs.comparison_of(self.folder, self.test)
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Those with a position."""
+        return viz.sensors(self.comparison, self.folder.positions)
 
     @cached_property
     def limits(self) -> tuple[float, float]:
         """Of the colours (degC)."""
-        return temperature_range(self.folder, self.nodes)
+        return runs.temperature_range(self.folder, self.nodes)
 
     def field(self, case: Case | None = None) -> Array:
         """(n_nodes,) degC at the end of the test."""
-        return np.asarray(fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
+        return np.asarray(runs.fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
 
     def heat(self) -> tuple[Heat, dict[str, float], str]:
         """Heat flows, and node -> degC, when the machine last runs in the test; and when that is."""
@@ -114,143 +129,89 @@ class Subject:
         network, values = heat_model(standing(case), case.model.values)
         heat = balance(network, test, values)
         step = last_running_step(network, heat)
-        when = at_instant(self.test, heat.time[step + 1])
+        when = runs.instant_words(self.test, heat.time[step + 1])
         means = dict(zip([*network.states, *network.boundaries], heat.z[step + 1].tolist(), strict=True))
         return heat_flows(network, heat, step), means, when
 
 
-def _field(s: Subject, png: Path) -> None:
-    from viz import cutaway, sensors
-    from viz.data import LATE
-
-    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
+def draw_field(s: Subject, png: Path) -> None:
+    """The machine cut open, coloured by its temperature; sensors are labelled by what the model misses."""
     title = f"{s.when}: temperature of the model"
-    cutaway(s.nodes, s.field(), sensors=all_sensors, title=title, limits=s.limits, note=LATE, png=png).close()
+    viz.cutaway(s.nodes, s.field(), sensors=s.sensors, title=title, limits=s.limits, note=LATE, png=png).close()
 
 
 def _difference(s: Subject, png: Path) -> None:
-    from viz import difference
-
-    earlier = before_last(s.folder)
+    earlier = runs.before_last(s.folder)
     if earlier is None:
         what = "has a model that was not changed yet, so there is no difference"
         raise InputError(what, s.folder.case.name, "a case with a revision: thermoscope model calibrate or add")
-    difference(
-        s.nodes, s.field(earlier), s.field(), title=f"{s.when}: after minus before the last step", png=png
-    ).close()
+    title = f"{s.when}: after minus before the last step"
+    viz.difference(s.nodes, s.field(earlier), s.field(), title=title, png=png).close()
 
 
 def _misses(s: Subject, png: Path) -> None:
-    from viz import misses, sensors
-
     error = error_field(s.folder, s.test, s.nodes)
-    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
     title = f"{s.test.name}, its last fifth: measured minus model"
-    misses(s.nodes, error.mean, error.explained, sensors=all_sensors, title=title, png=png).close()
+    viz.misses(s.nodes, error.mean, error.explained, sensors=s.sensors, title=title, png=png).close()
 
 
 def _uncertainty(s: Subject, png: Path) -> None:
-    from thermoscope.bands import field_half95
-    from viz import sensors, uncertainty
-    from viz.data import LATE
-
     half95 = field_half95(s.folder, s.test, s.nodes.parts, s.tell)
-    all_sensors = sensors(comparison_of(s.folder, s.test), s.folder.positions)
-    title = f"{s.when}: 95 % band of the model"
-    uncertainty(s.nodes, half95, sensors=all_sensors, title=title, note=LATE, png=png).close()
+    viz.uncertainty(s.nodes, half95, sensors=s.sensors, title=f"{s.when}: 95 % band of the model", note=LATE, png=png)
 
 
 def _bands(s: Subject, png: Path) -> None:
-    from thermoscope.bands import along, posterior_of
-    from viz import Predicted, predicted
-
     network, test = standing(s.folder.case), s.test
-    bands = along(posterior_of(s.folder, s.tell), test.name, record(test, {}), named_rows(network, s.folder))
-    read = {f"sensor {c.name}": c.y for c in test.channels}
-    measured = {c.place for c in test.channels}
-    places = [
-        Predicted(n, bands.y[:, k], bands.half95[:, k], read.get(n))
-        for k, n in enumerate(bands.names)
-        if n not in measured
-    ]
-    predicted(bands.time, places, title=test.name, png=png)
-
-
-def _exploded(s: Subject, png: Path) -> None:
-    from viz import exploded
-
-    exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png).close()
-
-
-def _parts(s: Subject, png: Path) -> None:
-    from viz import regions
-
-    regions(s.nodes, title=f"{s.built.machine.name}: its parts", png=png).close()
-
-
-def _mesh(s: Subject, png: Path) -> None:
-    from viz import regions
-
-    regions(s.nodes, mesh=True, title=f"{s.built.machine.name}: its mesh", png=png).close()
+    bands = predicted_bands(
+        posterior_of(s.folder, s.tell), test.name, record(test, {}), runs.named_rows(network, s.folder)
+    )
+    read, measured = {f"sensor {c.name}": c.y for c in test.channels}, {c.place for c in test.channels}
+    each = [(n, bands.y[:, k], bands.half95[:, k], read.get(n)) for k, n in enumerate(bands.names) if n not in measured]
+    viz.predicted(bands.time, [viz.Predicted(*one) for one in each], title=test.name, png=png)
 
 
 def _flux(s: Subject, png: Path) -> None:
     from lumped.build.pipeline import conductivity_of
-    from viz import flux_arrows
 
     machine = s.built.machine
     k: dict[str, Any] = {part.name: conductivity_of(machine.material_of(part.name)) for part in machine.parts}
-    flux_arrows(s.nodes, s.field(), k, title=f"{s.when}: heat flux;", limits=s.limits, png=png).close()
+    viz.flux_arrows(s.nodes, s.field(), k, title=f"{s.when}: heat flux;", limits=s.limits, png=png).close()
 
 
 def _network(s: Subject, png: Path) -> None:
-    from viz import network_in_machine
-
-    mesh = s.built.mesh
     flows, means, when = s.heat()
-    network_in_machine(mesh, means, flows, title=f"{when}: heat flows;", limits=s.limits, png=png).close()
+    viz.network_in_machine(s.built.mesh, means, flows, title=f"{when}: heat flows;", limits=s.limits, png=png).close()
 
 
 def _losses(s: Subject, png: Path) -> None:
-    from viz import sankey_of_losses
-
     flows, _, when = s.heat()
-    sankey_of_losses(flows, title=f"{when}: losses, and where they go", png=png)
+    viz.sankey_of_losses(flows, title=f"{when}: losses, and where they go", png=png)
 
 
-def _curves(s: Subject, png: Path) -> None:
-    from viz import measured_and_model
-
-    measured_and_model(comparison_of(s.folder, s.test), png=png)
+def _exploded(s: Subject, png: Path) -> None:
+    viz.exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png).close()
 
 
-def _residuals(s: Subject, png: Path) -> None:
-    from viz import residuals
-
-    residuals(comparison_of(s.folder, s.test), png=png)
-
-
-def _errors(s: Subject, png: Path) -> None:
-    from viz import staircase
-
-    staircase(steps(s.folder), png=png)
+def _parts(s: Subject, png: Path, mesh: bool = False) -> None:
+    what = "mesh" if mesh else "parts"
+    viz.regions(s.nodes, mesh=mesh, title=f"{s.built.machine.name}: its {what}", png=png).close()
 
 
-FLAT: dict[str, Callable[[Subject, Path], None]] = {
-    "curves": _curves,
+FLAT: dict[str, Callable[[Subject, Path], Any]] = {
+    "curves": lambda s, png: viz.measured_and_model(s.comparison, png=png),
     "bands": _bands,
-    "residuals": _residuals,
-    "errors": _errors,
+    "residuals": lambda s, png: viz.residuals(s.comparison, png=png),
+    "errors": lambda s, png: viz.staircase(runs.steps(s.folder), png=png),
     "losses": _losses,
 }
-PICTURES: dict[str, Callable[[Subject, Path], None]] = {
-    "field": _field,
+PICTURES: dict[str, Callable[[Subject, Path], Any]] = {
+    "field": draw_field,
     "difference": _difference,
     "misses": _misses,
     "uncertainty": _uncertainty,
     "exploded": _exploded,
     "parts": _parts,
-    "mesh": _mesh,
+    "mesh": partial(_parts, mesh=True),
     "flux": _flux,
     "network": _network,
     **FLAT,

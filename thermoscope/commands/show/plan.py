@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from geom.description.names import file_stem
 from geom.errors import InputError
@@ -13,17 +14,29 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.show.pages import provenance
 from thermoscope.commands.stored_diagnosis import current_diagnosis
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 
 MOST = 3  # effects of a diagnosis that are compared: each costs a calibration
 
 
-def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, target: str | None) -> int:
-    """A page to pin on the bench: what to drive next, and what each hypothesis predicts for it."""
+def plan(
+    case: Case,
+    effects: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--effect", metavar="EFFECT@PLACE", help="A hypothesis; several are possible. Else the last diagnosis's."
+        ),
+    ] = None,
+    test: Annotated[str | None, typer.Option(metavar="NAME", help="Candidate test; else the best.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    target: Json = None,
+) -> int:
+    """A page to pin on the bench: the test to drive next, and the curves that each hypothesis predicts."""
     from validation.revision.predicted_curves import hypotheses, predicted_curves, schedule
+    from validation.tables import currents
     from viz.pages.bench_page import BenchPage, write_bench_page
-    from viz.pages.next_tests import currents
 
     if out is not None and (out.suffix != ".html" or out.is_dir()):
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
@@ -51,7 +64,7 @@ def plan(case: str, effects: Sequence[str], test: str | None, out: Path | None, 
         "sensors": [{"channel": c.name, "apart_K": curves.spread_K(c.name)} for c in curves.test.channels],
     }
     what = f"{file}: {curves.experiment.name}, {curves.experiment.hours:g} h"
-    give(document, target, lambda: Answer("; ".join(filter(None, [what, currents(levels)]))))
+    give(document, target, lambda: Summary("; ".join(filter(None, [what, currents(levels)]))))
     return 0
 
 

@@ -2,39 +2,30 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from geom.description.names import file_stem
-from geom.disk_cache import atomic_write
+from geom.disk_cache import recalled, store
 from geom.errors import InputError
 from geom.plugins import plugins
-from geom.storage import cache_folder
+from geom.storage import cache_folder, write_whole
 from measured.case import Test
-from thermoscope.caches import recalled_result, store_result
-from thermoscope.case_folder.content import result_key
+from thermoscope.case_folder import runs
+from thermoscope.case_folder.content import digest, result_key
 from thermoscope.case_folder.error_field import error_gain
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
 from thermoscope.case_folder.network_run import network_run
-from thermoscope.case_folder.runs import (
-    at_revision,
-    before_last,
-    by_interest,
-    comparison_of,
-    current_comparison,
-    fields,
-    readings,
-    stored_range,
-    temperature_range,
-)
 from thermoscope.commands.open_case import needs_geometry, open_case
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
 from thermoscope.parts import required
 from validation.parameters.unknowns import standing
@@ -44,8 +35,12 @@ MOST = 5  # revisions in a page: each adds its amplitudes, and its fields while 
 FRAMES = 61  # instants of a test: between them the page draws straight lines
 
 
-def viewer(case: str, out: Path | None, target: str | None) -> int:
-    """One page that plays every test on the machine, in the browser's own GL."""
+def viewer(
+    case: Case,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="An HTML file.")] = None,
+    target: Json = None,
+) -> int:
+    """One HTML file: the machine to turn, cut and play in any browser, without a server or network."""
     if out is not None and (out.suffix != ".html" or out.is_dir()):
         raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
     needs_geometry(case)
@@ -53,7 +48,7 @@ def viewer(case: str, out: Path | None, target: str | None) -> int:
     with progress() as tell:
         folder = open_case(case, tell)
         file = write_case(folder, out or Path("out") / f"{file_stem(folder.case.name)}-viewer.html", tell)
-    give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Answer(f"{file}"))
+    give({"case": folder.case.name, "viewer": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
 
@@ -61,10 +56,7 @@ def write_case(folder: Folder, file: Path, tell: Progress) -> Path:
     """Write the page of an open case, and return its path."""
     page = viewer_page(folder, tell)
     tell(f"writing {file}")
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(file) as partial:
-        partial.write_text(page, encoding="utf-8")
-    return file
+    return write_whole(file, page)
 
 
 def viewer_page(folder: Folder, tell: Progress) -> str:
@@ -90,7 +82,7 @@ def viewer_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]
     yield (every := next(making))
     rest = list(making)
     whole = json.dumps([first, every, *rest])
-    store_result(_file(folder), whole, "viewer")  # before the last part: who has it may end this
+    store(_file(folder), whole)  # before the last part: who has it may end this
     yield from rest
 
 
@@ -98,13 +90,12 @@ def stored_documents(folder: Folder) -> list[dict[str, Any]] | None:
     """What the page draws, from the cache; None where this very model was not drawn before."""
     if folder.built is None:
         return None
-    return recalled_result(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
+    return recalled(_file(folder), lambda file: list(json.loads(file.read_text(encoding="utf-8"))))
 
 
 def _file(folder: Folder) -> Path:
-    models = repr((revisions(folder), folder.history.last, sorted(folder.positions.items())))
-    content = hashlib.sha256((result_key(folder, "viz", "extras") + models).encode()).hexdigest()[:20]
-    return cache_folder() / f"viewer-{content}.json"
+    models = revisions(folder), folder.history.last, sorted(folder.positions.items())
+    return cache_folder() / f"viewer-{digest(result_key(folder, 'viz', 'extras'), models)}.json"
 
 
 def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
@@ -113,16 +104,16 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
 
     assert folder.built is not None
-    machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), before_last(folder)
-    others = [at_revision(folder, r) for r in revisions(folder)[2:]]
+    machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), runs.before_last(folder)
+    others = [runs.at_revision(folder, r) for r in revisions(folder)[2:]]
     conductivity = {part.name: machine.conductivity(part.name) for part in machine.parts}
     names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)] or ["now"]
 
     def played(test: Test) -> Recorded:
-        times, now = fields(folder.case, test, nodes, FRAMES)
-        before = None if earlier is None else fields(earlier, test, nodes, FRAMES)[1]
-        rest = tuple(Earlier(fields(case, test, nodes, FRAMES)[1], readings(case, test)) for case in others)
-        return Recorded(comparison_of(folder, test, {}), times, now, before, rest)
+        times, now = runs.fields(folder.case, test, nodes, FRAMES)
+        before = None if earlier is None else runs.fields(earlier, test, nodes, FRAMES)[1]
+        rest = tuple(Earlier(runs.fields(case, test, nodes, FRAMES)[1], runs.readings(case, test)) for case in others)
+        return Recorded(runs.comparison_of(folder, test, {}), times, now, before, rest)
 
     def analysis(run: Recorded) -> Recorded:
         test = run.comparison.test
@@ -131,22 +122,22 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
         return replace(run, error_map=between, network=network_run(folder.case, test, run.times))
 
     tell("running the model on a first test")
-    order, cache, looks_of = by_interest(folder), cache_folder(), plugins("sections").get("looks")
+    order, cache, looks_of = runs.by_interest(folder), cache_folder(), plugins("sections").get("looks")
     standing(folder.case)  # one network for both of the following
     with ThreadPoolExecutor() as pool:
         looks = looks_of and looks_of.cached_looks(
             machine, nodes, cache
         )  # to make them takes longer than all else of the first picture
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
-        comparison = pool.submit(current_comparison, folder, order[0])
-        run = fields(folder.case, order[0], nodes, FRAMES)
-    first, limits = [Recorded(comparison.result(), *run)], stored_range(folder)
+        comparison = pool.submit(runs.current_comparison, folder, order[0])
+        run = runs.fields(folder.case, order[0], nodes, FRAMES)
+    first, limits = [Recorded(comparison.result(), *run)], runs.stored_range(folder)
     now = temperature_document(nodes, first, folder.positions, conductivity, names[:1], limits)
     yield shape.result() | now
     tell("running every test")
     with ThreadPoolExecutor() as pool:
         shapes = None if looks or looks_of is None else pool.submit(looks_of.packed_looks, machine, nodes, cache=cache)
-        limits = temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
+        limits = runs.temperature_range(folder, nodes)  # first: the last two runs of a test are remembered
         tests = side_by_side(played, order)
         now = temperature_document(nodes, tests, folder.positions, conductivity, names, limits)
     yield now | ({"looks": shapes.result()} if shapes else {})

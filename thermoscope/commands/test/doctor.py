@@ -12,12 +12,13 @@ from thermoscope.case_folder.folder import find_case, network_of, patient_of
 from thermoscope.case_folder.history import load_history
 from thermoscope.case_folder.recording_checks import Finding
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
-from thermoscope.console.answer import Answer
+from thermoscope.console.options import Case, Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
 
 
-def doctor(case: str, target: str | None) -> int:
-    """Exit code 1 when something looks wrong, 2 when a file would be refused."""
+def doctor(case: Case, target: Json = None) -> int:
+    """What looks wrong in a case's files before anything is fitted, with the cure. Exit code 1 if something does."""
     with progress() as tell:
         path = find_case(case)
         wrong, doubts = looked(path, tell)
@@ -26,7 +27,7 @@ def doctor(case: str, target: str | None) -> int:
         "wrong": [f.document() for f in wrong],
         "doubts": [f.document() for f in doubts],
     }
-    give(document, target, lambda: answer(wrong, doubts, case))
+    give(document, target, lambda: doctor_summary(wrong, doubts, case))
     return 2 if wrong else 1 if doubts else 0
 
 
@@ -51,7 +52,7 @@ def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
     return Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right)
 
 
-def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Answer:
+def doctor_summary(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Summary:
     """What would be refused first; a line for each finding and its cure."""
     number = len(wrong) + len(doubts)
     things, look = ("thing", "looks") if len(doubts) == 1 and not wrong else ("things", "look")
@@ -62,4 +63,4 @@ def answer(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> An
         for word, rows in (("REFUSED ", wrong), ("", doubts))
         for f in rows
     ]
-    return Answer(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")
+    return Summary(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")

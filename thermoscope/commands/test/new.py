@@ -8,13 +8,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+import typer
 
 from geom.errors import InputError
 from geom.escapes import toml_value
 from geom.storage import write_whole
+from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, shift
@@ -28,7 +30,8 @@ from measured.importing.source import Source, read_source, signature
 from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.grid import LONGEST_S
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Json
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.parts import message as missing_extra
 
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
     from viz.figures.columns import Panel
 
 PICTURE = "columns.png"
+LATEST_S = 1e9  # as [test] from_s in a sheet
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,36 @@ class Model:
     first: FirstNetwork | None = None
 
 
-def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
+def new(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, TDMS, MF4 or Parquet.")],
+    machine: Annotated[str | None, typer.Option(metavar="M", help="Hold them against this machine.")] = None,
+    network: Annotated[Path | None, typer.Option(metavar="N", help="Or against this network.toml.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The new case; else the file's name.")
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing: take the guesses.")] = False,
+    constants: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What was not recorded: ambient=21.5.")
+    ] = None,
+    place: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN=PLACE", help="Where a column belongs: a place, an input, nothing."),
+    ] = None,
+    period: Annotated[
+        float | None, typer.Option(min=1e-6, max=1e7, help="Seconds between rows without a clock.")
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", min=0.0, max=LATEST_S, help="The tests begin here (s from the first row).")
+    ] = 0.0,
+    end: Annotated[float | None, typer.Option("--to", min=0.0, max=LATEST_S, help="And end here.")] = None,
+    target: Json = None,
+) -> int:
+    """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
+    window_s, values = (start, end), settings(constants or ())
+    return new_case(files, Wishes(machine, network, out, yes, values, period, window_s, places(place or ())), target)
+
+
+def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     """A case from recordings; nothing is written where anything is wrong."""
     if wishes.machine and wishes.network:
         raise InputError("a machine and a network are both given", "--machine, --network", "one of the two")
@@ -82,7 +115,7 @@ def new(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
         document = save_case(folder, model, drafts, tell)
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: new_case_summary(document))
     return 0
 
 
@@ -344,7 +377,7 @@ def meaning(g: Guess) -> str:
     return f"{g.place or g.feeds} ({g.unit})" if g.used else ""
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def new_case_summary(document: Mapping[str, Any]) -> Summary:
     """What became of each column of the first test, what was assumed, and the next command."""
     tests, folder = document["tests"], document["folder"]
     columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
@@ -354,30 +387,26 @@ def answer(document: Mapping[str, Any]) -> Answer:
         "used. All of this is guessed: change it in tests/*.toml."
     )
     sentence = " ".join([*(f"{w[0].upper()}{w[1:]}." for w in document["warnings"]), sentence])
-    rows = [[c["column"], _goes(c) or "left out", c["unit"], c["quantity"], c["doubt"]] for c in columns]
-    table = Grid(
-        "", ["column", "goes to", "unit", "quantity", "doubt"], rows, keep=["goes to", "unit", "doubt"], folded="doubt"
+    table = Table.of(
+        "", columns, "column | *goes to=place | *unit | quantity | *doubt", place=lambda c: _goes(c) or "left out"
     )
-    parts: list[Grid | str] = [*_moved(tests), *_remarks(document), table, _files(tests)]
-    return Answer(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
+    table = replace(table, folded="doubt")
+    parts: list[Table | str] = [*_moved(tests), *_remarks(document), table, _files(tests)]
+    return Summary(sentence, parts, f"picture: {folder}/out/{PICTURE}; next: thermoscope test compare {folder}")
 
 
 def _goes(column: Mapping[str, Any]) -> str:
     return str(column["place"] or column["feeds"])
 
 
-def _files(tests: Sequence[Mapping[str, Any]]) -> Grid:
-    rows = [
-        [Path(f["file"]).name, t["role"], _seconds(t["duration_s"]), f["rows"], f["clock"]]
-        for t in tests
-        for f in t["files"]
-    ]
-    return Grid("Files", ["file", "role", "seconds", "rows", "clock"], rows)
-
-
-def _seconds(duration: float) -> float | int:
-    """Whole seconds from a hundred on."""
-    return round(duration) if duration >= 100 else duration
+def _files(tests: Sequence[Mapping[str, Any]]) -> Table:
+    return Table.of(
+        "Files",
+        [{**t, **f} for t in tests for f in t["files"]],
+        "file | role | seconds=duration_s | rows | clock",
+        file=lambda f: Path(f["file"]).name,
+        duration_s=lambda f: round(f["duration_s"]) if f["duration_s"] >= 100 else f["duration_s"],
+    )
 
 
 def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:

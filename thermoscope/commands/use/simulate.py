@@ -5,29 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 from numpy.typing import NDArray
 
 from geom.description.names import file_stem
 from geom.errors import InputError, ThermoscopeError
 from geom.escapes import csv_lines
 from geom.storage import write_whole
+from geom.table import Table
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record
 from lumped.integration.simulate import simulate as integrated
 from lumped.model.network import Network, Row
-from thermoscope.bands import along, documents, posterior_of, wanted
+from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
 from thermoscope.commands.open_case import PACKAGE, open_case
 from thermoscope.commands.use.simulate_readings import readings, short_of
-from thermoscope.console.answer import Answer, Grid
+from thermoscope.console.options import Case, Json, Out, Sure
+from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.bands import Bands, ParameterPosterior
 
@@ -35,17 +38,23 @@ Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 
-def simulate(case: str, cycle: str | None, out: Path | None, target: str | None, sure: bool | None = None) -> int:
-    """All tests of the case, or one cycle.  sure : with 95 % bands; None: where they cost little"""
+def simulate(
+    case: Case,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle; else all tests.")] = None,
+    out: Out = None,
+    target: Json = None,
+    sure: Sure = None,
+) -> int:
+    """Drive cycle in, temperatures out: a CSV per run, and how well its heat balance closed."""
     with progress() as tell:
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
         into = out or _out(folder)
-        posterior = posterior_of(folder, tell) if wanted(network, sure) else None
+        posterior = posterior_of(folder, tell) if bands_requested(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits}
-    give(document, target, lambda: answer(document))
+    give(document, target, lambda: simulation_summary(document))
     return 0
 
 
@@ -110,7 +119,7 @@ def _ran(
     heat = audit(network, record, values)
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
-    band = None if posterior is None else along(posterior, cycle.name, record, rows)
+    band = None if posterior is None else predicted_bands(posterior, cycle.name, record, rows)
     file = write_whole(into / f"simulate-{file_stem(cycle.name)}.csv", _csv(record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)
@@ -180,7 +189,7 @@ def _circuits(folder: Folder) -> list[dict[str, Any]]:
     ]
 
 
-def answer(document: Mapping[str, Any]) -> Answer:
+def simulation_summary(document: Mapping[str, Any]) -> Summary:
     """The hottest place of each run; per run temperatures, losses, and how well it closed."""
     runs = document["runs"]
     hottest = [(p["max_C"], p["place"], r["name"]) for r in runs for p in r["places"]]
@@ -188,28 +197,26 @@ def answer(document: Mapping[str, Any]) -> Answer:
     where, many = top[1].removeprefix(HOT), "run" if len(runs) == 1 else "runs"
     sentence = f"Hottest: {where}, {top[0]:.1f} degC in {top[2]}; {len(runs)} {many}."
     budgets, closing = {run["name"]: run["error_budget"] for run in runs}, [x for run in runs for x in _closing(run)]
-    parts: list[Grid | str] = [_places(runs), *closing, in_short(budgets, {}), *map(_circuit, document["circuits"])]
+    parts: list[Table | str] = [_places(runs), *closing, in_short(budgets, {}), *map(_circuit, document["circuits"])]
     rest = [*(_losses(run) for run in runs), *budget(budgets, {})]
-    return Answer(sentence, parts, f"temperatures in {runs[0]['file']}{' ...' if len(runs) > 1 else ''}", rest)
+    return Summary(sentence, parts, f"temperatures in {runs[0]['file']}{' ...' if len(runs) > 1 else ''}", rest)
 
 
-def _places(runs: Sequence[Mapping[str, Any]]) -> Grid:
+def _places(runs: Sequence[Mapping[str, Any]]) -> Table:
     """Temperatures, the hottest first."""
-    rows = [
-        [p["place"], r["name"], p["start_C"], p["max_C"], round(p["max_at_s"]), p["end_C"]]
-        for r in runs
-        for p in sorted(r["places"], key=lambda p: -p["max_C"])
-    ]
-    headers = ["place", "run", "start (degC)", "largest (degC)", "at (s)", "end (degC)"]
-    if all("widest_ci95_K" in p for r in runs for p in r["places"]):
-        widths = [p["widest_ci95_K"] for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]
-        rows, headers = [[*row, w] for row, w in zip(rows, widths, strict=True)], [*headers, "95 % band (K)"]
-    return Grid("", headers, rows, keep=["largest (degC)", "95 % band (K)", "run", "end (degC)"])
+    rows = [{"run": r["name"], **p} for r in runs for p in sorted(r["places"], key=lambda p: -p["max_C"])]
+    band = " | *95 % band (K)=widest_ci95_K" if all("widest_ci95_K" in row for row in rows) else ""
+    return Table.of(
+        "",
+        rows,
+        "place | *run | start (degC)=start_C | *largest (degC)=max_C | at (s)=max_at_s | *end (degC)=end_C" + band,
+        max_at_s=lambda p: round(p["max_at_s"]),
+    )
 
 
-def _losses(run: Mapping[str, Any]) -> Grid:
-    watts = [[x["loss"], x["mean_W"]] for x in run["losses"] if x["mean_W"]]
-    return Grid(f"Losses in {run['name']}", ["loss", "mean (W)"], sorted(watts, key=lambda row: -row[1]))
+def _losses(run: Mapping[str, Any]) -> Table:
+    losses = sorted((x for x in run["losses"] if x["mean_W"]), key=lambda x: -x["mean_W"])
+    return Table.of(f"Losses in {run['name']}", losses, "loss | mean (W)=mean_W")
 
 
 def _closing(run: Mapping[str, Any]) -> list[str]:

@@ -1,11 +1,10 @@
-"""What a command answers: one sentence, then what fits on a screen, then where the rest is. No number is ever broken.
+"""What a command shows: one sentence, then what fits on a screen, then where the rest is. No number is ever broken.
 
 Columns that do not fit are left out, the least important first; rows that do not fit are counted.
 """
 
 from __future__ import annotations
 
-import math
 import os
 import shutil
 import sys
@@ -17,6 +16,7 @@ from textwrap import wrap
 from typing import Any
 
 from geom.errors import InputError
+from geom.table import Table, cell
 from geom.text import visible
 
 LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
@@ -27,37 +27,21 @@ _limit: ContextVar[int | None] = ContextVar("lines", default=LINES)
 
 
 @dataclass(frozen=True)
-class Grid:
-    """A table.  headers : in the order they are shown;  keep : those that are left out last, after the first column
-
-    rows : most important first;  marked : words that make their row stand out
-    folded : the header of a column whose words go over several lines rather than be cut
-    """
-
-    title: str
-    headers: Sequence[str]
-    rows: Sequence[Sequence[Any]]
-    marked: Sequence[str] = ()
-    keep: Sequence[str] = ()
-    folded: str = ""
-
-
-@dataclass(frozen=True)
-class Answer:
-    """sentence : the answer;  parts : what it rests on, most important first;  more : where the rest is
+class Summary:
+    """sentence : the result;  parts : what it rests on, most important first;  more : where the rest is
 
     rest : what only --all shows
     """
 
     sentence: str
-    parts: Sequence[Grid | str] = ()
+    parts: Sequence[Table | str] = ()
     more: str = ""
-    rest: Sequence[Grid | str] = ()
+    rest: Sequence[Table | str] = ()
 
 
 @contextmanager
-def within(lines: int | None) -> Any:
-    """Answers in here have so many lines after their sentence; None for all there is, at any width."""
+def limited_lines(lines: int | None) -> Any:
+    """Summaries in here have so many lines after their sentence; None for all there is, at any width."""
     token = _limit.set(lines)
     try:
         yield
@@ -65,19 +49,19 @@ def within(lines: int | None) -> Any:
         _limit.reset(token)
 
 
-def lay_out(answer: Answer, width: int, most: int | None) -> list[tuple[str, str]]:
-    """(line, style) of an answer: at most `most` lines after its sentence, None for everything."""
+def lay_out(summary: Summary, width: int, most: int | None) -> list[tuple[str, str]]:
+    """(line, style) of a summary: at most `most` lines after its sentence, None for everything."""
     wide = 10**6 if most is None else width
-    sentence = [(line, "bold") for line in folded(answer.sentence, wide)]
+    sentence = [(line, "bold") for line in folded(summary.sentence, wide)]
     parts = [
-        p for p in (*answer.parts, *(answer.rest if most is None else ())) if (p.rows if isinstance(p, Grid) else p)
+        p for p in (*summary.parts, *(summary.rest if most is None else ())) if (p.rows if isinstance(p, Table) else p)
     ]
     full = [_lines(part, wide, None) for part in parts]
     if most is None:
-        return [*sentence, *(line for block in full for line in block), *_plain(answer.more, wide)]
-    tail = _plain(_pointer(answer.more, bool(answer.rest)), wide)
+        return [*sentence, *(line for block in full for line in block), *_plain(summary.more, wide)]
+    tail = _plain(_pointer(summary.more, bool(summary.rest)), wide)
     if sum(map(len, full)) + len(tail) > most:
-        tail = _plain(_pointer(answer.more, True), wide)
+        tail = _plain(_pointer(summary.more, True), wide)
         full = _cut(parts, full, wide, most - len(tail))
     return [*sentence, *(line for block in full for line in block), *tail]
 
@@ -86,10 +70,10 @@ def _pointer(more: str, cut: bool) -> str:
     return "; ".join(filter(None, ["More: --all" if cut else "", more]))
 
 
-def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) -> list[Any]:
+def _cut(parts: Sequence[Table | str], full: list[Any], width: int, room: int) -> list[Any]:
     """The least of each part, the most important first, as far as there is room; the rest goes in the same order."""
     lengths = list(map(len, full))
-    least = [min(n, TITLE + 2) if isinstance(p, Grid) else n for p, n in zip(parts, lengths, strict=True)]
+    least = [min(n, TITLE + 2) if isinstance(p, Table) else n for p, n in zip(parts, lengths, strict=True)]
     fitting = []
     for n in least:
         fitting.append(n if n <= room else 0)
@@ -102,7 +86,7 @@ def _cut(parts: Sequence[Grid | str], full: list[Any], width: int, room: int) ->
     return out
 
 
-def _lines(part: Grid | str, width: int, most: int | None) -> list[tuple[str, str]]:
+def _lines(part: Table | str, width: int, most: int | None) -> list[tuple[str, str]]:
     if isinstance(part, str):
         lines = _plain(part, width)
         return lines if most is None or len(lines) <= most else []
@@ -134,12 +118,15 @@ def folded(text: str, width: int) -> list[str]:
     ]
 
 
-def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[str, str]]:
+def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[str, str]]:
     """Title, headers and rows as lines that are no wider than `width`."""
     body = [[cell(value) for value in row] for row in rows]
     whole = [[cell(value) for value in row] for row in table.rows]
-    right = [any(isinstance(row[j], int | float) for row in table.rows) for j in range(len(table.headers))]
-    widths = [max(map(len, (h, *(row[j] for row in whole)))) for j, h in enumerate(table.headers)]
+    right = [
+        any(isinstance(row[j], int | float) and not isinstance(row[j], bool) for row in table.rows)
+        for j in range(len(table.columns))
+    ]
+    widths = [max(map(len, (h, *(row[j] for row in whole)))) for j, h in enumerate(table.columns)]
     columns = _fitting(table, whole, widths, width)
     words = [j for j in columns if not right[j] and not _numbers(whole, j)]
     while words and _total(widths, columns) > width:
@@ -153,19 +140,19 @@ def grid(table: Grid, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[s
 
     def lines(cells: Sequence[str]) -> list[str]:
         last = columns[-1]
-        words = wrap(cells[last], widths[last]) if table.headers[last] == table.folded else []
+        words = wrap(cells[last], widths[last]) if table.columns[last] == table.folded else []
         rest = [line([""] * last + [word] + [""] * (len(cells) - last - 1)) for word in words[1:]]
         return [line([*cells[:last], words[0], *cells[last + 1 :]] if words else cells), *rest]
 
     styles = ["bold" if any(c in table.marked for c in row) else "" for row in body]
-    head = [*((title, "bold") for title in folded(table.title, width)[:1]), (line(list(table.headers)), "dim")]
+    head = [*((title, "bold") for title in folded(table.title, width)[:1]), (line(list(table.columns)), "dim")]
     return [*head, *((text, style) for row, style in zip(body, styles, strict=True) for text in lines(row))]
 
 
-def _fitting(table: Grid, body: list[list[str]], widths: list[int], width: int) -> list[int]:
+def _fitting(table: Table, body: list[list[str]], widths: list[int], width: int) -> list[int]:
     """The columns that are shown: those that say something, less the least important until the rest fits."""
-    columns = [j for j in range(len(table.headers)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
-    important = [j for j in columns if table.headers[j] in table.keep]
+    columns = [j for j in range(len(table.columns)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
+    important = [j for j in columns if table.columns[j] in table.keep]
     order = [*reversed([j for j in columns[1:] if j not in important]), *reversed([j for j in important if j != 0])]
     floor = [w if _numbers(body, j) else min(w, 3 * LEAST) for j, w in enumerate(widths)]
     for j in order:
@@ -189,27 +176,12 @@ def _padded(text: str, width: int, right: bool) -> str:
     return short.rjust(width) if right else short.ljust(width)
 
 
-def cell(value: Any) -> str:
-    """A value as a table shows it: numbers to three digits, and no exponent below a million."""
-    if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return "-"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        if 1000 <= abs(value) < 1e6:
-            return f"{value:.0f}"
-        return f"{value:.2f}" if 0.1 <= abs(value) < 1000 else f"{value:.3g}"
-    if isinstance(value, list | tuple):
-        return ", ".join(cell(v) for v in value)
-    return str(value)
-
-
 def width() -> int:
     """Of the terminal, or as COLUMNS says; a pipe has 80."""
     return shutil.get_terminal_size((USUAL, 24)).columns if sys.stdout.isatty() or "COLUMNS" in os.environ else USUAL
 
 
-def printed(answer: Answer) -> None:
+def printed(summary: Summary) -> None:
     """On stdout."""
     from rich.console import Console
     from rich.text import Text
@@ -220,7 +192,7 @@ def printed(answer: Answer) -> None:
 
     console = Terminal(soft_wrap=True)
     with to_stdout():
-        for line, style in lay_out(answer, width(), _limit.get()):
+        for line, style in lay_out(summary, width(), _limit.get()):
             console.print(Text(visible(line), style if console.is_terminal else ""), soft_wrap=True)
 
 

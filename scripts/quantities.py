@@ -1,6 +1,6 @@
 """docs/reference/quantities.md: quantities, their units and what memory holds; every effect; from the code.
 
-python -m thermoscope.quantities_page    writes the page
+python scripts/quantities.py    writes the page
 """
 
 from __future__ import annotations

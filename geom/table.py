@@ -1,0 +1,91 @@
+"""One table of results: terminal, pages, workbooks, JSON and DataFrames show the same one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+from geom.errors import MissingDependency
+
+
+@dataclass(frozen=True)
+class Table:
+    """columns : in the order they are shown;  rows : most important first;  marked : words that make a row stand out
+
+    keep : columns that a narrow medium leaves out last, after the first one
+    folded : the column whose words go over several lines rather than be cut
+    """
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    marked: Sequence[str] = ()
+    keep: Sequence[str] = ()
+    folded: str = ""
+
+    @classmethod
+    def of(
+        cls,
+        title: str,
+        records: Iterable[Any],
+        columns: str,
+        marked: Sequence[str] = (),
+        **computed: Callable[[Any], Any],
+    ) -> Table:
+        """A row per record, which is a mapping or an object.
+
+        columns : "NAME=KEY | *NAME=KEY.KEY | NAME": a star keeps a column, without a key the name is one; what a record
+            lacks is None;  computed : key -> the value from the record, for what no record holds
+        """
+        pairs = [column.strip().partition("=")[::2] for column in columns.split("|")]
+        names = [name.removeprefix("*") for name, _ in pairs]
+        keys = [key or name for name, (_, key) in zip(names, pairs, strict=True)]
+        rows = [[computed[key](r) if key in computed else value_at(r, key) for key in keys] for r in records]
+        return cls(title, names, rows, marked, [n for n, (name, _) in zip(names, pairs, strict=True) if n != name])
+
+    def documents(self) -> list[dict[str, Any]]:
+        """For JSON: each row by the names of its columns."""
+        return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
+
+    def frame(self) -> Any:
+        """A pandas.DataFrame, the title in its attrs. Raises MissingDependency where pandas is not installed."""
+        try:
+            import pandas
+        except ModuleNotFoundError:
+            raise MissingDependency("a table for further work needs another package: `pip install pandas`") from None
+        frame = pandas.DataFrame(self.documents(), columns=list(self.columns))
+        frame.attrs["title"] = self.title
+        return frame
+
+
+def value_at(holder: object, path: str) -> Any:
+    """What an object or mapping has under "KEY" or "KEY.KEY"; None where it has none."""
+
+    def inner(here: Any, key: str) -> Any:
+        return here.get(key) if isinstance(here, Mapping) else getattr(here, key, None)
+
+    return reduce(inner, path.split("."), holder)
+
+
+def cell(value: Any) -> str:
+    """A value as a terminal shows it: numbers to three digits, and no exponent below a million."""
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        if 1000 <= abs(value) < 1e6:
+            return f"{value:.0f}"
+        return f"{value:.2f}" if 0.1 <= abs(value) < 1000 else f"{value:.3g}"
+    if isinstance(value, list | tuple):
+        return ", ".join(cell(v) for v in value)
+    return str(value)
+
+
+def with_interval(value: float | None, low: float | None, high: float | None) -> str:
+    """A value with its interval: three digits tell what an interval leaves sure."""
+    one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))
+    return f"{one} ({' ... '.join(two)})"
