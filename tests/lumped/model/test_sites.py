@@ -3,7 +3,7 @@
 import tomllib
 
 import pytest
-from sited_motor import MOTOR
+from small_networks import MOTOR
 
 from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds

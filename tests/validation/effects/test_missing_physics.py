@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from sited_motor import MOTOR
+from small_networks import MOTOR
 
 from geom.constants import ALPHA_CU
 from lumped.declarations.network import read_network

@@ -4,7 +4,7 @@ import math
 import tomllib
 
 import pytest
-from sited_motor import MOTOR
+from small_networks import MOTOR
 
 from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds
