@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
 from geom.text import table
-from validation.inference.missing_heat import MissingHeat
 
 if TYPE_CHECKING:
-    from validation.bases.which_base import Hypothesis
-    from validation.conditions.contradiction import Contradiction
+    from validation.bases.which_base import BaseDeviance
+    from validation.inference.contradiction import Contradiction
+    from validation.inference.missing_heat import MissingHeat
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
 Decided = Literal["named", "group", "no", "cannot-tell"]
@@ -234,7 +234,7 @@ class Diagnosis:
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[Experiment, ...] = ()
-    bases: tuple[Hypothesis, ...] = ()
+    bases: tuple[BaseDeviance, ...] = ()
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()

@@ -83,7 +83,7 @@ def compared(
 
 
 def _discrepancies(folder: Folder, tell: Progress) -> dict[str, Any]:
-    from validation.diagnosis.discrepancy import discrepancies
+    from validation.discrepancy import discrepancies
 
     return discrepancies(folder.case, tell).document()
 
