@@ -85,10 +85,10 @@ def timed_span(
     """
     begins, ends = instants_around(test, span[0], reach_s), instants_around(test, span[1], reach_s)
     at = np.concatenate([begins, ends])
-    s = step_scores(evidence.fit, evidence.tests, base, test, at, values, others)
+    step_u, step_V = step_scores(evidence.fit, evidence.tests, base, test, at, values, others)
     a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
     a, b = a[at[a] < at[b]], b[at[a] < at[b]]
-    u, V = pulse_scores(s.u, s.V, a, b)
+    u, V = pulse_scores(step_u, step_V, a, b)
     usual = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd
     bayes = average_size(u, np.maximum(V, 0.0), np.full(u.shape, usual), np.full(u.shape, base.sign))
     best, weight = int(np.argmax(bayes)), np.exp(bayes - logsumexp(bayes))
@@ -108,15 +108,17 @@ def pulse_scores(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64])
 
 def step_scores(
     fit: Fit, tests: Sequence[Test], base: Effect, test: Test, at: Array, values: Values, others: Spans
-) -> Score:
-    """Efficient score of an effect that begins at each of some instants (s) of a test, and last of the other spans."""
+) -> tuple[Array, Array]:
+    """Efficient score (n,) and its covariance of an effect that begins at each of n - 1 instants (s) of a test and
+    lasts; the last is that of the other spans, 0 without any. Instants may be the same: each is run once."""
     last = float(test.time[-1]) + 1.0
-    events = [Event.of({test.name: [(t, last)]}) for t in at]
+    instants, where = np.unique(at, return_inverse=True)
+    events = [Event.of({test.name: [(t, last)]}) for t in instants]
     rest = Event.of({t: pairs for t, pairs in others.items() if pairs})
     effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
     s = fit_score(fit, effect_columns(fit, tests, effects, values))
-    missing = 0 if rest.spans else 1
-    return Score(np.pad(s.u, (0, missing)), np.pad(s.V, (0, missing)), s.raw, s.sign, s.absorber)
+    missing, order = 0 if rest.spans else 1, np.append(where, instants.size)
+    return np.pad(s.u, (0, missing))[order], np.pad(s.V, (0, missing))[np.ix_(order, order)]
 
 
 def predicted_repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:
@@ -226,9 +228,8 @@ def refit_span(fit: Fit, effect: During, test: Test, span: Span, reach_s: float)
     a = a / (1.0 + a) if effect.base.mapping == "relative" else a  # one more piece of it: factors multiply, others add
     for reach in (reach_s, 2.0 * reach_s / GRID_POINTS):
         begins, ends = instants_around(test, best[0], reach), instants_around(test, best[1], reach)
-        instants, where = np.unique(np.concatenate([span, begins, ends]), return_inverse=True)
-        s = step_scores(fit, [test], effect.base, test, instants, fit.values, {})
-        u, V = s.u[where], s.V[np.ix_(where, where)]
+        at = np.concatenate([span, begins, ends])
+        u, V = step_scores(fit, [test], effect.base, test, at, fit.values, {})
         i, j = np.meshgrid(2 + np.arange(begins.size), 2 + begins.size + np.arange(ends.size), indexing="ij")
         gain = moved_gain(u, V, a, i.ravel(), j.ravel())
         gain[(begins[:, None] >= ends[None, :]).ravel()] = -np.inf

@@ -16,7 +16,7 @@ from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
-from validation.inference.events import instants_around, predicted_repeats
+from validation.inference.events import instants_around, predicted_repeats, step_scores
 from validation.inference.evidence import calibrated_case, candidates, scored
 from validation.inference.missing_heat import scan_heat
 from validation.inference.stretches import Path, best_stretch, hat_scores, merged_pulses, pulses
@@ -284,6 +284,20 @@ def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
     assert found.odds[0].effects[0].startswith("law@loss:heat|load>0.")
     assert "the declared loss:heat is" in found.words
     assert "% too high where load is above" in found.words
+
+
+def test_an_instant_that_may_be_a_begin_and_an_end_has_the_score_of_a_step_there():
+    """Instants around both ends of a short stretch overlap."""
+    case = bench((("noon", ((600.0, 1200.0),)),), 1.0)
+    fit, film = calibrated_case(case), effect("convection.constant@body")
+    once, twice = (
+        step_scores(fit, case.tests, film, case.tests[0], np.array(at), fit.values, {})
+        for at in ([600.0, 900.0, 1200.0], [600.0, 900.0, 900.0, 1200.0])
+    )
+    order = [0, 1, 1, 2, 3]
+    assert abs(once[0][1]) > 1.0
+    np.testing.assert_allclose(twice[0], once[0][order])
+    np.testing.assert_allclose(twice[1], once[1][np.ix_(order, order)])
 
 
 def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():
