@@ -114,9 +114,3 @@ def finite_change(
     acting = [t for t in tests if t.name == effect.place] or tests
     new = {(s.test, s.channel): s.r for s in segments(network, acting, values)}
     return [(s.r - new.get((s.test, s.channel), s.r))[:, None] for s in parts]
-
-
-def largest_changes(run: Linearised, hypothesis: WithColumns) -> Array:
-    """(n_amplitude,) largest change of any reading (K) by one unit of each amplitude, over its weight."""
-    each = zip(hypothesis.columns(run), run.parts, strict=True)
-    return np.asarray(np.max([np.max(np.abs(J), axis=0) / s.weight for J, s in each], axis=0))

@@ -16,17 +16,17 @@ from numpy.typing import NDArray
 
 from lumped.model.sites import ambient, neighbours
 from measured.case import Case, Test
-from measured.doubt import FORM, USUAL
+from measured.doubt import FORM
 from validation.calibration.calibrate import no_progress
 from validation.effects.above import Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import During
 from validation.effects.registry import kinds
 from validation.effects.time_window import Event, event
-from validation.inference.columns import amplitudes, effect_columns, largest_changes, split_columns
+from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, timed_event
 from validation.inference.evidence import Evidence, Progress
-from validation.inference.hypotheses import NOTHING, Cause, condition_prior, law_prior
+from validation.inference.hypotheses import NOTHING, condition_prior, law_prior
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, fit_score
 from validation.inference.stretches import ALIKE, Interval, distinct, hat_scores, stretches, worth
@@ -227,19 +227,19 @@ def timed_worth(
 def tangent_worth(
     evidence: Evidence, bases: Sequence[Effect], condition: str, share: float, values: Values
 ) -> list[Promising]:
-    """Effects while a condition holds at their linear amplitude, without those that move no reading further than chance
-    does.  share : of the prior of all conditions"""
+    """Effects while a condition holds, at their linear amplitude; all that leave any trace, however small it is beside
+    what a model may be wrong by: the noise and the price of when have that in account.
+
+    share : of the prior of all conditions
+    """
     effects, fit, prior = [During.of(base, condition) for base in bases], evidence.fit, condition_prior(share)
-    causes = [Cause(e, q, prior) for e, q in zip(effects, amplitudes(fit.network, effects), strict=True)]
+    parameters = amplitudes(fit.network, effects)
     parts = effect_columns(fit, evidence.tests, effects, values)
-    scores = fit_score(fit, parts, np.array([c.parameter.sign for c in causes], int))
-    bayes = scores.log_bayes(np.array([c.parameter.prior_sd for c in causes]))
-    run = split_columns(parts, evidence.p, [e.name for e in effects])
-    excursion = np.concatenate([largest_changes(run, c) for c in causes])
-    clear = scores.visible & (excursion * np.abs(scores.amplitude) > USUAL["excursion"])
+    scores = fit_score(fit, parts, np.array([q.sign for q in parameters], int))
+    bayes = scores.log_bayes(np.array([q.prior_sd for q in parameters]))
     return [
         Promising(e, prior, float(b) + prior - NOTHING.log_prior)
-        for e, b, visible in zip(effects, bayes, clear, strict=True)
+        for e, b, visible in zip(effects, bayes, scores.visible, strict=True)
         if visible
     ]
 

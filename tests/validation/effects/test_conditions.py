@@ -16,9 +16,12 @@ from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
+from validation.inference.columns import effect_columns
+from validation.inference.conditions import tangent_worth
 from validation.inference.events import instants_around, predicted_repeats, step_scores
 from validation.inference.evidence import calibrated_case, candidates, scored
 from validation.inference.missing_heat import scan_heat
+from validation.inference.score import fit_score
 from validation.inference.stretches import Path, best_stretch, hat_scores, merged_pulses, pulses
 from validation.revision.revise import add
 
@@ -298,6 +301,19 @@ def test_an_instant_that_may_be_a_begin_and_an_end_has_the_score_of_a_step_there
     assert abs(once[0][1]) > 1.0
     np.testing.assert_allclose(twice[0], once[0][order])
     np.testing.assert_allclose(twice[1], once[1][np.ix_(order, order)])
+
+
+def test_what_strays_little_for_a_while_is_weighed_by_its_evidence():
+    """Three times a lid is open so little that no reading moves by three times what a model may be wrong by."""
+    spans = [(1000.0, 1800.0), (2600.0, 3400.0), (4200.0, 5000.0)]
+    case = bench((("noon", tuple(spans)),), 0.4)
+    fit, film = calibrated_case(case), effect("convection.constant@body")
+    evidence, name = scored(case, [film], fit), Event.of({"noon": spans}).name
+    (row,) = tangent_worth(evidence, [film], name, 0.05, fit.values)
+    parts = effect_columns(fit, case.tests, [row.effect], fit.values)
+    size = fit_score(fit, parts).amplitude[0]
+    assert max(np.max(np.abs(size * s.J[:, -1])) / s.weight for s in parts) < 3.0
+    assert row.worth > 0.0
 
 
 def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():
