@@ -18,6 +18,7 @@ from lumped.model.network import Network, Parameter
 from measured.case import Test
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
+from validation.inference.result import TableRow
 from validation.inference.score import fit_score
 from validation.parameters.unknowns import to_value
 
@@ -27,7 +28,7 @@ FAR = 5.0  # factor from which tangents tell no size
 
 
 @dataclass(frozen=True)
-class Difference:
+class Difference(TableRow):
     """A parameter that would have to differ in one test.
 
     others, here : its value in the other tests and in this one;  sd : standard deviations between the two
@@ -44,9 +45,6 @@ class Difference:
     nats: float
     possible: bool
     relative: bool = False
-
-    def document(self) -> dict:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)

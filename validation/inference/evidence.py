@@ -55,7 +55,6 @@ Jump = tuple[float, Sequence[Array]]  # a large amplitude, and what it does to e
 NO_JUMPS: Mapping[str, Jump] = MappingProxyType({})
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
-LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
 ROUNDS = 12  # steps of a calibration gone on under the model error: what nothing gains too little, all gain too much
 FURTHER = 6  # steps of one gone on under another noise
 LEADING = 60  # effects whose pairs are compared: beyond them neither of two carries weight
@@ -182,21 +181,14 @@ def scored(case: Case, effects: Sequence[Effect], fit: Fit, priors: Mapping[str,
     columns = exchange_columns(run.parts, effects, [run.tangents[n] for n in names])
     fit = continued(fit, tests, fit.noise, 0, CachedSegments(run.parts, nearby=False))
     run = Linearised(fit.parts, dict(zip(names, columns, strict=True)))
-    evidence = assembled(tests, fit, network, causes, run)
-    changes = {}
-    for k, a in likely_jumps(evidence):
+    # every large amplitude is run, whatever its tangent says: a joint at a fifth may well have none
+    far, changes = [(k, a) for k, e in enumerate(effects) for a in e.large], {}
+    for k, a in far:
         with suppress(NoSolution):  # so large it cannot be: the machine would run away
             changes[k, a] = finite_change(network, tests, run.parts, effects[k], {**values, names[k]: a})
     worth = dict(zip(changes, finite_evidence(fit, run, list(changes.values())), strict=True))
     best = {k: max((a for i, a in changes if i == k), key=lambda a, k=k: worth[k, a]) for k, _ in changes}  # type: ignore[misc]
     return assembled(tests, fit, network, causes, run, {names[k]: (a, changes[k, a]) for k, a in best.items()})
-
-
-def likely_jumps(evidence: Evidence) -> list[tuple[int, float]]:
-    """Causes and large amplitudes that the readings lean to, by their tangents, and those of clocks: others need no
-    run so large."""
-    far = [(k, a) for k, e in enumerate(evidence.effects) for a in e.large]
-    return [(k, a) for k, a in far if a * evidence.score.u[k] > LEAN or evidence.effects[k].fault]
 
 
 def finite_evidence(fit: Fit, run: Linearised, changes: Sequence[Sequence[Array]]) -> Array:

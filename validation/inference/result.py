@@ -17,10 +17,15 @@ Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed"
 Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
-MOST_ODDS, LEAST_PROBABILITY = (
-    5,
-    0.005,
-)  # hypotheses of a diagnosis that is printed, and the probability from which they are
+MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # hypotheses of a diagnosis that is printed, and from which probability
+
+
+class TableRow:
+    """A row of a table; its document has every field, tuples as lists."""
+
+    def document(self) -> dict:
+        """JSON of the row."""
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,7 @@ def _pair(pair: Pair | None) -> dict | None:
 
 
 @dataclass(frozen=True)
-class DetectionLimit:
+class DetectionLimit(TableRow):
     """An effect that these tests could not have shown unless it were larger than this."""
 
     effect: str
@@ -78,20 +83,14 @@ class DetectionLimit:
     unit: str
     absorbed_by: str | None = None
 
-    def document(self) -> dict:
-        return dict(vars(self))
-
 
 @dataclass(frozen=True)
-class CurrentLevel:
+class CurrentLevel(TableRow):
     """input : a current;  level_A : at which it is held, else its rms;  share_of_rms : of the record at hand"""
 
     input: str
     level_A: float
     share_of_rms: float
-
-    def document(self) -> dict:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)
@@ -119,7 +118,7 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class Odds:
+class Odds(TableRow):
     """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place".
 
     log_evidence : over that of nothing (nats), None for "others"
@@ -134,12 +133,9 @@ class Odds:
     begin_s: float | None = None
     end_s: float | None = None
 
-    def document(self) -> dict:
-        return {**vars(self), "effects": list(self.effects), "tests": list(self.tests)}
-
 
 @dataclass(frozen=True)
-class Question:
+class Question(TableRow):
     """A yes-or-no question that needs no test.
 
     about : what `answer` takes;  yes : probability of yes;  nats : information expected of an answer
@@ -150,12 +146,9 @@ class Question:
     yes: float
     nats: float
 
-    def document(self) -> dict:
-        return dict(vars(self))
-
 
 @dataclass(frozen=True)
-class PossibleEvent:
+class PossibleEvent(TableRow):
     """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
 
     probability : of all that it may have been;  effect : the most probable of these, its value refitted where it was
@@ -169,9 +162,6 @@ class PossibleEvent:
     title: str
     value: float
     unit: str
-
-    def document(self) -> dict:
-        return {**vars(self), "spans": list(self.spans)}
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def candidate_rows(
     members = [k for g in choice.groups for k in g]
     order = [*members, *(int(k) for k in np.argsort(-share, kind="stable") if k not in members)]
     size, limit = smallest_visible(e), thresholds(e)
-    standard = Standard.of_lead(case, posterior, single[members[0]].fit if members else e.fit)
+    standard = Standard.create(case, posterior, single[members[0]].fit if members else e.fit)
     refits = [h for h in best_first(posterior.hypotheses) if h.fit]
     rows = []
     for k in order[:ROWS]:
@@ -160,7 +160,7 @@ class Standard:
     hold_out: tuple[Segment, ...]
 
     @classmethod
-    def of_lead(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Standard:
+    def create(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Standard:
         tests = tuple(t for t in case.tests if t.role == "hold-out")
         e, share = posterior.evidence, evidence_temper(posterior.hypotheses)
         return cls(deviances(e, lead) if lead else {}, share, tests, hold_out_residuals(tests, e.fit))

@@ -9,7 +9,7 @@ from two_bodies import bench
 
 from validation.comparison.linearisation import segments
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, joined, scored
+from validation.inference.evidence import calibrated_case, candidates, joined, scored
 from validation.inference.hypotheses import NOTHING, Cause, Together, condition_prior, law_prior
 from validation.inference.missing_heat import scan_heat
 
@@ -71,3 +71,13 @@ def test_a_column_is_the_change_of_the_readings_by_a_small_amplitude(i):
     low, high = (segments(larger, e.tests, {**e.fit.values, cause.name: x}) for x in (0.0, step))
     for a, b, column in zip(low, high, cause.columns(e.run), strict=True):
         np.testing.assert_allclose((a.r - b.r) / step, column[:, 0], rtol=0.02, atol=0.02 * np.abs(column).max() + 1e-6)
+
+
+def test_a_large_amplitude_is_weighed_whatever_its_tangent_says():
+    """A joint at a fifth of its conductance bends the machine: its tangent may well point the other way."""
+    case = bench((), 0.0)
+    e = scored(case, candidates(case, ["contact", "blockage", "loss.constant"]), calibrated_case(case))
+    large = {x.name for x in e.effects if x.large}
+    assert any(a * u <= 0.0 for x, u in zip(e.effects, e.score.u, strict=True) for a in x.large)
+    assert set(e.jumps) == large
+    assert [n for n, x in zip(e.names, e.whole, strict=True) if np.isfinite(x)] == [n for n in e.names if n in large]
