@@ -51,7 +51,9 @@ def final_verdict(
         return "data"
     e = posterior.evidence
     if verdict == "adequate":
-        return "outside" if exceeds_model_error(e) else "absorbed" if pulls else "adequate"
+        # is more left than noise and model error allow: most records out of twice what a model may be wrong by?
+        out = np.mean([rms(s.r) > OFF * s.weight for s in explained_parts(e.fit)]) > 0.5
+        return "outside" if out else "absorbed" if pulls else "adequate"
     if verdict == "named" and e.twins[choice.groups[0][0]] is not None:
         return "absorbed"
     return verdict
@@ -65,11 +67,6 @@ def prior_pulls(fit: Fit) -> tuple[tuple[str, float, float], ...]:
     hit = (np.abs(pull) > limit) | (fit.at_bound & (np.abs(pull) > 2.0))
     order = [int(j) for j in np.argsort(-np.abs(pull)) if hit[j]]
     return tuple((fit.unknowns.names[j], fit.values[fit.unknowns.names[j]], float(pull[j])) for j in order)
-
-
-def exceeds_model_error(evidence: Evidence) -> bool:
-    """Is more left than noise and model error allow: most records out of twice what a model may be wrong by?"""
-    return bool(np.mean([rms(s.r) > OFF * s.weight for s in explained_parts(evidence.fit)]) > 0.5)
 
 
 def explained_parts(fit: Fit) -> list[Segment]:
@@ -242,19 +239,16 @@ def errors_by_test(
 
 def hidden_effects(e: Evidence) -> tuple[DetectionLimit, ...]:
     """Effects that would have to be unusually large to show, most hidden first."""
-    size, names, twins = smallest_visible(e), (*e.fit.unknowns.names,), e.twins
+    size, twins, absorbers = smallest_visible(e), e.twins, (*e.fit.unknowns.names, "model error")
     unusual = size / e.scale
     rows = [int(k) for k in np.argsort(-unusual) if unusual[k] > UNSEEN or twins[k]]
     return tuple(
-        DetectionLimit(e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or _absorber(e, k, names))
+        DetectionLimit(
+            e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or absorbers[min(e.score.absorber[k], e.p)]
+        )
         for k in rows
         if not isinstance(e.effects[k], During)
     )
-
-
-def _absorber(e: Evidence, k: int, names: Sequence[str]) -> str | None:
-    j = int(e.score.absorber[k])
-    return names[j] if j < len(names) else "model error"
 
 
 def confusion(e: Evidence, names: Sequence[str]) -> dict[str, dict[str, float]]:
