@@ -68,7 +68,6 @@ TABLE: Mapping[str, Line] = MappingProxyType(
         "law": Line(0.15, "1", "a missing film or loss follows its correlation no better than published ones scatter"),
         # what held in one test or for a while
         "switched": Line(2.0, "of the usual size", "what is switched is larger than what a model forgets"),
-        "excursion": Line(3.0, "of the slow misfit", "the largest of some hundred stretches strays so far by chance"),
         "answer": Line(0.05, "1", "share of answers that are wrong: people forget one thing in twenty"),
     }
 )

@@ -192,7 +192,7 @@ from validation.comparison.predict import (
     thermal as thermal,
 )
 from validation.comparison.uncertainty import RULE as RULE
-from validation.diagnosis.diagnose import diagnose as diagnose
+from validation.diagnosis import diagnose as diagnose
 from validation.effects.build import copy_link as copy_link, heat as heat_source
 from validation.parameters.model_form import ExponentError as ExponentError, FARTHEST as FARTHEST
 from validation.parameters.reference import LOADS as LOADS

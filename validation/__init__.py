@@ -11,7 +11,7 @@ from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
     from validation.comparison.compare import Comparison, compare
-    from validation.diagnosis.diagnose import diagnose
+    from validation.diagnosis import diagnose
     from validation.effects import Effect, Scene, catalogue, effect, kinds
     from validation.inference.result import Diagnosis
     from validation.revision.revise import Revision, add, calibrate, remove
@@ -26,7 +26,7 @@ _HOME = {
     "calibrate": "validation.revision.revise",
     "catalogue": "validation.effects",
     "compare": "validation.comparison.compare",
-    "diagnose": "validation.diagnosis.diagnose",
+    "diagnose": "validation.diagnosis",
     "effect": "validation.effects",
     "kinds": "validation.effects",
     "remove": "validation.revision.revise",

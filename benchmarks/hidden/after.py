@@ -15,7 +15,7 @@ from hidden.user import test_of
 from measured.case import Case
 from validation import Revision, add, calibrate
 from validation.inference.evidence import candidates
-from validation.planning.separability import DECISIVE
+from validation.planning.rivals import DECISIVE
 
 Answer = dict[str, Any]
 

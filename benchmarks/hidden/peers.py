@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from measured.case import Case
 from validation.comparison.linearisation import Segment
-from validation.inference.evidence import Evidence, calibrated_case, candidates, refit, scored, starts
+from validation.inference.evidence import Evidence, calibrated_case, candidates, scored
+from validation.inference.refit import refit, starts
 
 Array = NDArray[np.float64]
 SIGMA_K, LRT, AIC = 0.5, 3.84, 2.0

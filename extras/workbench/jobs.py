@@ -17,7 +17,7 @@ PRELOAD = [
     "extras.workbench.steps",
     "lumped.build.pipeline",
     "thermoscope.commands.model.revise",
-    "validation.diagnosis.diagnose",
+    "validation.diagnosis",
     "validation.revision.revise",
     "thermoscope.case_folder.error_field",
     "thermoscope.case_folder.network_run",

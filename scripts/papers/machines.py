@@ -20,7 +20,7 @@ from scripts.papers.page import Row, Section
 from thermoscope.case_folder.folder import Folder, load_case
 from thermoscope.case_folder.runs import readings
 from validation.bases.base_heat import BaseHeat, base_heat
-from validation.bases.which_base import Hypothesis, base_hypotheses
+from validation.bases.which_base import BaseDeviance, base_hypotheses
 from validation.calibration.calibrate import calibrated
 from validation.parameters.unknowns import working
 
@@ -172,7 +172,7 @@ def interval(test: str, way: str) -> tuple[float, float, float]:
 
 
 @cache
-def tried() -> list[Hypothesis]:
+def tried() -> list[BaseDeviance]:
     """Every base held against every test of M1."""
     return base_hypotheses(m1().case)
 

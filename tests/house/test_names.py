@@ -53,7 +53,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "geom/description/bases.py": "contacts, A|B",
     "geom/meshing/meshio_io.py": "keys of a file of meshes",
     "lumped/machine/part_identities.py": "contacts, A|B",
-    "validation/inference/evidence.py": "places of an effect, A|B",
+    "validation/inference/columns.py": "places of an effect, A|B",
     "viz/pages/report.py": "effects by their own name, KIND@PLACE",
     "thermoscope/commands/model/crosscheck.py": "shapes that the network names itself, PART#1",
     "thermoscope/commands/model/revise.py": "effects by their own name, KIND@PLACE",

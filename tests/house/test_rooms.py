@@ -16,7 +16,7 @@ DEEPEST = {
     "fem": 10,
     "lumped": 15,
     "measured": 10,
-    "validation": 13,
+    "validation": 10,
     "viz": 9,
     "thermoscope": 10,
     "extras": 9,

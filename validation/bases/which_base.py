@@ -27,7 +27,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class BaseDeviance:
     """A base for one test.  deviance : over the best base of this test;  declared : the sheet says so
 
     heat : what this base carries off at the test's end, by mechanism
@@ -72,7 +72,7 @@ def on_base(test: Test, base: str, bases: Mapping[str, str]) -> Test:
     return replace(test, inputs={**test.inputs, **inputs})
 
 
-def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_progress) -> list[Hypothesis]:
+def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_progress) -> list[BaseDeviance]:
     """Every base for every test (or those named) that is not held out, best first within a test."""
     bases, tests = switches(case.model.network), [t for t in case.tests if t.role != "hold-out"]
     if not bases:
@@ -88,7 +88,7 @@ def which_base(case: Case, names: Sequence[str] = (), progress: Progress = no_pr
 
 def _of_test(
     case: Case, tests: Sequence[Test], test: Test, bases: Mapping[str, str], declared_fit: Fit, progress: Progress
-) -> list[Hypothesis]:
+) -> list[BaseDeviance]:
     sheet_base, fits = declared_base(test, bases), {}
     for base in (NONE, *bases):
         progress(f"{test.name} on {base}")
@@ -97,7 +97,7 @@ def _of_test(
     cost = {base: deviance(fit) for base, fit in fits.items()}
     least = min(cost.values())
     rows = [
-        Hypothesis(
+        BaseDeviance(
             test.name,
             base,
             base == sheet_base,
@@ -121,17 +121,17 @@ def deviance(fit: Fit) -> float:
     return 2.0 * fit.objective
 
 
-def base_hypotheses(case: Case, progress: Progress = no_progress) -> list[Hypothesis]:
+def base_hypotheses(case: Case, progress: Progress = no_progress) -> list[BaseDeviance]:
     """Every base for every test; none where the network has no bases."""
     return which_base(case, progress=progress) if switches(case.model.network) else []
 
 
-def wrong_bases(hypotheses: Sequence[Hypothesis]) -> list[str]:
+def wrong_bases(hypotheses: Sequence[BaseDeviance]) -> list[str]:
     """In words, every test whose readings exclude the base that its sheet says."""
     return [_words(h, hypotheses) for h in hypotheses if h.declared and h.excluded]
 
 
-def _words(sheet: Hypothesis, hypotheses: Sequence[Hypothesis]) -> str:
+def _words(sheet: BaseDeviance, hypotheses: Sequence[BaseDeviance]) -> str:
     possible = [h for h in hypotheses if h.test == sheet.test and not h.excluded]
     better = " or ".join(h.base for h in possible)
     return (

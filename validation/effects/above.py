@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,10 +36,7 @@ class Above(Effect):
     """g = g0 (1 + a r(u)) of one declared loss or film, r from 0 to 1 around a level of an input u.
 
     Place: "LOSS OR LINK|INPUT>LEVEL", the level in the input's unit.
-    share : prior probability of this one among all such
     """
-
-    share: float = field(default=1.0, compare=False)
 
     title = "a declared law is off at high values of an input"
     unit = "1"

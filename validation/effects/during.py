@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Parameter, Source
@@ -35,14 +35,10 @@ SAME = (
 
 @dataclass(frozen=True)
 class During(Effect):
-    """An effect while a condition holds: "kind@place in CONDITION", that is a test, an event or an input of 0 to 1.
-
-    share : prior probability of this one among all conditions, when it held included
-    """
+    """An effect while a condition holds: "kind@place in CONDITION", that is a test, an event or an input of 0 to 1."""
 
     base: Effect
     condition: str
-    share: float = field(default=1.0, compare=False)
 
     def __post_init__(self) -> None:
         for name in SAME:  # of this one, as they are of the other
@@ -52,8 +48,8 @@ class During(Effect):
         object.__setattr__(self, "mapping", mapping)
 
     @classmethod
-    def of(cls, base: Effect, condition: str, share: float = 1.0) -> During:
-        return cls(f"{base.place}{IN}{condition}", base, condition, share)
+    def of(cls, base: Effect, condition: str) -> During:
+        return cls(f"{base.place}{IN}{condition}", base, condition)
 
     @property
     def event(self) -> Event | None:

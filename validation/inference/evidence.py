@@ -1,4 +1,13 @@
-"""What a diagnosis rests on: the calibrated model, its model error, the efficient score of every candidate effect."""
+"""The log evidence of what may be missing, by tangents about a calibrated state, under one noise and model error.
+
+Under a linear model with Gaussian noise and model error the log Bayes factor of effects A against nothing is closed:
+with u, V the efficient score and its covariance, and amplitudes a ~ half-normal(s) where physics has a sign,
+
+    log BF = 1/2 u'(V + S^-1)^-1 u - 1/2 log det(1 + V S) + log P(sign a | readings) / P(sign a),  S = diag(s^2)
+
+averaged over a few s, since nobody knows the usual size well. What carries weight is refitted (refit.py).
+Source: Kass and Raftery 1995; Kaipio and Somersalo 2005 for the model error in V.
+"""
 
 from __future__ import annotations
 
@@ -6,101 +15,130 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import permutations
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
 from geom.errors import InputError, NoSolution
 from lumped.model.multipliers import parameter_values, values_of
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
-from validation.calibration.calibrate import (
-    CachedSegments,
-    Fit,
-    InnerProduct,
-    calibrated,
-    minimise,
-    no_progress,
-    with_model_error,
+from measured.doubt import PRIOR, SIZES, USUAL, nats_worth
+from validation.calibration.calibrate import CachedSegments, Fit, calibrated, minimise, no_progress, with_model_error
+from validation.comparison.linearisation import Segment, segments
+from validation.effects.base import Effect
+from validation.effects.registry import catalogue, extended
+from validation.inference.columns import Linearised, effect_columns, exchange_columns, finite_change, split_columns
+from validation.inference.hypotheses import NOTHING, Cause, Hypothesis, Together, Weighed, catalogue_priors, weights
+from validation.inference.score import (
+    Gram,
+    Score,
+    fit_gram,
+    fit_prior,
+    fit_score,
+    log_sign_gain,
+    one_size,
+    score,
+    total,
 )
-from validation.comparison.linearisation import Segment, reach, segments
-from validation.effects import Effect, catalogue, extended
-from validation.inference.score import Gram, Score, gram, grams, score, total
-from validation.noise import Noise, fit_noise
+from validation.noise import START, Noise, fit_noise
 from validation.parameters.reference import effect_sizes
 from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, widened, working
+from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+Jump = tuple[float, Sequence[Array]]  # a large amplitude, and what it does to every segment (K)
+NO_JUMPS: Mapping[str, Jump] = MappingProxyType({})
 TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an effect
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
-FINE = 0.02  # nats at which what is told stands: a size is then within a quarter of its deviation of its optimum
-STRAIGHT = 0.9  # of the gain that tangents predict: a refit that got it needs none of its own
-BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
-HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
-LEAN = 0.5  # nats that a tangent gains at a large amplitude before it pays for its own size
-SECOND = 6  # steps of a refit under tangents of its own: with three, some stopped tens of nats short
-ROUNDS = (
-    12  # steps of a calibration that goes on under the model error: what nothing gains too little, all gain too much
-)
-FURTHER = 6  # of one that goes on under another noise
+ROUNDS = 12  # steps of a calibration gone on under the model error: what nothing gains too little, all gain too much
+FURTHER = 6  # steps of one gone on under another noise
+LEADING = 60  # effects whose pairs are compared: beyond them neither of two carries weight
+CONTENDERS = 8  # effects whose own noise is looked at: one of them leads under any
+ABSENT = 0.02  # of its usual size: an effect this small is not there
+POWER = 0.842  # normal quantile of 80 %
+HALVINGS = 60  # of the interval up to FARTHEST: past the last bit of a number
+FARTHEST = 1e4  # prior deviations: beyond them an effect is never seen
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """The score of candidates at one calibrated state; calibrated parameters and model error are projected out.
+    """The score of K causes at one calibrated state; calibrated parameters and model error are projected out.
 
-    network : the model with all candidates at zero;  parts : segments with nuisance, then candidate columns
-    grams : per test, of [nuisances and model error, candidates, residual] under the fit's noise
-    jumps : effect -> what it does to every segment (K) at a large amplitude, where a tangent says too little
-    large : effect -> that amplitude
+    network : the model with all causes at zero;  run : its response to them about the fit
+    jumps : name of a cause -> its large amplitude and what that does, where a tangent says too little
+    grams : per test, of [nuisances and model error, causes, residual] under the fit's noise
     whole : (K,) evidence (nats) of a finite amplitude where a tangent says too little, -inf elsewhere
     """
 
     tests: tuple[Test, ...]
     fit: Fit
     network: Network
-    effects: tuple[Effect, ...]
-    parameters: tuple[Parameter, ...]
-    parts: tuple[Segment, ...]
+    causes: tuple[Cause, ...]
+    run: Linearised
+    jumps: Mapping[str, Jump]
     grams: Mapping[str, Gram]
     score: Score
-    jumps: Mapping[int, Sequence[Array]]
-    large: Mapping[int, float]
     whole: Array
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(e.name for e in self.effects)
+        return tuple(c.name for c in self.causes)
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        return tuple(c.effect for c in self.causes)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        return tuple(c.parameter for c in self.causes)
+
+    @property
+    def scale(self) -> Array:
+        """(K,) usual size of each cause's amplitude."""
+        return np.array([c.parameter.prior_sd for c in self.causes])
+
+    @property
+    def prior(self) -> Array:
+        """(K,) prior probability of each cause alone."""
+        return np.exp([c.log_prior for c in self.causes])
 
     @property
     def p(self) -> int:
         """Number of calibrated parameters."""
         return len(self.fit.unknowns.parameters)
 
+    @property
+    def parts(self) -> tuple[Segment, ...]:
+        """Segments with the columns of calibrated parameters, then of all causes."""
+        return self.run.segments(self.causes)
+
     @cached_property
     def twins(self) -> list[str | None]:
-        """For each effect the free parameter that does the same, if there is one."""
+        """For each cause the free parameter that does the same, if there is one."""
         G, p = total(self.grams), self.p
         scale = np.sqrt(np.outer(np.diag(G.JJ)[:p], np.diag(G.ZZ)))
         alike = np.abs(G.JZ[:p]) / np.where(scale > 0, scale, np.inf)
         best = np.argmax(alike, axis=0)
         return [self.fit.unknowns.names[j] if alike[j, k] > TWIN else None for k, j in enumerate(best)]
 
-    @property
-    def reach(self) -> Array:
-        """(K,) largest change of any reading (K) by one unit of each effect."""
-        return reach(self.parts)[self.p :]
+    def hypothesis(self, members: Sequence[int], log_prior: float = 0.0) -> Hypothesis:
+        """That some causes are there together, or nothing where they are none.  log_prior : of a set of several"""
+        if len(members) == 1:
+            return self.causes[members[0]]
+        return Together(tuple(self.causes[k] for k in members), log_prior) if members else NOTHING
 
-    def parts_of(self, few: Sequence[int]) -> tuple[Segment, ...]:
-        """The segments with nuisance columns and those of some effects."""
-        columns = [*range(self.p), *(self.p + k for k in few)]
-        return tuple(replace(s, J=s.J[:, columns]) for s in self.parts)
+    def name(self, h: Weighed) -> str:
+        """ "nothing", "heat@place", or the causes' names with " + " between them."""
+        return f"heat@{h.heat}" if h.heat else self.hypothesis(h.members).name
 
 
 def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, ...]:
-    """The catalogue on this case, less what the model has already."""
+    """The effects of the catalogue that can sit on this case and are not in its model.  kinds : only these"""
     inside = {e.name for e in case.model.effects}
     effects = tuple(e for e in catalogue(scene_of(case), kinds) if e.name not in inside)
     if not effects:
@@ -109,10 +147,8 @@ def candidates(case: Case, kinds: Sequence[str] | None = None) -> tuple[Effect, 
     return effects
 
 
-def calibrated_case(
-    case: Case, progress: Callable[[str], None] = no_progress, start: Mapping[str, float] | None = None
-) -> Fit:
-    """The model calibrated on every test but the held-out ones, model error in account."""
+def calibrated_case(case: Case, progress: Progress = no_progress, start: Mapping[str, float] | None = None) -> Fit:
+    """The model calibrated on every test but the held-out ones, model error in account.  start : values to begin at"""
     network, unknowns = working(case)
     values, tests = {**case.model.values, **(start or {})}, case.usable
     fixed = parameter_values(network, values)
@@ -120,167 +156,150 @@ def calibrated_case(
     return with_model_error(plain, tests, fixed, case.doubt, ROUNDS)
 
 
-def scored(case: Case, effects: Sequence[Effect], fit: Fit) -> Evidence:
-    """One run of every test with all candidates' tangents at a calibrated state."""
-    network, names = extended(fit.network, effects), {e.name for e in effects}
-    sizes = effect_sizes(network, names, case.usable)
-    network = at_level(network, names, replace(case_reference(case), sizes=sizes))
-    by_name = {p.name: p for p in network.parameters}
-    parameters = tuple(by_name[e.name] for e in effects)
-    tests, p = case.usable, len(fit.unknowns.parameters)
-    values = {**parameter_values(network, case.model.values), **fit.values}
-    parts = tuple(segments(network, tests, values, (*fit.unknowns.parameters, *parameters)))
-    exchange(parts, effects, p)
-    nuisance_parts = [replace(s, J=s.J[:, :p]) for s in parts]
-    fit = minimise(
-        fit.network,
-        tests,
-        fit.unknowns,
-        fit.theta,
-        fit.noise,
-        values_of(fit.network, fit.values),
-        0,
-        CachedSegments(nuisance_parts, nearby=False),
-        error=fit.error,
+def continued(fit: Fit, tests: Sequence[Test], noise: Noise, steps: int, cache: CachedSegments) -> Fit:
+    """A fit that goes on under a noise, with its own model error and all that is not free where it was."""
+    fixed = values_of(fit.network, fit.values)
+    return minimise(
+        fit.network, tests, fit.unknowns, fit.theta, noise, fixed, steps, cache, worth=ENOUGH, error=fit.error
     )
-    evidence = weighed(tests, fit, network, tuple(effects), parameters, parts, {}, {})
-    there = {}
-    for k, a in likely(evidence):
+
+
+def scored(case: Case, effects: Sequence[Effect], fit: Fit, priors: Mapping[str, float] | None = None) -> Evidence:
+    """The evidence of some effects about a calibrated state: one run of every test with the tangents of all.
+
+    Parameters: `priors` log prior of each effect by name, by default those of the catalogue.
+    """
+    priors = catalogue_priors(effects) if priors is None else priors
+    network, names = extended(fit.network, effects), [e.name for e in effects]
+    sizes = effect_sizes(network, set(names), case.usable)
+    network = at_level(network, names, replace(case_reference(case), sizes=sizes))
+    by_name = {q.name: q for q in network.parameters}
+    causes = tuple(Cause(e, by_name[e.name], priors[e.name]) for e in effects)
+    tests, values = case.usable, {**parameter_values(network, case.model.values), **fit.values}
+    free = (*fit.unknowns.parameters, *(c.parameter for c in causes))
+    run = split_columns(segments(network, tests, values, free), len(fit.unknowns.parameters), names)
+    columns = exchange_columns(run.parts, effects, [run.tangents[n] for n in names])
+    fit = continued(fit, tests, fit.noise, 0, CachedSegments(run.parts, nearby=False))
+    run = Linearised(fit.parts, dict(zip(names, columns, strict=True)))
+    # every large amplitude is run, whatever its tangent says: a joint at a fifth may well have none
+    far, changes = [(k, a) for k, e in enumerate(effects) for a in e.large], {}
+    for k, a in far:
         with suppress(NoSolution):  # so large it cannot be: the machine would run away
-            there[k, a] = jump(evidence, k, {**values, effects[k].name: a})
-    worth = dict(zip(there, finite(fit, parts, there), strict=True))
-    best = {k: max((a for i, a in there if i == k), key=lambda a, k=k: worth[k, a]) for k, _ in there}  # type: ignore[misc]
-    jumps = {k: there[k, a] for k, a in best.items()}
-    return weighed(tests, fit, network, tuple(effects), parameters, parts, jumps, best)
+            changes[k, a] = finite_change(network, tests, run.parts, effects[k], {**values, names[k]: a})
+    worth = dict(zip(changes, finite_evidence(fit, run, list(changes.values())), strict=True))
+    best = {k: max((a for i, a in changes if i == k), key=lambda a, k=k: worth[k, a]) for k, _ in changes}  # type: ignore[misc]
+    return assembled(tests, fit, network, causes, run, {names[k]: (a, changes[k, a]) for k, a in best.items()})
 
 
-def likely(evidence: Evidence) -> list[tuple[int, float]]:
-    """Effects and large amplitudes that the readings lean to, by their tangents, and those of clocks: others need no
-    run so large."""
-    far = [(k, a) for k, e in enumerate(evidence.effects) for a in e.large]
-    return [(k, a) for k, a in far if a * evidence.score.u[k] > LEAN or evidence.effects[k].fault]
+def finite_evidence(fit: Fit, run: Linearised, changes: Sequence[Sequence[Array]]) -> Array:
+    """Evidence (nats) that some effects are there at a large amplitude: a joint at a fifth of its conductance bends
+    the machine more than its tangent says.  changes : of each, (n, 1) K for every segment"""
+    if not changes:
+        return np.zeros(0)
+    parts = [replace(s, J=np.column_stack([s.J, *(c[i] for c in changes)])) for i, s in enumerate(run.parts)]
+    s = fit_score(fit, parts)
+    return np.asarray(s.u - 0.5 * np.diag(s.V))
 
 
-def jump(evidence: Evidence, k: int, values: Mapping[str, float]) -> list[Array]:
-    """What an effect does to every segment (K) at some values; a clock is of its own test alone."""
-    place = evidence.effects[k].place
-    acted = [t for t in evidence.tests if t.name == place] or evidence.tests
-    new = {(s.test, s.channel): s.r for s in segments(evidence.network, acted, values)}
-    return [s.r - new.get((s.test, s.channel), s.r) for s in evidence.parts]
-
-
-def weighed(
+def assembled(
     tests: tuple[Test, ...],
     fit: Fit,
     network: Network,
-    effects: tuple[Effect, ...],
-    parameters: tuple[Parameter, ...],
-    parts: tuple[Segment, ...],
-    jumps: Mapping[int, Sequence[Array]],
-    large: Mapping[int, float],
+    causes: Sequence[Cause],
+    run: Linearised,
+    jumps: Mapping[str, Jump] = NO_JUMPS,
 ) -> Evidence:
-    """The score under the fit's noise and model error."""
-    sign = np.array([q.sign for q in parameters], int)
-    grams = projected(fit, parts)
-    theta, sd = extended_prior(fit)
-    scores = score(total(grams), theta, sd, sign)
-    whole = np.where([e.whole for e in effects], scores.u - 0.5 * np.diag(scores.V), -np.inf)
-    whole[list(jumps)] = finite(fit, parts, jumps)
-    return Evidence(tests, fit, network, effects, parameters, parts, grams, scores, jumps, large, whole)
+    """The evidence under the fit's noise and model error."""
+    grams = fit_gram(fit, run.segments(causes))
+    scores = score(total(grams), *fit_prior(fit), np.array([c.parameter.sign for c in causes], int))
+    whole = np.where([c.effect.whole for c in causes], scores.u - 0.5 * np.diag(scores.V), -np.inf)
+    jumps = {c.name: jumps[c.name] for c in causes if c.name in jumps}
+    index = {c.name: k for k, c in enumerate(causes)}
+    whole[[index[n] for n in jumps]] = finite_evidence(fit, run, [columns for _, columns in jumps.values()])
+    return Evidence(tests, fit, network, tuple(causes), run, jumps, grams, scores, whole)
 
 
-def replaced(evidence: Evidence, by_last: Sequence[int]) -> Evidence:
-    """The evidence whose last effects take the places of some others."""
-    e, p, n = evidence, evidence.p, len(evidence.effects) - len(by_last)
-    order = list(range(n))
-    for last, k in enumerate(by_last):
-        order[k] = n + last
-    parts = tuple(replace(s, J=s.J[:, [*range(p), *(p + k for k in order)]]) for s in e.parts)
-    keep = {k: e.jumps[k] for k in e.jumps if k not in by_last}
-    large = {k: e.large[k] for k in e.large if k not in by_last}
-    return weighed(
-        e.tests,
-        e.fit,
-        e.network,
-        tuple(e.effects[k] for k in order),
-        tuple(e.parameters[k] for k in order),
-        parts,
-        keep,
-        large,
-    )
+def joined(
+    evidence: Evidence, effects: Mapping[Effect, float], values: Mapping[str, float], places: Sequence[int] = ()
+) -> Evidence:
+    """The evidence with further effects.
 
-
-def projected(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
-    """Gram matrices whose nuisances are the calibrated parameters and the model error."""
-    p, error = len(fit.unknowns.parameters), fit.error
-    if error is None:
-        return gram(parts, fit.noise, p)
-    return grams([(s, (s.J[:, :p], error.of(s), s.J[:, p:])) for s in parts], fit.noise, p + error.size)
-
-
-def extended_prior(fit: Fit) -> tuple[Array, Array]:
-    """Coordinates and prior deviations of the calibrated parameters, then of the model error."""
-    d = fit.error.size if fit.error else 0
-    return np.concatenate([fit.theta, np.zeros(d)]), np.concatenate([fit.unknowns.sd, np.ones(d)])
-
-
-def finite(fit: Fit, parts: Sequence[Segment], jumps: Mapping[Any, Sequence[Array]]) -> Array:
-    """Evidence (nats) that some effects are there at a large amplitude: a joint at a fifth of its conductance bends
-    the machine more than its tangent foretells."""
-    if not jumps:
-        return np.zeros(0)
-    p = len(fit.unknowns.parameters)
-    blocks = [replace(s, J=np.column_stack([s.J[:, :p], *(c[i] for c in jumps.values())])) for i, s in enumerate(parts)]
-    theta, sd = extended_prior(fit)
-    scores = score(total(projected(fit, blocks)), theta, sd, np.zeros(len(jumps), int))
-    return np.asarray(scores.u - 0.5 * np.diag(scores.V))
-
-
-def exchange(parts: Sequence[Segment], effects: Sequence[Effect], p: int) -> None:
-    """Set the columns of exchanged plugs to what was read (y_1 - y_2) instead of what is predicted (T_2 - T_1).
-
-    A model calibrated to exchanged readings has both places at nearly one temperature, so that exchanging its
-    predictions would change little; the readings themselves can be exchanged exactly.  p : columns before the effects'
+    Parameters: `effects` each with its log prior; `values` of what is not calibrated; `places` indices of the causes
+    that they replace, one after the other; behind all others where there is none.
     """
-    other = {(a, k): b for k, e in enumerate(effects) if e.whole for a, b in permutations(e.place.split("|"), 2)}
-    segment_of = {(s.test, s.channel): s for s in parts}
-    for (a, k), b in other.items():
-        for s in (s for s in parts if s.channel == a and (s.test, b) in segment_of):
-            t = segment_of[s.test, b]
-            s.J[:, p + k] = s.r - np.interp(s.time, t.time, t.r) - s.J[:, p + k]
+    if not effects:
+        return evidence
+    e, new = evidence, list(effects)
+    network = extended(e.network, new)
+    added = network.parameters[-len(new) :]
+    causes = [*e.causes, *(Cause(x, q, effects[x]) for x, q in zip(new, added, strict=True))]
+    columns = split_columns(effect_columns(e.fit, e.tests, new, values), e.p, [x.name for x in new])
+    run = Linearised(e.run.parts, {**e.run.tangents, **columns.tangents})
+    if places:
+        order = {k: n for n, k in enumerate(places, len(e.causes))}
+        causes = [causes[order.get(k, k)] for k in range(len(e.causes))]
+    return assembled(e.tests, e.fit, network, causes, run, e.jumps)
 
 
-def mended_by_exchange(evidence: Evidence) -> dict[int, float]:
-    """All-or-nothing effects that take half or more off the squares they touch, of the model before any calibration,
-    with what they take; a model calibrated to exchanged readings hides that they were."""
-    e, few = evidence, [k for k, x in enumerate(evidence.effects) if x.whole]
-    try:
-        parts = segments(
-            e.network, e.tests, {q.name: q.value for q in e.network.parameters}, [e.parameters[k] for k in few]
-        )
-    except NoSolution:  # the declared values alone run away
-        return {}
-    exchange(parts, [e.effects[k] for k in few], 0)
-    out = {}
-    for i, k in enumerate(few):
-        pairs = [(s.r / s.weight, s.J[:, i] / s.weight) for s in parts if np.any(s.J[:, i])]
-        before, after = sum(float(r @ r) for r, _ in pairs), sum(float((r - J) @ (r - J)) for r, J in pairs)
-        if after < 0.5 * before:
-            out[k] = before - after
-    return out
+def recalibrated(evidence: Evidence, noise: Noise) -> Evidence:
+    """The evidence under another noise, the calibration gone on under it."""
+    return moved_evidence(evidence, continued_fit(evidence.fit, evidence.tests, noise))
 
 
-def log_evidence(evidence: Evidence) -> float:
-    """Of the readings under the fit's noise (nats), calibration and model error integrated out by tangents.
+def continued_fit(fit: Fit, tests: Sequence[Test], noise: Noise) -> Fit:
+    """A calibration that goes on under another noise, with the tangents of where it stands."""
+    return continued(fit, tests, noise, FURTHER, CachedSegments(fit.parts, nearby=True))
 
-    With the normalisation of the noise, so that a large noise pays for what it leaves room for.
+
+def converged(evidence: Evidence) -> Evidence:
+    """The evidence with nothing fitted to its end under its noise, by tangents of its own there.
+
+    What nothing falls short of its end, every effect gains.
     """
-    return without_effects(evidence.fit, evidence.parts, total(evidence.grams))
+    cache = CachedSegments(evidence.fit.parts, nearby=False, stale=True)
+    return moved_evidence(evidence, continued(evidence.fit, evidence.tests, evidence.fit.noise, ROUNDS, cache))
 
 
-def without_effects(fit: Fit, parts: Sequence[Segment], G: Gram) -> float:
-    """The same from the Gram matrix of the segments; what it holds of effects is left out."""
-    theta, sd = extended_prior(fit)
+def moved_evidence(evidence: Evidence, fit: Fit) -> Evidence:
+    """The evidence about another calibration; causes keep the tangents they had."""
+    e = evidence
+    return assembled(e.tests, fit, e.network, e.causes, replace(e.run, parts=fit.parts), e.jumps)
+
+
+def quiet(evidence: Evidence) -> Evidence:
+    """The evidence under a noise no larger than is usual, calibrated under it; the same where it is no larger.
+
+    What held in one test or for a while must not pass for noise of them all.
+    """
+    noise = usual_noise(evidence.fit.noise)
+    return evidence if noise == evidence.fit.noise else recalibrated(evidence, noise)
+
+
+def quiet_fit(fit: Fit, tests: Sequence[Test]) -> Fit:
+    """A calibration under a noise no larger than is usual; the same where it is no larger."""
+    noise = usual_noise(fit.noise)
+    return fit if noise == fit.noise else continued_fit(fit, tests, noise)
+
+
+def usual_noise(noise: Noise) -> Noise:
+    """Every part of a noise no larger than a good model leaves, in units of the error usual for each record."""
+    cap = {"white": START.white, "fast": USUAL["fast"], "slow": START.slow}
+    small = {n: replace(x, **{k: min(getattr(x, k), most) for k, most in cap.items()}) for n, x in noise.levels.items()}
+    return replace(noise, levels=small)
+
+
+def log_evidence(fit: Fit, noise: Noise | None = None) -> float:
+    """Log evidence (nats) of the readings under a noise, calibration and model error integrated out by tangents.
+
+    Parameters: `noise` by default that of the fit. It is normalised: a large noise pays for what it leaves room for.
+    """
+    other = fit if noise is None else replace(fit, noise=noise)
+    return calibration_evidence(other, fit.parts, total(fit_gram(other, fit.parts)))
+
+
+def calibration_evidence(fit: Fit, parts: Sequence[Segment], G: Gram) -> float:
+    """The same from the Gram matrix of some segments; what it holds of effects is left out."""
+    theta, sd = fit_prior(fit)
     weight = sd**-2.0
     g = G.Jr - weight * theta
     H = G.JJ + np.diag(weight)
@@ -289,229 +308,182 @@ def without_effects(fit: Fit, parts: Sequence[Segment], G: Gram) -> float:
     return float(-0.5 * (left + wide) + fit.noise.log_prior(parts))
 
 
-def evidence_of(fit: Fit, noise: Noise) -> float:
-    """Log evidence (nats) of a fit under a noise, all that was fitted integrated out where it stands."""
-    other = replace(fit, noise=noise)
-    return without_effects(other, fit.parts, total(projected(other, fit.parts)))
+def noise_evidence(evidence: Evidence, members: Sequence[int], noise: Noise) -> float:
+    """Log evidence (nats) of some causes of usual size under another noise, by tangents."""
+    e, h = evidence, evidence.hypothesis(members)
+    fit, parts = replace(e.fit, noise=noise), e.run.segments([h])
+    G = total(fit_gram(fit, parts))
+    s = score(G, *fit_prior(fit), h.sign)
+    H = s.V + np.diag(h.scale**-2.0)
+    log_det = np.linalg.slogdet(np.diag(h.scale) @ H @ np.diag(h.scale))[1]
+    return calibration_evidence(fit, parts, G) + float(0.5 * s.u @ np.linalg.solve(H, s.u) - 0.5 * log_det)
 
 
-def with_noise(evidence: Evidence, members: Sequence[int], noise: Noise) -> float:
-    """Log evidence of some effects of usual size under another noise, by tangents."""
-    e = evidence
-    fit, parts = replace(e.fit, noise=noise), e.parts_of(members)
-    theta, sd = extended_prior(fit)
-    G = total(projected(fit, parts))
-    scores = score(G, theta, sd, e.score.sign[list(members)])
-    usual = np.array([e.parameters[k].prior_sd for k in members])
-    H = scores.V + np.diag(usual**-2.0)
-    gain = (
-        0.5 * scores.u @ np.linalg.solve(H, scores.u) - 0.5 * np.linalg.slogdet(np.diag(usual) @ H @ np.diag(usual))[1]
-    )
-    return without_effects(fit, parts, G) + float(gain)
-
-
-def under(evidence: Evidence, noise: Noise) -> Evidence:
-    """The evidence under another noise, the calibration gone on under it."""
-    e = evidence
-    return _calibrated_to(e, continuation(e.fit, e.tests, noise, e.parts_of([])))
-
-
-def converged(evidence: Evidence) -> Evidence:
-    """The evidence with nothing fitted to its end under its noise, by tangents of its own there.
-
-    What nothing falls short of its end, every effect gains.
-    """
-    e, fit = evidence, evidence.fit
-    new = minimise(
-        fit.network,
-        e.tests,
-        fit.unknowns,
-        fit.theta,
-        fit.noise,
-        values_of(fit.network, fit.values),
-        ROUNDS,
-        CachedSegments(fit.parts, nearby=False, stale=True),
-        worth=ENOUGH,
-        error=fit.error,
-    )
-    return _calibrated_to(e, new)
-
-
-def _calibrated_to(evidence: Evidence, fit: Fit) -> Evidence:
-    """The evidence about another calibration; candidates keep the tangents they had."""
-    e, segment_of = evidence, {(s.test, s.channel): s for s in fit.parts}
-    here = [(s, segment_of[s.test, s.channel]) for s in e.parts]
-    parts = tuple(replace(s, r=n.r, J=np.column_stack([n.J, s.J[:, e.p :]])) for s, n in here)
-    return weighed(e.tests, fit, e.network, e.effects, e.parameters, parts, e.jumps, e.large)
-
-
-def continuation(fit: Fit, tests: Sequence[Test], noise: Noise, parts: Sequence[Segment]) -> Fit:
-    """A calibration that goes on under another noise, with the tangents of where it stands."""
-    return minimise(
-        fit.network,
-        tests,
-        fit.unknowns,
-        fit.theta,
-        noise,
-        values_of(fit.network, fit.values),
-        FURTHER,
-        CachedSegments(parts, nearby=True),
-        worth=ENOUGH,
-        error=fit.error,
-    )
-
-
-def noise_beside(evidence: Evidence, members: Sequence[int]) -> Noise:
-    """The noise of what calibration, model error and some effects leave, by tangents."""
-    e, p = evidence, evidence.p
-    G, (theta, sd) = total(e.grams), extended_prior(e.fit)
-    columns, q = list(members), theta.size
-    A = np.block([[G.JJ, G.JZ[:, columns]], [G.JZ[:, columns].T, G.ZZ[np.ix_(columns, columns)]]])
-    wide = np.array([widened(e.parameters[k]).prior_sd for k in columns])
+def leftover_noise(evidence: Evidence, members: Sequence[int]) -> Noise:
+    """The noise of what calibration, model error and some causes leave, by tangents."""
+    e, (theta, sd) = evidence, fit_prior(evidence.fit)
+    G, q = total(e.grams).subset(members), theta.size
+    wide = np.array([widened(e.causes[k].parameter).prior_sd for k in members])
     weight = np.concatenate([sd, wide]) ** -2.0
-    b = np.concatenate([G.Jr, G.Zr[columns]]) - weight * np.concatenate([theta, np.zeros(len(columns))])
+    A = np.block([[G.JJ, G.JZ], [G.JZ.T, G.ZZ]])
+    b = np.concatenate([G.Jr, G.Zr]) - weight * np.concatenate([theta, np.zeros(len(members))])
     x = np.linalg.solve(A + np.diag(weight), b)
-    error, left = e.fit.error, []
-    for s in e.parts:
-        response = s.J[:, :p] @ x[:p] + s.J[:, [p + k for k in columns]] @ x[q:]
-        left.append(replace(s, r=s.r - response - (error.of(s) @ x[p:q] if error else 0.0)))
-    return fit_noise(left)
+    step, error = np.concatenate([x[: e.p], x[q:]]), e.fit.error
+    parts = e.run.segments([e.hypothesis(members)])
+    return fit_noise([replace(s, r=s.r - s.J @ step - (error.of(s) @ x[e.p : q] if error else 0.0)) for s in parts])
 
 
-def refit(
-    evidence: Evidence,
-    members: Sequence[int],
-    theta: Array,
-    tangents: Sequence[Segment] = (),
-    objective: float | None = None,
-) -> Fit:
-    """All free parameters and the amplitudes of some candidates, fitted anew; those that are whole are held at one.
+def sharpened(evidence: Evidence, also: Sequence[int] = (), rounds: int = 2) -> Evidence:
+    """The evidence under the noise that is left beside the leading cause: what is missing is no noise.
 
-    tangents : of all these where the fit begins, by default those without the candidates
-    objective : there, by default that without the candidates
+    also : causes that may lead, most probable first, although they seem small beside the noise of nothing
     """
-    network, unknowns, fixed = with_members(evidence, members)
-    free, fit = free_of(evidence, members), evidence.fit
-    before = fit.objective if objective is None else objective
-    rough = minimise(
-        network,
-        evidence.tests,
-        unknowns,
-        theta,
-        fit.noise,
-        fixed,
-        8,
-        CachedSegments(tangents or evidence.parts_of(free)),
-        worth=ENOUGH,
-        error=fit.error,
-    )
-    far = any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
-    straight = rough.gain_ratio > STRAIGHT and before - rough.objective < BENDS
-    if straight or (rough.objective > fit.objective + HOPELESS and not far):
-        return rough
-    return minimise(
-        network,
-        evidence.tests,
-        unknowns,
-        rough.theta,
-        fit.noise,
-        fixed,
-        SECOND,
-        draft=True,
-        worth=ENOUGH,
-        error=fit.error,
-    )
+    for _ in range(rounds):
+        noise = leader_noise(evidence, also)
+        if noise is None:
+            break
+        evidence = recalibrated(evidence, noise)
+    return evidence
 
 
-def tangents_beside(evidence: Evidence, one: int, alone: Fit, others: Sequence[int]) -> dict[int, list[Array]]:
-    """What each of some further effects does to every segment (K per unit) where one effect was fitted alone."""
-    e, free = evidence, [k for k in others if not evidence.effects[k].whole]
-    whole = [one, *free]
-    network = extended(e.fit.network, [e.effects[k] for k in whole])
-    values = values_of(network, {**e.fit.values, **alone.unknowns.values(alone.theta), **fixed_multipliers(e, [one])})
-    parts = segments(network, e.tests, values, [e.parameters[k] for k in free])
-    return {k: [s.J[:, i] for s in parts] for i, k in enumerate(free)}
+def leader_noise(evidence: Evidence, also: Sequence[int] = ()) -> Noise | None:
+    """The noise left beside the cause that, with its own noise, has most evidence; None where nothing has more."""
+    e, ones = evidence, singles(evidence)
+    leading = [k for i in np.argsort(-weights(ones), kind="stable") for k in ones[i].members if not e.effects[k].whole]
+    few = [ones[1 + k] for k in dict.fromkeys([*leading[:CONTENDERS], *also[:CONTENDERS]])]
+
+    def leftover_evidence(h: Weighed) -> tuple[float, Noise]:
+        noise = leftover_noise(e, h.members)
+        return noise_evidence(e, h.members, noise) + h.log_prior, noise
+
+    gain, noise = max(side_by_side(leftover_evidence, few), key=lambda x: x[0], default=(-np.inf, None))
+    return noise if gain > log_evidence(e.fit) + ones[0].log_prior else None
 
 
-def refit_beside(
-    evidence: Evidence, members: Sequence[int], one: int, alone: Fit, columns: Mapping[int, Sequence[Array]]
-) -> Fit:
-    """Two candidates fitted from where one of them was fitted alone, with its tangents and those of the other there."""
-    free, p = free_of(evidence, members), evidence.p
-    theta = np.concatenate([alone.theta[:p], [alone.theta[p] if k == one else 0.0 for k in free]])
-    tangents = [
-        replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else columns[k][i] for k in free)]))
-        for i, s in enumerate(alone.parts)
-    ]
-    return refit(evidence, members, theta, tangents, alone.objective)
+def singles(evidence: Evidence) -> list[Weighed]:
+    """Nothing, and each cause by itself."""
+    bayes = single_evidence(evidence)
+    one = [Weighed((k,), "", c.log_prior, float(bayes[k])) for k, c in enumerate(evidence.causes)]
+    return [Weighed(log_prior=NOTHING.log_prior), *one]
 
 
-def refit_onwards(evidence: Evidence, members: Sequence[int], before: Fit, finely: bool = False) -> Fit:
-    """A refit that goes on with what it ran last, under another noise; where its effects have new ends, nearby.
+def single_evidence(evidence: Evidence) -> Array:
+    """(K,) log Bayes factor of each cause against nothing; of a joint or a clock also at a large amplitude, of plugs
+    exchanged."""
+    tangent = evidence.score.log_bayes(evidence.scale)
+    both = np.logaddexp(tangent, evidence.whole) - np.where(np.isfinite(evidence.whole), np.log(2.0), 0.0)
+    return np.asarray(np.where([e.whole for e in evidence.effects], evidence.whole, both))
 
-    finely : to its end, with tangents of its own there
+
+def pairs(evidence: Evidence, ones: Sequence[Weighed]) -> list[Weighed]:
+    """Every two of the leading causes, in proportion to the prior of each."""
+    e, prior, alone = evidence, evidence.prior, single_evidence(evidence)
+    usable = [h for h in ones if h.members and not e.effects[h.members[0]].whole and e.score.visible[h.members[0]]]
+    usable.sort(key=lambda h: -(h.log_prior + h.log_bayes))
+    few = np.array([h.members[0] for h in usable[:LEADING]], int)
+    if few.size < 2:
+        return []
+    i, j = np.triu_indices(few.size, 1)
+    a, b = few[i], few[j]
+    every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
+    log_prior = np.log(PRIOR["two"].share * prior[a] * prior[b] / every)
+    more = np.maximum(alone - e.score.log_bayes(e.scale), 0.0)  # what a large amplitude gains beyond its tangent
+    bayes = pair_evidence(e, a, b) + np.maximum(more[a], more[b])
+    return [Weighed((int(k), int(m)), "", float(p), float(v)) for k, m, p, v in zip(a, b, log_prior, bayes)]
+
+
+def pair_evidence(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array:
+    """Log Bayes factors (nats) of pairs (a_i, b_i) against nothing: two-by-two systems, all at once."""
+    s, sd = evidence.score, evidence.scale
+    out = []
+    for f in SIZES:
+        A, B = s.V[a, a] + (f * sd[a]) ** -2.0, s.V[b, b] + (f * sd[b]) ** -2.0
+        X, det = s.V[a, b], np.maximum(A * B - s.V[a, b] ** 2, 1e-300)
+        ma, mb = (B * s.u[a] - X * s.u[b]) / det, (A * s.u[b] - X * s.u[a]) / det
+        gain = 0.5 * (s.u[a] * ma + s.u[b] * mb) - 0.5 * np.log((f * sd[a]) ** 2 * (f * sd[b]) ** 2 * det)
+        signed = [log_sign_gain(m / np.sqrt(Y / det), s.sign[k]) for m, Y, k in ((ma, B, a), (mb, A, b))]
+        out.append(gain + signed[0] + signed[1])
+    return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)))
+
+
+def averaged_noise(hypotheses: Sequence[Weighed], loud: Evidence, over: float) -> list[Weighed]:
+    """The hypotheses with their evidence under a larger noise as well, so that what is merely noisier is a rival.
+
+    over : log evidence of nothing under that noise over the one it has without.  Heat of unknown cause gains nothing
+    there.
     """
-    network, unknowns, fixed = with_members(evidence, members)
-    other_times, fit = before.unknowns.names != unknowns.names, evidence.fit
-    cache = CachedSegments(before.parts, nearby=other_times, renewed=True, stale=True)
-    steps, worth = (ROUNDS, FINE) if finely else (SECOND, ENOUGH)
-    return minimise(
-        network,
-        evidence.tests,
-        unknowns,
-        before.theta,
-        fit.noise,
-        fixed,
-        steps,
-        cache,
-        draft=not finely,
-        worth=worth,
-        error=fit.error,
-    )
+    alone, many = single_evidence(loud), [h.members for h in hypotheses if len(h.members) == 2]
+    both = pair_evidence(loud, *np.array(many, int).reshape(-1, 2).T)
+    gain: dict[Any, float] = {(): 0.0, **{(k,): x for k, x in enumerate(alone)}, **dict(zip(many, both, strict=True))}
+    return [replace(h, loud=over + float(gain[h.members])) for h in hypotheses]
 
 
-def free_of(evidence: Evidence, members: Sequence[int]) -> list[int]:
-    """Those whose amplitude is fitted."""
+def thresholds(evidence: Evidence) -> Array:
+    """(K,) log Bayes factor from which each cause is more probable than nothing, temper in account."""
+    return np.array([nats_worth(NOTHING.log_prior - c.log_prior) for c in evidence.causes])
+
+
+def smallest_visible(evidence: Evidence) -> Array:
+    """(K,) smallest amplitude whose evidence outweighs nothing four times in five, inf where none does; linear."""
+    s, sd = evidence.score, evidence.scale
+    V, limit, side = np.diag(s.V), thresholds(evidence), np.where(s.sign == 0, 1, s.sign)
+    low, high = np.zeros_like(sd), FARTHEST * sd
+
+    def passes(a: Array) -> NDArray[np.bool_]:
+        u = side * np.maximum(a * V - POWER * np.sqrt(np.maximum(V, 0.0)), 0.0)
+        return one_size(u, V, sd, s.sign) > limit
+
+    never = ~s.visible | ~passes(high)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        detectable = passes(middle)
+        low, high = np.where(detectable, low, middle), np.where(detectable, middle, high)
+    return np.where(never, np.inf, high)
+
+
+def fitted_members(evidence: Evidence, members: Sequence[int]) -> list[int]:
+    """Those whose amplitude is fitted; the others happen whole or not at all."""
     return [k for k in members if not evidence.effects[k].whole]
 
 
 def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, Unknowns, dict[str, float]]:
+    """The network with some causes, what is free in it, and the values of all that is not (whole causes at one)."""
     fit = evidence.fit
-    network = extended(fit.network, [evidence.effects[k] for k in members])
-    free = [evidence.parameters[k] for k in free_of(evidence, members)]
-    unknowns = Unknowns((*fit.unknowns.parameters, *(widened(p) for p in free)))
-    return network, unknowns, values_of(network, {**fit.values, **fixed_multipliers(evidence, members)})
+    network = evidence.hypothesis(members).extend(fit.network)
+    free = [widened(evidence.parameters[k]) for k in fitted_members(evidence, members)]
+    fixed = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
+    return network, Unknowns((*fit.unknowns.parameters, *free)), values_of(network, {**fit.values, **fixed})
 
 
-def fixed_multipliers(evidence: Evidence, members: Sequence[int]) -> dict[str, float]:
-    """Those that happen whole or not at all."""
-    return {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
+def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
+    """Log evidence over that of nothing: the gain at the optimum, times what the prior of the amplitudes gives there.
+
+    The curvature of what calibration moves is taken to be the same for all.
+    """
+    free, p = fitted_members(evidence, members), evidence.p
+    if not free:
+        return evidence.fit.objective - fit.objective
+    h, a, wide = evidence.hypothesis(free), fit.theta[p:], fit.unknowns.sd[p:]
+    # the fit's own wide prior of the amplitudes is taken out of its objective, and the usual one integrated instead
+    gain = evidence.fit.objective - (fit.objective - 0.5 * float(np.sum((a / wide) ** 2)))
+    v = amplitude_covariance(fit, p, wide)
+    if np.all(np.abs(a) < ABSENT * h.scale):  # what moved is the calibration, which may go on without them as well
+        gain = min(gain, 0.0)
+    return gain + float(logsumexp([_log_prior_mass(a, v, f * h.scale, h.sign) for f in SIZES]) - np.log(len(SIZES)))
 
 
-def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
-    """Where a refit may begin: at the linear amplitudes, and where a tangent says too little at large ones."""
-    free = free_of(evidence, members)
-    first = first_amplitudes(evidence, free)
-    far = [evidence.large.get(k) for k in free]
-    points = [first]
-    if len(free) == 1 and far[0] is not None:
-        points += [np.array([a]) for a in evidence.effects[free[0]].large]
-    elif any(a is not None for a in far):
-        points.append(np.array([f if a is None else a for a, f in zip(far, first, strict=True)]))
-    return [np.concatenate([evidence.fit.theta, a]) for a in points]
+def amplitude_covariance(fit: Fit, p: int, wide: Array) -> Array:
+    """Covariance of the amplitudes by the readings alone; what these do not feel is as wide as the fit's prior."""
+    H = fit.H
+    felt = H[p:, p:] - H[p:, :p] @ np.linalg.solve(H[:p, :p], H[:p, p:]) - np.diag(wide**-2.0)
+    values, vectors = np.linalg.eigh(felt * np.outer(wide, wide))
+    return np.asarray((vectors / np.maximum(values, 1.0)) @ vectors.T * np.outer(wide, wide))
 
 
-def first_amplitudes(evidence: Evidence, members: Sequence[int]) -> Array:
-    """Linear estimates, kept to the admissible side and within three prior deviations."""
-    few = list(members)
-    a, sd = evidence.score.amplitude[few], np.array([evidence.parameters[k].prior_sd for k in few])
-    low = np.array([evidence.parameters[k].low for k in few])
-    high = np.array([evidence.parameters[k].high for k in few])
-    return np.clip(np.clip(a, -3.0 * sd, 3.0 * sd), 0.9 * low, 0.9 * high)
-
-
-def deviance(evidence: Evidence, fit: Fit) -> dict[tuple[str, str], float]:
-    """(test, channel) -> r' noise^-1 r of what a fit and its model error leave."""
-    measure = InnerProduct(fit.parts, fit.noise, fit.error)
-    left = measure.explained(fit.parts, fit.error)
-    return {(s.test, s.channel): float(np.sum(fit.noise.whiten(s, s.r[:, None]) ** 2)) for s in left}
+def _log_prior_mass(a: Array, v: Array, sd: Array, sign: NDArray[np.int64]) -> float:
+    """log of the integral of exp(-1/2 (x - a)' v^-1 (x - a)) over the prior of x, signs in account."""
+    wide = v + np.diag(sd**2)
+    posterior = np.linalg.inv(np.linalg.inv(v) + np.diag(sd**-2.0))
+    mean = posterior @ np.linalg.solve(v, a)
+    log = -0.5 * a @ np.linalg.solve(wide, a) + 0.5 * (np.linalg.slogdet(v)[1] - np.linalg.slogdet(wide)[1])
+    return float(log + np.sum(log_sign_gain(mean / np.sqrt(np.diag(posterior)), sign)))

@@ -21,12 +21,14 @@ from lumped.model.network import Network, Parameter
 from lumped.model.sites import solids
 from lumped.transfer.laws import Fixed, Inputs
 from measured.case import Test
-from measured.doubt import FORM
+from measured.doubt import FORM, PRIOR
 from measured.sensors.blocks import INSTANTS
 from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import ModelError, nodes
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.build import Shaped, heat, power_scale
+from validation.inference.columns import Linearised
+from validation.inference.hypotheses import UnknownHeat
 from validation.inference.score import Gram, gram
 from validation.noise import Noise
 from validation.threads import side_by_side
@@ -77,37 +79,42 @@ class HatFunction:
 class Scan:
     """What a heat input at every solid and instant would do to the readings of a calibrated model.
 
-    knots : test -> instants (s) of its hats;  parts : derivatives by calibrated parameters (standard deviations `sd` of
-    their priors), then by every place's hats;  scale : usual heat (W)
+    hypotheses : heat of unknown cause at each place;  knots : test -> instants (s) of its hats
+    run : the response to the calibrated parameters (standard deviations `sd` of their priors) and to every place's hats
     doing : (m, k) what the machine does at all knots, inputs over their ranges;  T : (m, n) temperatures of the places
     """
 
-    places: tuple[str, ...]
+    hypotheses: tuple[UnknownHeat, ...]
     knots: Mapping[str, Array]
-    parts: tuple[Segment, ...]
+    run: Linearised
     sd: Array
-    scale: float
     doing: Array
     T: Array
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        return tuple(h.place for h in self.hypotheses)
+
+    def segments(self, residual: Sequence[Segment]) -> list[Segment]:
+        """The response with another residual, that of a model calibrated further."""
+        left = {(s.test, s.channel): s.r for s in residual}
+        return [replace(s, r=left[s.test, s.channel]) for s in self.run.segments(self.hypotheses)]
 
     def read(
         self, residual: Sequence[Segment], noise: Noise, theta: Array, error: ModelError | None = None
     ) -> list[MissingHeat]:
-        """All places, most evident first.
+        """Missing heat at all places, most evident first.
 
-        theta : where the parameters stand, from the mean of their priors
+        Parameters: `residual` segments of a calibrated model, `noise` and `error` its own; `theta` (p,) where its
+        parameters stand, from the mean of their priors.
         """
-        left = {(s.test, s.channel): s.r for s in residual}
-        parts = [replace(s, r=left[s.test, s.channel]) for s in self.parts]
-        if error:
-            parts = [error.beside(s, self.sd.size) for s in parts]
         d = error.size if error else 0
-        grams = gram(parts, noise, self.sd.size + d)
+        grams = gram(self.segments(residual), noise, self.sd.size, error)
         theta, weight = np.concatenate([theta, np.zeros(d)]), np.concatenate([self.sd**-2.0, np.ones(d)])
         H = sum(g.JJ for g in grams.values()) + np.diag(weight)
         Jr = sum(g.Jr for g in grams.values()) - weight * theta
         cov = np.asarray(np.linalg.inv(H), float)
-        heats = side_by_side(lambda i: self._at(i, grams, cov, Jr), range(len(self.places)))
+        heats = side_by_side(lambda i: self._heat(i, grams, cov, Jr), range(len(self.places)))
         return sorted(heats, key=lambda x: -x.evidence_nats)
 
     @cached_property
@@ -122,7 +129,7 @@ class Scan:
         R = np.exp(-0.5 * np.sum((x[:, None, :] - x[None, :, :]) ** 2, axis=2) / FORM["heat over input"] ** 2)
         return np.asarray(np.linalg.cholesky(R + JITTER * np.eye(len(x))), float)
 
-    def _at(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:
+    def _heat(self, i: int, grams: Mapping[str, Gram], cov: Array, Jr: Array) -> MissingHeat:
         size = [len(k) for k in self.knots.values()]
         start = np.concatenate([[0], np.cumsum(size)])
         A, u = np.zeros((start[-1], start[-1])), np.zeros(start[-1])
@@ -131,7 +138,7 @@ class Scan:
             g, rows, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
             A[block, block], u[block], JZ[:, block] = g.ZZ[rows, rows], g.Zr[rows], g.JZ[:, rows]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
-        sizes = self.scale * 10.0 ** np.arange(-3.0, 1.5, 0.5)
+        sizes = self.hypotheses[i].scale_W * 10.0 ** np.arange(-3.0, 1.5, 0.5)
         evidences = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
         nats, q, sd = max(evidences, key=lambda x: x[0].max())
         best, mean = nats.max(), logsumexp([x[0] for x in evidences]) - np.log(len(evidences) * sizes.size)
@@ -141,12 +148,9 @@ class Scan:
 
     def _moves(self, i: int, heat_W: Mapping[str, tuple[Array, Array, Array]], follow: Array) -> float:
         """Largest change of a reading (K); follow : what the heat makes of the calibrated parameters."""
-        p, most = self.sd.size, 0.0
-        for s in self.parts:
-            _, q, _ = heat_W[s.test]
-            columns = slice(p + i * q.size, p + (i + 1) * q.size)
-            most = max(most, float(np.max(np.abs(s.J[:, :p] @ follow[:p] + s.J[:, columns] @ q), initial=0.0)))
-        return most
+        p, hats = self.sd.size, self.hypotheses[i].columns(self.run)
+        each = (s.J @ follow[:p] + Z @ heat_W[s.test][1] for s, Z in zip(self.run.parts, hats, strict=True))
+        return max((float(np.max(np.abs(x), initial=0.0)) for x in each), default=0.0)
 
 
 def is_located(evidence_nats: float) -> bool:
@@ -156,50 +160,52 @@ def is_located(evidence_nats: float) -> bool:
 
 def missing_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> list[MissingHeat]:
     """The scan of a calibrated model's residual."""
-    return scan(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta, fit.error)
+    return scan_heat(fit, tests, knot_s).read(fit.parts, fit.noise, fit.theta, fit.error)
 
 
-def scan(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
-    """The tangents of a heat input at every place and knot."""
+def scan_heat(fit: Fit, tests: Sequence[Test], knot_s: float = KNOT_S) -> Scan:
+    """The response to a heat input at every place and knot, about a calibrated state."""
     bodies = solids(fit.network)
-    places, knots = tuple(p.name for p in bodies), {t.name: knots_of(t, knot_s) for t in tests}
+    places, knots = tuple(p.name for p in bodies), {t.name: heat_knots(t, knot_s) for t in tests}
+    prior = float(np.log(PRIOR["heat"].share / max(len(places), 1)))  # it may be anywhere
 
-    def of_test(test: Test) -> tuple[list[Segment], Array]:
+    def response(test: Test) -> tuple[list[Segment], Array]:
         network, hats = with_heat_inputs(fit.network, places, knots[test.name])
-        T = at_knots(test, nodes(fit.network, test, fit.values, bodies), knots[test.name])
+        T = knot_values(test, nodes(fit.network, test, fit.values, bodies), knots[test.name])
         return segments(network, [test], fit.values, (*fit.unknowns.parameters, *hats)), T
 
-    each = side_by_side(of_test, tests, lambda test: len(test.time))
-    parts = tuple(s for some, _ in each for s in some)
-    return Scan(
-        places,
-        knots,
-        parts,
-        fit.unknowns.sd,
-        power_scale(fit.network),
-        doing(tests, knots),
-        np.vstack([T for _, T in each]),
-    )
+    each = side_by_side(response, tests, lambda test: len(test.time))
+    p, parts = fit.theta.size, [s for some, _ in each for s in some]
+    most, scale = max((k.size for k in knots.values()), default=0), power_scale(fit.network)
+    hypotheses = tuple(UnknownHeat(place, prior, scale, most) for place in places)
+    hats = {h.name: [_columns(s, p, i, knots[s.test].size) for s in parts] for i, h in enumerate(hypotheses)}
+    run = Linearised(tuple(replace(s, J=s.J[:, :p]) for s in parts), hats)
+    return Scan(hypotheses, knots, run, fit.unknowns.sd, activity(tests, knots), np.vstack([T for _, T in each]))
 
 
-def knots_of(test: Test, knot_s: float) -> Array:
+def _columns(s: Segment, p: int, i: int, m: int) -> Array:
+    """Columns of the m hats of place i behind p calibrated parameters."""
+    return s.J[:, p + i * m : p + (i + 1) * m]
+
+
+def heat_knots(test: Test, knot_s: float) -> Array:
     """Every so many seconds of a test, or as many as its residual has instants to tell apart."""
     span = test.time[-1] - test.time[0]
     count = int(np.clip(round(span / knot_s) + 1, 2, INSTANTS // 2))
     return np.asarray(test.time[0] + np.linspace(0.0, span, count))
 
 
-def doing(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:
+def activity(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:
     """(m, k) all inputs that every test records, at the knots of all tests, each over its range; constants left out."""
     common = [n for n in tests[0].inputs if all(n in t.inputs for t in tests)]
     rows = [
-        np.column_stack([*(at_knots(t, t.inputs[n], knots[t.name]) for n in common), np.zeros(knots[t.name].size)])
+        np.column_stack([*(knot_values(t, t.inputs[n], knots[t.name]) for n in common), np.zeros(knots[t.name].size)])
         for t in tests
     ]
     return over_range(np.vstack(rows))
 
 
-def at_knots(test: Test, series: Array, knots: Array) -> Array:
+def knot_values(test: Test, series: Array, knots: Array) -> Array:
     """A series (n, ...) of a test at some instants."""
     columns = np.reshape(np.asarray(series, float), (test.time.size, -1))
     return np.column_stack([np.interp(knots, test.time, c) for c in columns.T])

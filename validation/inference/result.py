@@ -8,21 +8,26 @@ from typing import TYPE_CHECKING, Literal
 from geom.errors import InputError
 from geom.table import Table
 from geom.text import table
-from validation.inference.missing_heat import MissingHeat
 from validation.tables import diagnosis_tables
 
 if TYPE_CHECKING:
-    from validation.bases.which_base import Hypothesis
-    from validation.conditions.contradiction import Contradiction
+    from validation.bases.which_base import BaseDeviance
+    from validation.inference.contradiction import Contradiction
+    from validation.inference.missing_heat import MissingHeat
 
 Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed", "data"]
 Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
-MOST_ODDS, LEAST_PROBABILITY = (
-    5,
-    0.005,
-)  # hypotheses of a diagnosis that is printed, and the probability from which they are
+MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # hypotheses of a diagnosis that is printed, and from which probability
+
+
+class TableRow:
+    """A row of a table; its document has every field, tuples as lists."""
+
+    def document(self) -> dict:
+        """JSON of the row."""
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,7 @@ def _pair(pair: Pair | None) -> dict | None:
 
 
 @dataclass(frozen=True)
-class DetectionLimit:
+class DetectionLimit(TableRow):
     """An effect that these tests could not have shown unless it were larger than this."""
 
     effect: str
@@ -80,20 +85,14 @@ class DetectionLimit:
     unit: str
     absorbed_by: str | None = None
 
-    def document(self) -> dict:
-        return dict(vars(self))
-
 
 @dataclass(frozen=True)
-class CurrentLevel:
+class CurrentLevel(TableRow):
     """input : a current;  level_A : at which it is held, else its rms;  share_of_rms : of the record at hand"""
 
     input: str
     level_A: float
     share_of_rms: float
-
-    def document(self) -> dict:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,7 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class Odds:
+class Odds(TableRow):
     """The probability of one hypothesis: "nothing", "kind@place", "kind@place + kind@place", "heat@place".
 
     log_evidence : over that of nothing (nats), None for "others"
@@ -136,12 +135,9 @@ class Odds:
     begin_s: float | None = None
     end_s: float | None = None
 
-    def document(self) -> dict:
-        return {**vars(self), "effects": list(self.effects), "tests": list(self.tests)}
-
 
 @dataclass(frozen=True)
-class Question:
+class Question(TableRow):
     """A yes-or-no question that needs no test.
 
     about : what `answer` takes;  yes : probability of yes;  nats : information expected of an answer
@@ -152,12 +148,9 @@ class Question:
     yes: float
     nats: float
 
-    def document(self) -> dict:
-        return dict(vars(self))
-
 
 @dataclass(frozen=True)
-class PossibleEvent:
+class PossibleEvent(TableRow):
     """Something that may have been different for a while.  spans : {"test", "begin_s", "end_s"}
 
     probability : of all that it may have been;  effect : the most probable of these, its value refitted where it was
@@ -171,9 +164,6 @@ class PossibleEvent:
     title: str
     value: float
     unit: str
-
-    def document(self) -> dict:
-        return {**vars(self), "spans": list(self.spans)}
 
 
 @dataclass(frozen=True)
@@ -236,7 +226,7 @@ class Diagnosis:
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[Experiment, ...] = ()
-    bases: tuple[Hypothesis, ...] = ()
+    bases: tuple[BaseDeviance, ...] = ()
     odds: tuple[Odds, ...] = ()
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()

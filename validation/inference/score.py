@@ -9,16 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
-from scipy.special import log_ndtr
+from scipy.special import log_ndtr, logsumexp
 
-from validation.comparison.linearisation import Segment
-from validation.noise import Noise
+from measured.doubt import SIZES
+
+if TYPE_CHECKING:
+    from validation.calibration.calibrate import Fit
+    from validation.calibration.model_error import ModelError
+    from validation.comparison.linearisation import Segment
+    from validation.noise import Noise
 
 Array = NDArray[np.float64]
+Signs = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -36,25 +43,23 @@ class Gram:
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
         return Gram(*(a + b for a, b in pairs))
 
-    def of(self, few: Sequence[int]) -> Gram:
-        """With some of its effects only."""
-        columns = list(few)
+    def subset(self, effects: Sequence[int]) -> Gram:
+        """The same matrix with some of its effects only."""
+        columns = list(effects)
         return replace(self, JZ=self.JZ[:, columns], ZZ=self.ZZ[np.ix_(columns, columns)], Zr=self.Zr[columns])
 
 
-def gram(parts: Sequence[Segment], noise: Noise, p: int) -> dict[str, Gram]:
-    """One Gram per test; the first p columns of each segment's J are nuisances, the rest effects."""
-    return grams([(s, (s.J,)) for s in parts], noise, p)
+def gram(parts: Sequence[Segment], noise: Noise, p: int, error: ModelError | None = None) -> dict[str, Gram]:
+    """One Gram matrix per test.
 
-
-def grams(parts: Sequence[tuple[Segment, Sequence[Array]]], noise: Noise, p: int) -> dict[str, Gram]:
-    """The same of segments with their columns in blocks (n, k) side by side, in place of J.
-
-    Most columns are zero in most segments: a bias is of one sensor, a start of one test. Those are left out.
+    Parameters: `parts` segments whose J has p nuisance columns, then the effects' (K per unit); `error` the model
+    error, whose d columns count as further nuisances. Returns: test -> Gram of p + d nuisances.
     """
+    blocks = [(s.J[:, :p], *([error.of(s)] if error else []), s.J[:, p:], s.r[:, None]) for s in parts]
+    p += error.size if error else 0
     out: dict[str, Array] = {}
-    for s, blocks in parts:
-        columns = [*blocks, s.r[:, None]]
+    for s, columns in zip(parts, blocks, strict=True):
+        # most columns are zero in most segments (a bias is of one sensor, a start of one test): whitening is what costs
         nonzero = [np.flatnonzero(X.any(axis=0)) for X in columns]
         first = np.cumsum([0, *(X.shape[1] for X in columns)])
         X = noise.whiten(s, np.column_stack([X[:, k] for X, k in zip(columns, nonzero, strict=True)]))
@@ -68,24 +73,38 @@ def grams(parts: Sequence[tuple[Segment, Sequence[Array]]], noise: Noise, p: int
 
 
 def total(grams: Mapping[str, Gram]) -> Gram:
+    """The Gram matrix of all tests together: an effect has one amplitude in all of them."""
     first, *rest = grams.values()
     for g in rest:
         first = first + g
     return first
 
 
+def per_test(grams: Mapping[str, Gram]) -> Gram:
+    """The Gram matrix with every effect in every test as an effect of its own, test by test in the order of `grams`."""
+    each = list(grams.values())
+    return Gram(
+        np.sum([g.JJ for g in each], axis=0),
+        np.hstack([g.JZ for g in each]),
+        block_diag(*(g.ZZ for g in each)),
+        np.sum([g.Jr for g in each], axis=0),
+        np.concatenate([g.Zr for g in each]),
+        sum(g.rr for g in each),
+    )
+
+
 @dataclass(frozen=True)
 class Score:
     """u, V : (K,), (K, K) efficient score and its covariance under no effect;  raw : (K,) diagonal of Z'Sigma^-1 Z
 
-    sign : (K,) what physics allows;  absorber : (K,) index of the nuisance that takes most of each effect
+    sign : (K,) what physics allows, 0 for both;  absorber : (K,) index of the nuisance that takes most of each effect
     """
 
     u: Array
     V: Array
     raw: Array
-    sign: NDArray[np.int64]
-    absorber: NDArray[np.int64]
+    sign: Signs
+    absorber: Signs
 
     @property
     def visible(self) -> NDArray[np.bool_]:
@@ -100,14 +119,17 @@ class Score:
 
     @property
     def amplitude(self) -> Array:
+        """(K,) best amplitude of each effect alone, by its tangent; 0 where it is invisible."""
         return np.where(self.visible, self.u / np.where(self.visible, np.diag(self.V), 1.0), 0.0)
 
     @property
     def sd(self) -> Array:
+        """(K,) standard deviation of that amplitude; inf where it is invisible."""
         return np.where(self.visible, np.where(self.visible, np.diag(self.V), 1.0) ** -0.5, np.inf)
 
     @property
     def absorbed(self) -> Array:
+        """(K,) share of each effect's trace that the calibration takes."""
         return 1.0 - np.diag(self.V) / np.maximum(self.raw, 1e-300)
 
     @property
@@ -116,37 +138,62 @@ class Score:
         d = np.where(self.visible, np.sqrt(np.maximum(np.diag(self.V), 1e-300)), np.inf)
         return self.V / np.outer(d, d)
 
+    def log_bayes(self, scale: Array) -> Array:
+        """(K,) log Bayes factor (nats) of each effect against nothing; 0 where nothing is visible.
 
-def score(G: Gram, theta: Array, prior_sd: Array, sign: NDArray[np.int64]) -> Score:
-    """Efficient score of all effects at theta (prior mean 0). The last term corrects for an imperfect optimum."""
+        Parameters: `scale` (K,) usual size of each amplitude, in its unit.
+        """
+        return np.asarray(np.where(self.visible, average_size(self.u, np.diag(self.V), scale, self.sign), 0.0))
+
+
+def score(G: Gram, theta: Array, prior_sd: Array, sign: Signs) -> Score:
+    """Efficient score of all effects of a Gram matrix.
+
+    Parameters: `theta` (p,) where the nuisances stand, `prior_sd` (p,) of their priors about 0; `sign` (K,).
+    """
     weight = prior_sd**-2.0
     H = G.JJ + np.diag(weight)
     take = np.linalg.solve(H, G.JZ)
-    u = G.Zr - take.T @ G.Jr + take.T @ (weight * theta)
+    u = G.Zr - take.T @ G.Jr + take.T @ (weight * theta)  # the last term: the calibration may not stand at its optimum
     V = G.ZZ - G.JZ.T @ take
     size = np.abs(take) * np.sqrt(np.maximum(np.diag(G.JJ), 0.0))[:, None]
     return Score(u, 0.5 * (V + V.T), np.diag(G.ZZ).copy(), sign, np.argmax(size, axis=0))
 
 
-def per_test(grams: Mapping[str, Gram]) -> Gram:
-    """Every effect in every test as an effect of its own: test by test, in the order of the tests."""
-    each = list(grams.values())
-    return Gram(
-        np.sum([g.JJ for g in each], axis=0),
-        np.hstack([g.JZ for g in each]),
-        block_diag(*(g.ZZ for g in each)),
-        np.sum([g.Jr for g in each], axis=0),
-        np.concatenate([g.Zr for g in each]),
-        sum(g.rr for g in each),
-    )
+def fit_gram(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
+    """test -> Gram of segments [calibrated parameters | effects] under a fit's noise, its model error a nuisance."""
+    return gram(parts, fit.noise, len(fit.unknowns.parameters), fit.error)
 
 
-def one_size(u: Array, V: Array, sd: Array, sign: NDArray[np.int64]) -> Array:
-    """Log Bayes factors of single effects with amplitudes of one usual size."""
+def fit_prior(fit: Fit) -> tuple[Array, Array]:
+    """(p + d,) coordinates and prior deviations of the calibrated parameters, then of the model error."""
+    d = fit.error.size if fit.error else 0
+    return np.concatenate([fit.theta, np.zeros(d)]), np.concatenate([fit.unknowns.sd, np.ones(d)])
+
+
+def fit_score(fit: Fit, parts: Sequence[Segment], sign: Signs | None = None, each_test: bool = False) -> Score:
+    """The efficient score of effects about a fit.
+
+    Parameters: `parts` segments [calibrated parameters | K effects]; `sign` (K,), by default both are allowed;
+    `each_test`: every effect in every test by itself, (tests times K,).
+    """
+    grams = fit_gram(fit, parts)
+    G = per_test(grams) if each_test else total(grams)
+    return score(G, *fit_prior(fit), np.zeros(G.Zr.size, int) if sign is None else sign)
+
+
+def one_size(u: Array, V: Array, sd: Array, sign: Signs) -> Array:
+    """Log Bayes factors (nats) of single effects with amplitudes of one usual size, half-normal where signed."""
     q = V + sd**-2.0
     return np.asarray(0.5 * u**2 / q - 0.5 * np.log(sd**2 * q) + log_sign_gain(u / np.sqrt(q), sign))
 
 
-def log_sign_gain(z: Array, sign: NDArray[np.int64]) -> Array:
+def average_size(u: Array, V: Array, sd: Array, sign: Signs) -> Array:
+    """The same averaged over a decade of usual sizes, since nobody knows the usual size better."""
+    sizes = [one_size(u, V, f * sd, sign) for f in SIZES]
+    return np.asarray(logsumexp(sizes, axis=0) - np.log(len(SIZES)))
+
+
+def log_sign_gain(z: Array, sign: Signs) -> Array:
     """log P(sign | readings) - log P(sign) of amplitudes z deviations from zero."""
     return np.where(sign == 0, 0.0, np.log(2.0) + log_ndtr(np.where(sign == 0, 1, sign) * z))

@@ -15,7 +15,8 @@ from lumped.transfer.laws import Law
 from measured.case import Case, Channel, Model, Reference, Test
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import of_measurement
-from validation.effects import Effect, Scene, effect, extended
+from validation.effects.base import Effect, Scene
+from validation.effects.registry import effect, extended
 from validation.effects.sensors.input_offset import Shift
 from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts

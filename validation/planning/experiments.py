@@ -15,10 +15,16 @@ from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import gram
 from validation.planning.candidate_tests import Experiment as Candidate
-from validation.planning.competing_models import CompetingModels
 from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
-from validation.planning.prediction import Plan, predicted_readings, refitted_gains, widened_error
-from validation.planning.separability import separable_pairs, separation
+from validation.planning.rivals import (
+    CompetingModels,
+    Plan,
+    predicted_readings,
+    refitted_gains,
+    separable_pairs,
+    separation,
+    widened_error,
+)
 
 Array = NDArray[np.float64]
 
@@ -57,6 +63,5 @@ def _planned(
             parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
         except ThermoscopeError:  # a model that lacks what cools it runs away in a test that is longer than its own
             continue
-        wide = [error.beside(s, p) for s in parts] if error else parts
-        (more,) = gram(wide, fit.noise, p + (error.size if error else 0)).values()
+        (more,) = gram(parts, fit.noise, p, error).values()
         yield Plan(experiment.name, experiment.hours, [test], separation(evidence, models, more))

@@ -16,9 +16,7 @@ from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import Gram
 from validation.noise import Noise
-from validation.planning.competing_models import CompetingModels
-from validation.planning.prediction import Plan, refitted_gains, widened_error
-from validation.planning.separability import separable_pairs, separation
+from validation.planning.rivals import CompetingModels, Plan, refitted_gains, separable_pairs, separation, widened_error
 
 Array = NDArray[np.float64]
 SIGMA_K = 0.5  # of a further thermocouple, as a sheet's usual

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from measured.case import Case
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import Comparison, errors
-from validation.diagnosis.diagnose import diagnose
+from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model

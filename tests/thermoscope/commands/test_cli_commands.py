@@ -190,7 +190,7 @@ def test_compare_loads_what_runs_a_network_alone(case):
         "geom.solids",
         "fem",
         "viz",
-        "validation.inference.posterior",
+        "validation.inference.refit",
     ]
     end = f"atexit.register(lambda: print(*[m for m in {slow} if m in sys.modules], file=sys.stderr))"
     command = [sys.executable, "-c", f"import atexit, sys; {end}; {RUN}", "test", "compare", str(case)]

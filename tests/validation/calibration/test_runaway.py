@@ -9,8 +9,8 @@ from playground import Truth, network
 from geom.errors import NoSolution
 from validation.calibration import calibrate
 from validation.calibration.calibrate import calibrated
-from validation.inference import refits
-from validation.inference.posterior import Hypothesis, weights
+from validation.inference import refit
+from validation.inference.hypotheses import Weighed, weights
 from validation.parameters.unknowns import working
 
 
@@ -42,8 +42,8 @@ def test_a_hypothesis_that_runs_away_everywhere_is_as_good_as_excluded(monkeypat
     def wild(*_, **__):
         raise NoSolution("thermal runaway")
 
-    monkeypatch.setattr(refits, "refit", wild)
-    monkeypatch.setattr(refits, "starts", lambda *_: [np.zeros(1)])
-    h = refits.laplace(None, Hypothesis((0,), "", -1.0, 5.0))
+    monkeypatch.setattr(refit, "refit", wild)
+    monkeypatch.setattr(refit, "starts", lambda *_: [np.zeros(1)])
+    h = refit.laplace(None, Weighed((0,), "", -1.0, 5.0))
     assert h.fit is None
-    assert weights([Hypothesis(), replace(h, log_prior=0.0)])[1] < -100.0
+    assert weights([Weighed(), replace(h, log_prior=0.0)])[1] < -100.0

@@ -11,7 +11,7 @@ from measured.doubt import USUAL
 from validation.comparison.compare import compare
 from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
-from validation.diagnosis.discrepancy import discrepancies
+from validation.discrepancy import discrepancies
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))

@@ -13,14 +13,16 @@ from lumped.integration.simulate import Record, simulate
 from measured.case import Case, Channel, Model, Test
 from validation import diagnose
 from validation.comparison.predict import predict
-from validation.conditions.hat_functions import Path, hat_scores
-from validation.conditions.refine import around, repeats
-from validation.conditions.windows import best_stretch, joined, pulses
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.time_window import Event, checked, event, holds, share
+from validation.inference.columns import effect_columns
+from validation.inference.conditions import tangent_worth
+from validation.inference.events import instants_around, predicted_repeats, step_scores
 from validation.inference.evidence import calibrated_case, candidates, scored
-from validation.inference.missing_heat import scan
+from validation.inference.missing_heat import scan_heat
+from validation.inference.score import fit_score
+from validation.inference.stretches import Path, best_stretch, hat_scores, merged_pulses, pulses
 from validation.revision.revise import add
 
 ONE = Event.of({"day": [(600.0, 900.0)]})
@@ -60,7 +62,7 @@ def test_instants_of_an_uneven_record_are_short_numbers_inside_of_it():
     time = 3.0 + np.cumsum(np.random.default_rng(0).uniform(13.0, 17.0, 40))
     test = replace(measured("day"), time=time)
     for near in (time[0], 300.0, time[-1]):
-        at = around(test, near, 150.0)
+        at = instants_around(test, near, 150.0)
         assert at.size >= 8
         assert time[0] <= at[0]
         assert at[-1] <= time[-1]
@@ -164,7 +166,7 @@ def test_pulses_are_the_steps_of_a_curve():
 
 
 def test_neighbours_of_one_sign_are_one_pulse():
-    assert joined([((0.0, 10.0), 1.0), ((10.0, 20.0), 3.0), ((20.0, 30.0), -1.0)]) == [
+    assert merged_pulses([((0.0, 10.0), 1.0), ((10.0, 20.0), 3.0), ((20.0, 30.0), -1.0)]) == [
         ((0.0, 20.0), pytest.approx(2.0)),
         ((20.0, 30.0), -1.0),
     ]
@@ -174,7 +176,7 @@ def test_all_stretches_by_cumulated_sums_are_those_weighed_one_by_one():
     case = bench()
     fit = calibrated_case(case)
     e = scored(case, candidates(case, ["convection.constant"]), fit)
-    found = hat_scores(e, scan(fit, e.tests), fit.values)
+    found = hat_scores(e, scan_heat(fit, e.tests), fit.values)
     for path in (Path("body"), Path("body", "ambient"), Path("body", "core")):
         one = best_stretch(found, path, "noon")
         assert found.weigh(one.event, path).log_bayes == pytest.approx(one.log_bayes, rel=1e-6)
@@ -211,8 +213,8 @@ def test_a_repeat_that_the_others_do_not_predict_is_left_out():
     e = scored(case, candidates(case, ["convection.constant"]), fit)
     lid = effect("convection.constant@body")
     more = Event.of({"noon": [*spans, (5200.0, 5600.0)], "dusk": [(1000.0, 1400.0)]})
-    assert repeats(e, lid, more, fit.values) == Event.of({"noon": spans})
-    assert repeats(e, lid, Event.of({"noon": spans[:1]}), fit.values) == Event.of({"noon": spans[:1]})
+    assert predicted_repeats(e, lid, more, fit.values) == Event.of({"noon": spans})
+    assert predicted_repeats(e, lid, Event.of({"noon": spans[:1]}), fit.values) == Event.of({"noon": spans[:1]})
 
 
 @pytest.mark.heavy
@@ -229,21 +231,21 @@ def test_nothing_is_no_event():
 
 def test_an_answer_counts_as_its_odds_of_being_right():
     from measured.doubt import USUAL
-    from validation.conditions.question import answered, information
-    from validation.diagnosis.diagnose import infer
-    from validation.inference.posterior import probabilities
+    from validation.diagnosis import infer
+    from validation.inference.hypotheses import probabilities
+    from validation.inference.question import information, with_answers
 
     post = infer(bench((("noon", ((0.0, 5980.0),)),), 0.6), ["convection.constant"])
-    e, own = post.evidence, [bool(h.members) and "noon" in h.name(post.evidence) for h in post.hypotheses]
+    e, own = post.evidence, [bool(h.members) and "noon" in post.evidence.name(h) for h in post.hypotheses]
     P = probabilities(post.hypotheses)
     yes, right = P[own].sum(), 1.0 - USUAL["answer"]
-    Q = probabilities(answered(e, post.hypotheses, {"noon": True}))
+    Q = probabilities(with_answers(e, post.hypotheses, {"noon": True}))
     assert Q[own].sum() == pytest.approx(right * yes / (right * yes + (1.0 - right) * (1.0 - yes)))
     assert information(0.5) > information(0.9) > information(1.0) == pytest.approx(0.0)
 
 
 def test_tests_contradict_each_other_where_one_is_different():
-    from validation.conditions.contradiction import contradiction
+    from validation.inference.contradiction import contradiction
 
     for held, words in (((("noon", ((0.0, 5980.0),)),), "noon contradicts"), ((), "agree")):
         case = bench(held, 2.0)
@@ -251,7 +253,7 @@ def test_tests_contradict_each_other_where_one_is_different():
 
 
 def test_masses_and_joints_cannot_differ_between_tests():
-    from validation.conditions.contradiction import can_differ
+    from validation.inference.contradiction import can_differ
 
     net = two_bodies()
     able = {p.name: can_differ(net, p) for p in net.parameters}
@@ -285,6 +287,33 @@ def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
     assert found.odds[0].effects[0].startswith("law@loss:heat|load>0.")
     assert "the declared loss:heat is" in found.words
     assert "% too high where load is above" in found.words
+
+
+def test_an_instant_that_may_be_a_begin_and_an_end_has_the_score_of_a_step_there():
+    """Instants around both ends of a short stretch overlap."""
+    case = bench((("noon", ((600.0, 1200.0),)),), 1.0)
+    fit, film = calibrated_case(case), effect("convection.constant@body")
+    once, twice = (
+        step_scores(fit, case.tests, film, case.tests[0], np.array(at), fit.values, {})
+        for at in ([600.0, 900.0, 1200.0], [600.0, 900.0, 900.0, 1200.0])
+    )
+    order = [0, 1, 1, 2, 3]
+    assert abs(once[0][1]) > 1.0
+    np.testing.assert_allclose(twice[0], once[0][order])
+    np.testing.assert_allclose(twice[1], once[1][np.ix_(order, order)])
+
+
+def test_what_strays_little_for_a_while_is_weighed_by_its_evidence():
+    """Three times a lid is open so little that no reading moves by three times what a model may be wrong by."""
+    spans = [(1000.0, 1800.0), (2600.0, 3400.0), (4200.0, 5000.0)]
+    case = bench((("noon", tuple(spans)),), 0.4)
+    fit, film = calibrated_case(case), effect("convection.constant@body")
+    evidence, name = scored(case, [film], fit), Event.of({"noon": spans}).name
+    (row,) = tangent_worth(evidence, [film], name, 0.05, fit.values)
+    parts = effect_columns(fit, case.tests, [row.effect], fit.values)
+    size = fit_score(fit, parts).amplitude[0]
+    assert max(np.max(np.abs(size * s.J[:, -1])) / s.weight for s in parts) < 3.0
+    assert row.worth > 0.0
 
 
 def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from one_body import measured
 
-from validation.conditions.conditional_effects import condition_of, sets_of, together
 from validation.effects.time_window import event
+from validation.inference.conditions import set_condition, set_score, whole_test_sets
 from validation.inference.score import Score
 
 
 def test_every_set_of_some_but_not_all_tests():
-    assert sets_of(3) == [(0,), (1,), (2,), (0, 1), (0, 2), (1, 2)]
-    assert sets_of(7) == [(k,) for k in range(7)]  # of so many each stands for itself
+    assert whole_test_sets(3) == [(0,), (1,), (2,), (0, 1), (0, 2), (1, 2)]
+    assert whole_test_sets(7) == [(k,) for k in range(7)]  # of so many each stands for itself
 
 
 def test_one_amplitude_in_several_tests_adds_scores_and_all_covariances():
@@ -19,7 +19,7 @@ def test_one_amplitude_in_several_tests_adds_scores_and_all_covariances():
     rng = np.random.default_rng(0)
     J, r = rng.standard_normal((40, 6)), rng.standard_normal(40)
     every = Score(J.T @ r, J.T @ J, np.diag(J.T @ J), np.tile([1, 0], 3), np.zeros(6, int))
-    own, seen = together(every, 2, (0, 2))
+    own, seen = set_score(every, 2, (0, 2))
     both = J[:, [0, 1]] + J[:, [4, 5]]
     assert own.u == pytest.approx(both.T @ r)
     assert np.diag(own.V) == pytest.approx(np.sum(both**2, axis=0))
@@ -29,12 +29,12 @@ def test_one_amplitude_in_several_tests_adds_scores_and_all_covariances():
 
 def test_what_one_of_the_tests_does_not_show_is_no_candidate():
     every = Score(np.ones(4), np.diag([1.0, 1.0, 1.0, 0.0]), np.ones(4), np.zeros(4, int), np.zeros(4, int))
-    assert together(every, 2, (0, 1))[1].tolist() == [True, False]
+    assert set_score(every, 2, (0, 1))[1].tolist() == [True, False]
 
 
 def test_several_whole_tests_are_an_event_that_lasts_all_of_each():
     day, night = measured("day"), measured("night")
-    assert condition_of([day]) == "day"
-    found = event(condition_of([day, night]))
+    assert set_condition([day]) == "day"
+    found = event(set_condition([day, night]))
     assert found is not None
     assert found.spans == {t.name: ((t.time[0], t.time[-1]),) for t in (day, night)}

@@ -8,7 +8,7 @@ from playground import Truth, wind
 
 from validation.calibration.calibrate import CachedSegments, calibrated, minimise, residual_noise
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, converged, scored, under
+from validation.inference.evidence import calibrated_case, converged, recalibrated, scored
 from validation.parameters.unknowns import working
 
 NAMES = ("convection@flange.right", "loss.constant@yoke", "sensor.bias@yoke", "mass@yoke")
@@ -43,7 +43,7 @@ def test_calibration_ends_with_the_jacobian_of_where_it_stands(evidence):
 def test_nothing_is_fitted_to_its_end_under_another_noise(evidence):
     """From wherever a fit stands: ever more steps of ever finer worth gain less than the evidence is read to."""
     far = replace(evidence.fit, theta=evidence.fit.theta + 0.5 * evidence.fit.unknowns.sd)
-    other = under(replace(evidence, fit=far), residual_noise(evidence.fit))
+    other = recalibrated(replace(evidence, fit=far), residual_noise(evidence.fit))
     end = converged(other).fit
     assert end.objective <= other.fit.objective
     held = {p.name: p.value for p in end.network.parameters} | end.values

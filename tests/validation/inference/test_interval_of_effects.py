@@ -4,8 +4,8 @@ import pytest
 
 from geom.constants import NORMAL_95
 from measured.doubt import TABLE
-from validation.diagnosis.tables import interval
 from validation.effects.registry import kinds
+from validation.inference.say import interval
 
 
 def test_what_is_exact_is_as_wide_as_the_refit_says():

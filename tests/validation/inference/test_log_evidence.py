@@ -11,23 +11,31 @@ from scipy.stats import multivariate_normal
 from lumped.model.multipliers import values_of
 from validation.calibration.calibrate import minimise
 from validation.comparison.linearisation import segments
-from validation.diagnosis.diagnose import sharpened
 from validation.effects import effect, extended
 from validation.inference.evidence import (
+    averaged_noise,
     calibrated_case,
-    projected,
-    refit,
-    refit_onwards,
+    calibration_evidence,
+    pairs,
     scored,
-    starts,
-    tangents_beside,
+    sharpened,
+    singles,
     with_members,
-    without_effects,
 )
-from validation.inference.posterior import Hypothesis, averaged, pairs, probabilities, singles
-from validation.inference.refits import WEIGHT, between, refitted, shares, weighty_refits
-from validation.inference.score import total
-from validation.inference.several import further
+from validation.inference.hypotheses import Weighed, probabilities
+from validation.inference.refit import (
+    WEIGHT,
+    continued_refit,
+    exchanging_pairs,
+    larger_sets,
+    neighbour_tangents,
+    refit,
+    refitted,
+    shares,
+    starts,
+    weighty_refits,
+)
+from validation.inference.score import fit_gram, total
 from validation.noise import Level, Noise
 
 NAMES = ("convection@flange.right", "loss.constant@poles", "loss.constant@bearing.left", "sensor.bias@yoke")
@@ -60,7 +68,7 @@ def test_log_evidence_is_that_of_the_dense_normal_distribution(evidence):
     dense = multivariate_normal(np.zeros(z.size), S, allow_singular=False).logpdf(z) + 0.5 * z.size * np.log(
         2.0 * np.pi
     )
-    found = without_effects(fit, few, total(projected(fit, few)))
+    found = calibration_evidence(fit, few, total(fit_gram(fit, few)))
     assert found == pytest.approx(dense + fit.noise.log_prior(few), rel=1e-6)
 
 
@@ -86,7 +94,7 @@ def test_a_larger_noise_can_only_help_what_explains_less(evidence):
     """Averaged over two noises the odds of nothing against the best effect come nearer to one."""
     ones = singles(evidence)
     best = max(ones[1:], key=lambda h: h.log_bayes)
-    wide = averaged(ones, evidence, -10.0)
+    wide = averaged_noise(ones, evidence, -10.0)
     assert [h.log_bayes for h in wide] == [h.log_bayes for h in ones]
     assert wide[0].nats == pytest.approx(np.logaddexp(0.0, -10.0))
     same = next(h for h in wide if h.members == best.members)
@@ -99,9 +107,9 @@ def test_three_effects_are_found_one_beside_the_other(evidence):
     sharp = sharpened(evidence)
     ones = singles(sharp)
     fitted = refitted(sharp, [*ones, *pairs(sharp, ones)])
-    every = further(case, sharp, fitted)
+    every = larger_sets(case, sharp, fitted)
     found = every[int(np.argmax(probabilities(every)))]
-    assert isinstance(found, Hypothesis)
+    assert isinstance(found, Weighed)
     assert {sharp.names[k] for k in found.members} == set(NAMES[:3])
 
 
@@ -122,13 +130,13 @@ def test_what_carried_weight_under_one_noise_is_refitted_under_the_next(evidence
 
 def test_a_pair_that_exchanges_what_weighty_pairs_exchange_is_refitted_however_little_tangents_promise(evidence):
     """Of two members that stand for each other beside one partner, neither is left out beside another."""
-    weighty = [Hypothesis(m, log_bayes=10.0, fit=evidence.fit) for m in ((0, 2), (1, 2), (0, 3))]
-    fourth, apart = Hypothesis((1, 3), log_bayes=-20.0), Hypothesis((2, 3), log_bayes=-20.0)
-    assert between([Hypothesis(), *weighty, apart, fourth]) == [5]
-    assert between([Hypothesis(), *weighty, apart, replace(fourth, fit=evidence.fit)]) == []
+    weighty = [Weighed(m, log_bayes=10.0, fit=evidence.fit) for m in ((0, 2), (1, 2), (0, 3))]
+    fourth, apart = Weighed((1, 3), log_bayes=-20.0), Weighed((2, 3), log_bayes=-20.0)
+    assert exchanging_pairs([Weighed(), *weighty, apart, fourth]) == [5]
+    assert exchanging_pairs([Weighed(), *weighty, apart, replace(fourth, fit=evidence.fit)]) == []
     for i in range(3):  # without one of the three nothing says that they stand for each other
         idle = [replace(h, log_bayes=-20.0) if i == j else h for j, h in enumerate(weighty)]
-        assert between([Hypothesis(), *idle, apart, fourth]) == []
+        assert exchanging_pairs([Weighed(), *idle, apart, fourth]) == []
 
 
 def to_the_end(evidence, network, unknowns, theta, held):
@@ -140,9 +148,9 @@ def test_a_refit_that_goes_on_ends_no_worse_than_one_from_the_start_and_finely_a
     (k,) = [evidence.names.index(NAMES[0])]
     before = refit(evidence, [k], starts(evidence, [k])[0])
     sharp = sharpened(evidence)
-    onwards, anew = refit_onwards(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
+    onwards, anew = continued_refit(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
     assert onwards.objective < anew.objective + 0.5  # half a nat: fits stop at a tenth or so
-    fine = refit_onwards(sharp, [k], onwards, finely=True)
+    fine = continued_refit(sharp, [k], onwards, fine=True)
     end = to_the_end(sharp, *with_members(sharp, [k])[:2], fine.theta, with_members(sharp, [k])[2])
     assert abs(fine.theta[-1] - end.theta[-1]) < 0.3 * end.sd[-1]
 
@@ -151,7 +159,7 @@ def test_tangents_beside_a_refit_are_differences_there(evidence):
     """Of the second of two effects, where the first was fitted alone."""
     one, other = (evidence.names.index(n) for n in NAMES[:2])
     alone = refit(evidence, [one], starts(evidence, [one])[0])
-    (columns,) = tangents_beside(evidence, one, alone, [other]).values()
+    (columns,) = neighbour_tangents(evidence, one, alone, [other]).values()
     step = 1.0
     values = {**evidence.fit.values, **alone.unknowns.values(alone.theta)}
     network = extended(evidence.fit.network, [evidence.effects[k] for k in (one, other)])

@@ -12,10 +12,10 @@ from lumped.transfer.laws import Fixed
 from measured.case import LowFidelity
 from validation import diagnose
 from validation.comparison.linearisation import segments
-from validation.diagnosis.diagnose import infer
+from validation.diagnosis import infer
 from validation.effects import extended
 from validation.inference.evidence import with_members
-from validation.inference.multifidelity import at_low_fidelity, corrected, fidelity_error
+from validation.inference.low_fidelity import corrected, fidelity_error, low_fidelity_case
 from validation.parameters.unknowns import working
 
 pytestmark = pytest.mark.heavy
@@ -89,7 +89,7 @@ def test_held_out_errors_are_those_of_the_large_network():
 
 def test_the_error_of_the_small_network_is_what_it_misses_of_the_large_one():
     whole = case()
-    small = at_low_fidelity(whole)
+    small = low_fidelity_case(whole)
     posterior = infer(small.training())
     e, h = posterior.evidence, posterior.best
     _, _, held = with_members(e, h.members)
@@ -108,13 +108,13 @@ def test_the_error_of_the_small_network_is_what_it_misses_of_the_large_one():
 def test_a_sensor_that_the_small_network_does_not_know_leaves_the_large_one():
     given = case()
     fewer = dict(list(given.low.rows.items())[1:])
-    assert at_low_fidelity(replace(given, low=replace(given.low, rows=fewer))).model.network is given.model.network
+    assert low_fidelity_case(replace(given, low=replace(given.low, rows=fewer))).model.network is given.model.network
 
 
 def test_another_network_than_it_was_made_for_leaves_that_one():
     given = case()
     other = replace(given, model=replace(given.model, network=network()))
-    assert at_low_fidelity(other) is other
+    assert low_fidelity_case(other) is other
 
 
 def test_a_channel_that_stands_still_is_told_although_its_readings_are_corrected():

@@ -12,20 +12,18 @@ from scipy.stats import norm
 from geom.errors import InputError
 from measured.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
 from validation.effects import effect
-from validation.inference.decision import SURE, decide
-from validation.inference.detection import smallest
-from validation.inference.evidence import calibrated_case, scored
-from validation.inference.posterior import (
-    Hypothesis,
-    inclusion,
-    linear,
+from validation.inference.decide import SURE, decide
+from validation.inference.evidence import (
+    calibrated_case,
+    pair_evidence,
     pairs,
-    prior_shares,
-    probabilities,
+    scored,
+    single_evidence,
     singles,
-    two,
+    smallest_visible,
 )
-from validation.inference.refits import laplace, promised, with_smaller_shortfall
+from validation.inference.hypotheses import Weighed, inclusion, probabilities
+from validation.inference.refit import laplace, with_gains, with_shortfalls
 from validation.inference.score import one_size
 
 NAMES = (
@@ -61,7 +59,6 @@ def test_two_effects_that_share_nothing_are_worth_what_each_is():
     a, b = np.array([0]), np.array([2])
     sd = np.array([p.prior_sd for p in e.parameters])
     each = [one_size(e.score.u[k], V[k, k], 1.0 * sd[k], e.score.sign[k]) for k in (0, 2)]
-    one = replace(apart, parameters=tuple(replace(p) for p in e.parameters))
     sizes = [
         np.log(
             np.mean(
@@ -73,7 +70,7 @@ def test_two_effects_that_share_nothing_are_worth_what_each_is():
     most = float(
         sum(each) + sum(sizes) + np.log(3.0)
     )  # the sizes of both are the same one: at most three times as likely
-    assert float(two(one, a, b)[0]) <= most + 1e-9
+    assert float(pair_evidence(apart, a, b)[0]) <= most + 1e-9
 
 
 def test_probabilities_follow_bayes_with_tempered_evidence():
@@ -81,7 +78,7 @@ def test_probabilities_follow_bayes_with_tempered_evidence():
     first, more = TEMPER["temper"].share, TEMPER["temper per nat"].share
     nats = nats_worth(np.log(20.0))
     assert nats / (first + more * nats) == pytest.approx(np.log(20.0))
-    hypotheses = [Hypothesis(log_prior=np.log(0.5)), Hypothesis((0,), "", np.log(0.1), nats)]
+    hypotheses = [Weighed(log_prior=np.log(0.5)), Weighed((0,), "", np.log(0.1), nats)]
     np.testing.assert_allclose(probabilities(hypotheses), [0.5 / 2.5, 2.0 / 2.5])
 
 
@@ -94,7 +91,7 @@ def test_what_an_effect_of_another_shape_leaves_names_no_second_one():
 
 
 def test_prior_shares_sum_to_their_classes():
-    e, share = evidence(), prior_shares(evidence())
+    e, share = evidence(), evidence().prior
     faults = np.array([x.fault for x in e.effects])
     assert share[~faults].sum() == pytest.approx(PRIOR["effect"].share)
     assert share[faults].sum() == pytest.approx(PRIOR["fault"].share)
@@ -114,16 +111,12 @@ def test_a_pair_never_outweighs_its_better_half_without_a_reason():
     """Nothing is gained by a second effect that the readings do not ask for: Occam's factor."""
     e = evidence()
     both = {h.members: h.log_bayes for h in pairs(e, singles(e))}
-    one = dict(enumerate(linear(e)))
+    one = dict(enumerate(single_evidence(e)))
     assert both[(0, 2)] < one[0] + max(one[2], 0.0) + 3.0
 
 
 def test_inclusion_adds_up_over_hypotheses():
-    hypotheses = [
-        Hypothesis((0,), "", np.log(0.2)),
-        Hypothesis((0, 1), "", np.log(0.3)),
-        Hypothesis(log_prior=np.log(0.5)),
-    ]
+    hypotheses = [Weighed((0,), "", np.log(0.2)), Weighed((0, 1), "", np.log(0.3)), Weighed(log_prior=np.log(0.5))]
     np.testing.assert_allclose(inclusion(hypotheses, 3), [0.5, 0.3, 0.0])
 
 
@@ -138,17 +131,17 @@ def test_inclusion_adds_up_over_hypotheses():
 )
 def test_the_cheapest_statement_is_made(nothing, first, second, verdict):
     hypotheses = [
-        Hypothesis(log_prior=np.log(nothing)),
-        Hypothesis((0,), "", np.log(first)),
-        Hypothesis((1,), "", np.log(second)),
+        Weighed(log_prior=np.log(nothing)),
+        Weighed((0,), "", np.log(first)),
+        Weighed((1,), "", np.log(second)),
     ]
     assert decide(evidence(), hypotheses).verdict == verdict
 
 
 def test_faults_alone_are_data_and_unknown_heat_is_outside():
-    fault = [Hypothesis(log_prior=np.log(0.05)), Hypothesis((3,), "", np.log(0.95))]
-    heat = [Hypothesis(log_prior=np.log(0.05)), Hypothesis((), "yoke", np.log(0.95))]
-    both = [Hypothesis(log_prior=np.log(0.02)), Hypothesis((0, 2), "", np.log(0.98))]
+    fault = [Weighed(log_prior=np.log(0.05)), Weighed((3,), "", np.log(0.95))]
+    heat = [Weighed(log_prior=np.log(0.05)), Weighed((), "yoke", np.log(0.95))]
+    both = [Weighed(log_prior=np.log(0.02)), Weighed((0, 2), "", np.log(0.98))]
     assert [decide(evidence(), h).verdict for h in (fault, heat, both)] == ["data", "outside", "several"]
     assert 0.5 < SURE < 1.0
 
@@ -156,10 +149,10 @@ def test_faults_alone_are_data_and_unknown_heat_is_outside():
 def test_an_effect_of_the_smallest_detectable_size_is_seen_four_times_in_five():
     """Scores drawn about that amplitude: 0.8 of 4000 pass the threshold, with a deviation of 0.006."""
     e, rng = evidence(), np.random.default_rng(0)
-    a, k = smallest(e), 0
+    a, k = smallest_visible(e), 0
     V, sd = e.score.V[k, k], e.parameters[k].prior_sd
     u = a[k] * V + np.sqrt(V) * rng.standard_normal(4000)
-    limit = nats_worth(np.log(PRIOR["nothing"].share / prior_shares(e)[k]))
+    limit = nats_worth(np.log(PRIOR["nothing"].share / e.prior[k]))
     seen = np.mean(one_size(u, np.full(4000, V), np.full(4000, sd), np.ones(4000, int)) > limit)
     assert seen == pytest.approx(0.8, abs=0.03)
 
@@ -176,8 +169,8 @@ def test_doubt_can_only_be_widened():
 def test_pairs_that_were_not_refitted_know_what_the_refits_of_either_say():
     """A refit that falls 30 nats short of its tangent takes these from pairs that were never refitted; what one gains
     says which pairs to refit."""
-    short, more = Hypothesis((0,), log_bayes=70.0), Hypothesis((1,), log_bayes=5.0)
-    pair, other, done = Hypothesis((0, 2), log_bayes=72.0), Hypothesis((1, 2), log_bayes=6.0), Hypothesis((0, 1))
+    short, more = Weighed((0,), log_bayes=70.0), Weighed((1,), log_bayes=5.0)
+    pair, other, done = Weighed((0, 2), log_bayes=72.0), Weighed((1, 2), log_bayes=6.0), Weighed((0, 1))
     fit = evidence().fit
     before = [short, more, pair, other, done]
     after = [
@@ -187,5 +180,5 @@ def test_pairs_that_were_not_refitted_know_what_the_refits_of_either_say():
         other,
         replace(done, log_bayes=41.0, fit=fit),
     ]
-    assert [h.log_bayes for h in promised(before, after)] == [40.0, 9.0, 72.0, 10.0, 41.0]
-    assert [h.log_bayes for h in with_smaller_shortfall(before, after)] == [40.0, 9.0, 42.0, 6.0, 41.0]
+    assert [h.log_bayes for h in with_gains(before, after)] == [40.0, 9.0, 72.0, 10.0, 41.0]
+    assert [h.log_bayes for h in with_shortfalls(before, after)] == [40.0, 9.0, 42.0, 6.0, 41.0]

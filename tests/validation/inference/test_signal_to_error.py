@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
-from validation.diagnosis.numerical_error import signal_to_error
+from validation.inference.decide import signal_to_error
 
 BUDGET = ErrorBudget((PlaceError("winding", 1.0, 0.4, 0.1), PlaceError("flange", 0.1, None, None)))
 

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
-from validation.diagnosis.tables import unsteady
 from validation.effects import effect
-from validation.inference.decision import Decision, decide
-from validation.inference.evidence import calibrated_case, scored
-from validation.inference.posterior import Hypothesis, Posterior, probabilities, singles
-from validation.inference.refits import laplace
-from validation.inference.steadiness import at_every_second, steady, united
+from validation.inference.decide import Decision, Posterior, decide, half_posterior, steady_decision, united_groups
+from validation.inference.evidence import calibrated_case, scored, singles
+from validation.inference.hypotheses import Weighed, probabilities
+from validation.inference.refit import laplace
+from validation.inference.say import unsteady_words
 
 NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
 
@@ -28,7 +27,7 @@ def posterior():
 @pytest.mark.parametrize("first", [0, 1])
 def test_half_of_the_instants_say_the_same(first):
     """Model error is slow: half of the readings hold nearly all that the whole record does."""
-    all_of_it, half = posterior(), at_every_second(posterior(), first)
+    all_of_it, half = posterior(), half_posterior(posterior(), first)
     for s, t in zip(all_of_it.evidence.fit.parts, half.evidence.fit.parts, strict=True):
         np.testing.assert_array_equal(t.time, s.time[first::2])
     np.testing.assert_allclose(probabilities(half.hypotheses), probabilities(all_of_it.hypotheses), atol=0.1)
@@ -40,8 +39,8 @@ def test_what_was_too_improbable_to_be_refitted_stays_so():
     """Exchanged plugs that the readings contradict, beside an effect that gains next to nothing."""
     p = posterior()
     small = replace(p.best, log_bayes=0.1)
-    impossible = Hypothesis((1,), "", -3.0, -5000.0)
-    half = at_every_second(replace(p, hypotheses=(p.hypotheses[0], small, impossible)), 0)
+    impossible = Weighed((1,), "", -3.0, -5000.0)
+    half = half_posterior(replace(p, hypotheses=(p.hypotheses[0], small, impossible)), 0)
     assert half.hypotheses[-1].log_bayes <= -5000.0
 
 
@@ -49,9 +48,9 @@ def test_what_stands_on_every_second_sample_is_left_as_it_is():
     def decision(p):
         return decide(p.evidence, p.hypotheses)
 
-    choice = steady(posterior(), decision)
+    choice = steady_decision(posterior(), decision)
     assert choice == decision(posterior())
-    assert unsteady(posterior(), choice) == ""
+    assert unsteady_words(posterior(), choice) == ""
 
 
 def instants(p):
@@ -68,33 +67,33 @@ def instants(p):
 )
 def test_a_name_that_half_of_the_instants_do_not_give_is_withheld(on_half, groups):
     whole = Decision("named", ((0,),), 0.95)
-    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)
+    choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)
     assert (choice.verdict, choice.groups, choice.sure) == ("group", groups, 0.95)
-    assert "every second sample alone leads to " + on_half.verdict in unsteady(posterior(), choice)
+    assert "every second sample alone leads to " + on_half.verdict in unsteady_words(posterior(), choice)
 
 
 def test_the_order_within_a_group_is_no_other_verdict():
     whole, half = Decision("group", ((0, 1),), 0.9), Decision("group", ((1, 0),), 0.9)
-    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert choice == whole
 
 
 def test_one_of_several_is_not_named_where_half_of_the_instants_do_not_name_it():
     whole, half = Decision("several", ((0,), (1,)), 0.9), Decision("several", ((0, 2), (1,)), 0.9)
-    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert (choice.verdict, choice.groups) == ("several", ((0, 2), (1,)))
-    told = unsteady(posterior(), choice)
+    told = unsteady_words(posterior(), choice)
     assert "not all are named: every second sample alone leads to several" in told
     assert f"{NAMES[0]} or {NAMES[2]} and {NAMES[1]}" in told
 
 
 def test_what_one_group_has_joins_no_other():
-    assert united(((0,), (1,)), ((0, 2, 1),)) == ((0, 2), (1,))
-    assert united(((0,), (1,)), ((0,), (2,))) == ((0,), (1, 2))
+    assert united_groups(((0,), (1,)), ((0, 2, 1),)) == ((0, 2), (1,))
+    assert united_groups(((0,), (1,)), ((0,), (2,))) == ((0,), (1, 2))
 
 
 def test_nothing_is_claimed_because_half_of_the_instants_would_claim_it():
     whole, half = Decision("adequate", (), 0.4), Decision("named", ((0,),), 0.9)
-    choice = steady(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert choice == replace(whole, others=(half, half))
-    assert "convection@flange.right" in unsteady(posterior(), choice)
+    assert "convection@flange.right" in unsteady_words(posterior(), choice)

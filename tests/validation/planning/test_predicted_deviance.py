@@ -10,12 +10,18 @@ from playground import Truth, network, steps
 from measured.case import Case, Model
 from validation.comparison.linearisation import segments
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, refit, scored, starts
+from validation.inference.evidence import calibrated_case, scored
+from validation.inference.refit import refit, starts
 from validation.planning.candidate_tests import CANDIDATE_TESTS
-from validation.planning.competing_models import CompetingModels, deviance_difference
 from validation.planning.experiments import next_tests
-from validation.planning.prediction import predicted_deviance, predicted_readings
-from validation.planning.separability import DECISIVE, GAP
+from validation.planning.rivals import (
+    DECISIVE,
+    GAP,
+    CompetingModels,
+    deviance_difference,
+    predicted_deviance,
+    predicted_readings,
+)
 
 RIVALS = ("brush.friction@commutator", "loss.constant@commutator")
 

@@ -8,10 +8,10 @@ from playground import SENSORS, Truth, network
 
 from measured.case import Case, Model
 from validation.effects import effect
-from validation.inference.evidence import calibrated_case, refit, scored, starts
-from validation.planning.competing_models import CompetingModels, deviance_difference
+from validation.inference.evidence import calibrated_case, scored
+from validation.inference.refit import refit, starts
+from validation.planning.rivals import DECISIVE, GAP, CompetingModels, deviance_difference, separation
 from validation.planning.sensors import access, free_places, next_sensors, with_sensors
-from validation.planning.separability import DECISIVE, GAP, separation
 
 PLACES = ("winding.armature", "rotor")
 RIVALS = tuple(f"loss.constant@{place}" for place in PLACES)

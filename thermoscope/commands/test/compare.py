@@ -82,7 +82,7 @@ def compared(
     tell("learning plain models")
     more: dict[str, Any] = {}
     if why:
-        from validation.diagnosis.discrepancy import discrepancies
+        from validation.discrepancy import discrepancies
 
         uncertainties = [u.document() for test in result.tests for u in test.uncertainty]
         more = {"uncertainty": uncertainties, **discrepancies(folder.case, tell).document()}

@@ -10,12 +10,11 @@ from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import physical
 from validation.comparison.linearisation import segments
 from validation.comparison.residuals import Pattern, patterns
-from validation.conditions.contradiction import Contradiction, contradiction
-from validation.conditions.robust import quiet_fit
-from validation.conditions.windows import pulses
-from validation.inference.evidence import calibrated_case
+from validation.inference.contradiction import Contradiction, contradiction
+from validation.inference.evidence import calibrated_case, quiet_fit
+from validation.inference.low_fidelity import low_fidelity_case
 from validation.inference.missing_heat import MissingHeat, missing_heat
-from validation.inference.multifidelity import at_low_fidelity
+from validation.inference.stretches import pulses
 from validation.parameters.unknowns import standing
 from validation.threads import one_blas_thread
 
@@ -34,7 +33,7 @@ class Discrepancy:
     def document(self) -> dict:
         return {
             "patterns": [p.document() for p in self.patterns],
-            "where": [{**h.document(), "pulses": steps(h)} for h in self.heat],
+            "where": [{**h.document(), "pulses": pulse_rows(h)} for h in self.heat],
             "contradiction": self.contradiction.document(),
         }
 
@@ -45,14 +44,14 @@ def discrepancies(case: Case, progress: Callable[[str], None] = no_progress) -> 
     network = standing(case)
     now = physical(case)
     left = patterns(segments(network, case.tests, now), case.tests)
-    case = at_low_fidelity(case, progress)
+    case = low_fidelity_case(case, progress)
     tests = case.usable
     fit = quiet_fit(calibrated_case(case, progress), tests)
     progress("looking for where heat is missing")
     return Discrepancy(tuple(left), tuple(missing_heat(fit, tests)), contradiction(fit, tests))
 
 
-def steps(heat: MissingHeat) -> list[dict]:
+def pulse_rows(heat: MissingHeat) -> list[dict]:
     """Every stretch in which a missing-heat curve stands on another level: test, begin and end (s), W."""
     by_test = {test: pulses(*curve) for test, curve in heat.heat_W.items()}
     return [

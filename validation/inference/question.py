@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from measured.doubt import USUAL
-from validation.effects import Effect
+from validation.effects.base import Effect
 from validation.effects.during import During
 from validation.effects.time_window import event
-from validation.inference.decision import SURE
+from validation.inference.decide import SURE, Posterior
 from validation.inference.evidence import Evidence
-from validation.inference.posterior import Hypothesis, Posterior, probabilities
+from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.result import Question
 
 Array = NDArray[np.float64]
@@ -35,17 +35,14 @@ THINGS = {
 }
 
 
-def answered(evidence: Evidence, hypotheses: Sequence[Hypothesis], answers: Mapping[str, bool]) -> list[Hypothesis]:
-    """The hypotheses with what the user said as evidence."""
-    wrong = USUAL["answer"]
-    out = list(hypotheses)
-    for about, answer in answers.items():
-        yes = [concerns(e, about) for e in evidence.effects]
-        agrees = [any(yes[k] for k in h.members) == answer for h in out]
-        out = [
-            replace(h, log_prior=h.log_prior + float(np.log(1.0 - wrong if a else wrong)))
-            for h, a in zip(out, agrees, strict=True)
-        ]
+def with_answers(evidence: Evidence, hypotheses: Sequence[Weighed], answers: Mapping[str, bool]) -> list[Weighed]:
+    """The hypotheses with what the user said as evidence.  answers : what was asked about -> yes or no"""
+    wrong, out = USUAL["answer"], list(hypotheses)
+    for about, yes in answers.items():
+        of_it = {k for k, e in enumerate(evidence.effects) if concerns(e, about)}
+        right = [bool(of_it & set(h.members)) == yes for h in out]
+        odds = [float(np.log(1.0 - wrong if x else wrong)) for x in right]
+        out = [replace(h, log_prior=h.log_prior + x) for h, x in zip(out, odds, strict=True)]
     return out
 
 
@@ -69,17 +66,17 @@ def best_question(posterior: Posterior) -> Question | None:
     subjects = dict.fromkeys(
         x.condition if isinstance(x, During) else x.name for x in e.effects if isinstance(x, During) or x.fault
     )
-    rows = [(about, yes_of(posterior, P, about)) for about in subjects]
+    rows = [(about, yes_probability(posterior, P, about)) for about in subjects]
     about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))
     if information(yes) < WORTH:
         return None
-    return Question(about, words(posterior, P, about), yes, information(yes))
+    return Question(about, words(posterior, about), yes, information(yes))
 
 
-def yes_of(posterior: Posterior, P: Array, about: str) -> float:
+def yes_probability(posterior: Posterior, P: Array, about: str) -> float:
     """Probability that the answer is yes."""
-    yes = [concerns(e, about) for e in posterior.evidence.effects]
-    return float(sum(p for p, h in zip(P, posterior.hypotheses, strict=True) if any(yes[k] for k in h.members)))
+    yes = {k for k, e in enumerate(posterior.evidence.effects) if concerns(e, about)}
+    return float(sum(p for p, h in zip(P, posterior.hypotheses, strict=True) if yes & set(h.members)))
 
 
 def information(yes: float) -> float:
@@ -92,12 +89,10 @@ def entropy(p: float) -> float:
     return float(-sum(x * np.log(x) for x in (p, 1.0 - p) if x > 0.0))
 
 
-def words(posterior: Posterior, P: Array, about: str) -> str:
+def words(posterior: Posterior, about: str) -> str:
     """The question, with the likeliest thing that a yes would mean."""
-    e, share = posterior.evidence, np.zeros(len(posterior.evidence.effects))
-    for h, p in zip(posterior.hypotheses, P, strict=True):
-        for k in h.members:
-            share[k] += p if concerns(e.effects[k], about) else 0.0
+    e = posterior.evidence
+    share = inclusion(posterior.hypotheses, len(e.effects)) * [concerns(x, about) for x in e.effects]
     best = e.effects[int(np.argmax(share))]
     if not isinstance(best, During):
         return f"can it be that {best.title}, {best.place.replace('|', ' and ')}?"

@@ -18,8 +18,8 @@ from lumped.model.network import Network, Parameter
 from measured.case import Test
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
-from validation.inference.evidence import extended_prior, projected
-from validation.inference.score import per_test, score
+from validation.inference.result import TableRow
+from validation.inference.score import fit_score
 from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ FAR = 5.0  # factor from which tangents tell no size
 
 
 @dataclass(frozen=True)
-class Difference:
+class Difference(TableRow):
     """A parameter that would have to differ in one test.
 
     others, here : its value in the other tests and in this one;  sd : standard deviations between the two
@@ -45,9 +45,6 @@ class Difference:
     nats: float
     possible: bool
     relative: bool = False
-
-    def document(self) -> dict:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)
@@ -78,23 +75,16 @@ def contradiction(fit: Fit, tests: Sequence[Test]) -> Contradiction:
 
 def differences(fit: Fit) -> list[Difference]:
     """Every parameter in every test, the others held together."""
-    p, parameters = fit.theta.size, fit.unknowns.parameters
     parts = [replace(s, J=np.column_stack([s.J, s.J])) for s in fit.parts]  # once for all tests, once for this one
-    grams = projected(fit, parts)
-    theta, sd = extended_prior(fit)
-    scores = score(per_test(grams), theta, sd, np.zeros(p * len(grams), int))
-    each = [(q, test) for test in grams for q in parameters]
-    rows = zip(each, fit.theta.tolist() * len(grams), scores.amplitude, scores.sd, scores.visible, strict=True)
+    scores = fit_score(fit, parts, each_test=True)
+    tests = list(dict.fromkeys(s.test for s in parts))
+    each = [(q, test) for test in tests for q in fit.unknowns.parameters]
+    rows = zip(each, fit.theta.tolist() * len(tests), scores.amplitude, scores.sd, scores.visible, strict=True)
     return [
         _row(fit.network, q, test, x, float(a), float(s))
         for (q, test), x, a, s, visible in rows
-        if visible and felt_elsewhere(q)
+        if visible and head(q) not in ("initial", "delay")  # starts and clocks belong to one test anyhow
     ]
-
-
-def felt_elsewhere(q: Parameter) -> bool:
-    """Starts and clocks belong to one test anyhow."""
-    return head(q) not in ("initial", "delay")
 
 
 def _row(network: Network, q: Parameter, test: str, x: float, a: float, sd: float) -> Difference:
@@ -113,12 +103,12 @@ def can_differ(network: Network, q: Parameter) -> bool:
         return True
     links, sources = {x.name: x for x in network.links}, {x.name for x in network.sources}
     return all(
-        t in sources or (t in links and (links[t].kind in ("film", "stream") or outer(network, links[t].places)))
+        t in sources or (t in links and (links[t].kind in ("film", "stream") or is_outer(network, links[t].places)))
         for t, _ in q.targets
     )
 
 
-def outer(network: Network, places: tuple[str, str]) -> bool:
+def is_outer(network: Network, places: tuple[str, str]) -> bool:
     """Does a link end at a boundary or a fluid?"""
     return any(p in network.boundaries or (p in network.places and network.places[p].kind == "fluid") for p in places)
 

@@ -1,9 +1,14 @@
-"""What further readings would decide: as one candidate foretells them, explained by another that is fitted anew."""
+"""What further readings would decide between effects that the readings at hand cannot tell apart.
+
+By tangents the wrong one of two would fit worse by a^2 V_kk (1 - c_kl^2); for the best plans the readings are those
+that one candidate foretells, explained by another that is fitted anew.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +20,32 @@ from validation.calibration.model_error import ModelError, model_error
 from validation.comparison.linearisation import segments
 from validation.comparison.predict import predict
 from validation.inference.evidence import Evidence, with_members
+from validation.inference.score import Gram, fit_prior, score, total
+from validation.noise import Noise
 from validation.parameters.unknowns import Unknowns, nuisances
-from validation.planning.competing_models import CompetingModels, deviance_difference
-from validation.planning.separability import GAP, Gaps
 
 Array = NDArray[np.float64]
+Gaps = dict[tuple[int, int], float]
+GAP, DECISIVE = 10.0, 20.0  # deviance from which two begin to come apart, and from which a test decides
 CHECKED = 2  # of the best plans are refitted: each costs as much as a refit of the diagnosis
 STEPS, ENOUGH = 4, 1.0  # of a rival's refit, and the gain (nats) of one: gaps are told in tens
+
+
+@dataclass(frozen=True)
+class CompetingModels:
+    """group : indices of effects, most probable first;  fits : with each in the model, all under one noise"""
+
+    group: tuple[int, ...]
+    fits: tuple[Fit, ...]
+    noise: Noise
+
+    @property
+    def best(self) -> Fit:
+        return self.fits[0]
+
+    def fit(self, k: int) -> Fit:
+        """The refit with effect k."""
+        return self.fits[self.group.index(k)]
 
 
 @dataclass(frozen=True)
@@ -43,6 +67,30 @@ class Plan:
     def worth(self) -> float:
         """Gain per hour."""
         return self.gain / self.hours
+
+
+def deviance_difference(fit: Fit, best: Fit) -> float:
+    """Deviance by which a fit is worse."""
+    return 2.0 * (fit.objective - best.objective)
+
+
+def separation(evidence: Evidence, models: CompetingModels, more: Gram) -> Gaps:
+    """For every pair of a group the gap with more readings than the evidence has, the smaller way."""
+    group = models.group
+    sign = evidence.score.sign[list(group)]
+    s = score(total(evidence.grams).subset(group) + more, *fit_prior(evidence.fit), sign)
+    V, c = np.diag(s.V), s.cosine
+    size = [models.fit(k).values[evidence.names[k]] for k in group]
+    strength = [a**2 * v for a, v in zip(size, V, strict=True)]
+    return {
+        (group[i], group[j]): float(min(strength[i], strength[j]) * (1.0 - c[i, j] ** 2))
+        for i, j in combinations(range(len(group)), 2)
+    }
+
+
+def separable_pairs(evidence: Evidence, gaps: Gaps) -> tuple[str, ...]:
+    """The pairs whose gap decides, by name."""
+    return tuple(f"{evidence.names[k]} / {evidence.names[m]}" for (k, m), gap in gaps.items() if gap >= DECISIVE)
 
 
 def predicted_readings(fit: Fit, test: Test) -> Test:

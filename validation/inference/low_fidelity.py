@@ -21,16 +21,15 @@ from lumped.model.network import Network
 from measured.case import Case, Test
 from validation.calibration.calibrate import calibrated, no_progress
 from validation.comparison.predict import predict
-from validation.effects import extended
+from validation.inference.decide import Posterior
 from validation.inference.evidence import with_members
-from validation.inference.posterior import Posterior
 from validation.parameters.unknowns import working
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
 
 
-def at_low_fidelity(case: Case, progress: Callable[[str], None] = no_progress) -> Case:
+def low_fidelity_case(case: Case, progress: Callable[[str], None] = no_progress) -> Case:
     """The case on its small network, corrected at the model's values; as it is where there is none.
 
     A model that was never calibrated is calibrated roughly first, and begins there, where the correction holds.
@@ -57,14 +56,14 @@ def corrected(case: Case, values: Mapping[str, float]) -> Case:
 def fidelity_error(case: Case, small: Case, posterior: Posterior) -> dict[str, float]:
     """Channel -> how far (K) the small network's prediction of the most probable hypothesis is from the large one's.
 
-    small : of `at_low_fidelity`, which the posterior is about; no error where that is the case itself
+    small : of `low_fidelity_case`, which the posterior is about; no error where that is the case itself
     """
     if small is case:
         return {}
     e, h = posterior.evidence, posterior.best
     network, _, fixed = with_members(e, h.members)
     values = {**fixed, **(h.fit.values if h.fit else e.fit.values)}
-    large = extended(working(case)[0], [e.effects[k] for k in h.members])
+    large = e.hypothesis(h.members).extend(working(case)[0])
     by_name = {t.name: t for t in case.tests}
     tests = [by_name[t.name] for t in e.tests]
     out: dict[str, float] = {}

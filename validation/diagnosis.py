@@ -1,0 +1,206 @@
+"""Which effect is missing, how probable, what it is confused with, and which test would decide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+
+from measured.case import Case
+from measured.sensors.faults import PlainFaults, broken_channels, without
+from validation.bases.which_base import BaseDeviance, base_hypotheses, wrong_bases
+from validation.calibration.calibrate import no_progress
+from validation.comparison.linearisation import rmse
+from validation.effects.above import KIND
+from validation.inference.conditions import conditions, end_reach, law_errors
+from validation.inference.contradiction import contradiction
+from validation.inference.decide import Decision, Posterior, clear_decision, decide, steady_decision
+from validation.inference.events import retimed
+from validation.inference.evidence import (
+    Evidence,
+    averaged_noise,
+    calibrated_case,
+    candidates,
+    converged,
+    joined,
+    log_evidence,
+    pairs,
+    quiet,
+    recalibrated,
+    scored,
+    sharpened,
+    singles,
+    thresholds,
+)
+from validation.inference.hypotheses import Members, Weighed, relative_evidence
+from validation.inference.low_fidelity import fidelity_error, low_fidelity_case
+from validation.inference.missing_heat import MissingHeat, Scan, scan_heat
+from validation.inference.question import best_question, with_answers
+from validation.inference.refit import (
+    NO_FITS,
+    WarmFits,
+    fine_refit,
+    fine_refits,
+    group_refits,
+    larger_sets,
+    refit_noise,
+    refitted,
+    weighty_refits,
+)
+from validation.inference.result import Diagnosis
+from validation.inference.say import (
+    ROWS,
+    candidate_rows,
+    confusion,
+    final_verdict,
+    hidden_effects,
+    odds,
+    possible_events,
+    prior_pulls,
+    remainder,
+    sentence,
+    unsteady_words,
+)
+from validation.noise import Noise
+from validation.planning.experiments import next_tests
+from validation.planning.rivals import CompetingModels
+from validation.planning.sensors import next_sensors
+from validation.threads import one_blas_thread
+
+Progress = Callable[[str], None]
+NO_BUDGET: Mapping[str, float] = MappingProxyType({})
+RIVALS = 4  # of a group are compared with each other where a plan is wanted
+CONFUSIONS = 12  # candidates whose traces are compared
+
+
+@one_blas_thread
+def diagnose(
+    case: Case,
+    kinds: Sequence[str] | None = None,
+    progress: Progress = no_progress,
+    plan: bool = True,
+    budget: Mapping[str, float] = NO_BUDGET,
+) -> Diagnosis:
+    """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
+
+    A test that stood on another base than its sheet says is told before anything else. Readings of a channel that is
+    plainly broken are told, and left out. Where the case has a small network beside its own, that is run.
+
+    Parameters: `kinds` restricts the catalogue; `progress` is told what is being done; `plan`: also rank the next tests
+    and sensors; `budget` channel -> error (K) of the model's own numbers there, what moves no reading by more is not
+    named. Returns: the verdict with its odds and tables.
+    """
+    broken = broken_channels(case.training().tests)
+    whole, case = case, low_fidelity_case(case, progress)
+    training = case.training()
+    training = replace(training, tests=without(training.tests, broken))
+    bases = base_hypotheses(training, progress)
+    posterior = infer(training, kinds, progress)
+    wrong, small = wrong_bases(bases), fidelity_error(whole, case, posterior)
+    budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
+    choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), budget))
+    if wrong:  # nothing else is accused of what the base does
+        choice = Decision("data", (), choice.sure)
+    progress("writing the tables")
+    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), bases, plan)
+
+
+def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = no_progress) -> Posterior:
+    """Calibrate, score, weigh every hypothesis, refit what carries weight.
+
+    Parameters: as of `diagnose`. Returns: every hypothesis with its log evidence over that of nothing.
+    """
+    fit = calibrated_case(case, progress)
+    progress("scoring the catalogue")
+    evidence = sharpened(scored(case, candidates(case, kinds), fit))
+    calm = quiet(evidence)
+    against = contradiction(calm.fit, evidence.tests)
+    progress("looking for where heat is missing")
+    scan = scan_heat(evidence.fit, evidence.tests)
+    heat = scan.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
+    selection = conditions(calm, case, scan, heat, kinds, progress)
+    values = {**case.model.values, **evidence.fit.values}
+    laws = law_errors(evidence, values) if kinds is None or KIND in kinds else {}
+    first = len(evidence.causes)
+    larger = joined(evidence, {**selection, **laws}, values)
+    evidence = converged(sharpened(larger, range(first, first + len(selection))))
+    hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
+    # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
+    update, noise = retimed(evidence, hypotheses, end_reach(scan), fine_refit), refit_noise(hypotheses)
+    if noise is not None or update is not evidence:
+        evidence = converged(recalibrated(update, noise or update.fit.noise))
+        warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
+        again = weighty_refits(hypotheses)
+        hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress, warm_fits, again)
+    every = larger_sets(case, evidence, fine_refits(evidence, hypotheses), progress)
+    return Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
+
+
+def weigh(
+    case: Case,
+    evidence: Evidence,
+    scan: Scan,
+    loudest: Noise,
+    progress: Progress,
+    warm_fits: WarmFits = NO_FITS,
+    again: Collection[Members] = (),
+) -> tuple[list[Weighed], list[MissingHeat]]:
+    """All hypotheses, those that carry weight refitted, and where heat is missing.
+
+    Parameters: `loudest` the noise that nothing asks for; `warm_fits` members -> a refit of theirs that may go on;
+    `again` members of what is refitted in any case.
+    """
+    fit = evidence.fit
+    heat = scan.read(fit.parts, fit.noise, fit.theta, fit.error)
+    prior = {h.place: h.log_prior for h in scan.hypotheses}
+    loud, ones = recalibrated(evidence, loudest), singles(evidence)
+    every = [*ones, *pairs(evidence, ones), *(Weighed((), w.place, prior[w.place], w.log_bayes) for w in heat)]
+    every = averaged_noise(every, loud, log_evidence(loud.fit) - log_evidence(fit))
+    return refitted(evidence, with_answers(evidence, every, case.answers), progress, warm_fits, again), heat
+
+
+def tabulate(
+    case: Case, posterior: Posterior, choice: Decision, broken: PlainFaults, bases: Sequence[BaseDeviance], plan: bool
+) -> Diagnosis:
+    """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
+    e, members = posterior.evidence, [k for g in choice.groups for k in g][:ROWS]
+    single = group_refits(e, posterior.single, members)
+    pulls = prior_pulls(e.fit)
+    verdict = final_verdict(choice.verdict, posterior, choice, pulls, broken)
+    rows = candidate_rows(case, posterior, choice, verdict, single)
+    rivals = competing_models(e, choice, single) if plan and verdict in ("group", "several") else None
+    groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
+    tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
+    return Diagnosis(
+        verdict=verdict,
+        words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady_words(posterior, choice),
+        named=tuple(g[0] for g in groups),
+        groups=groups,
+        candidates=rows,
+        cannot_see=hidden_effects(e),
+        where=posterior.heat,
+        next_tests=tuple(tests),
+        next_sensors=tuple(sensors),
+        rmse_K=rmse(e.fit.parts),
+        floor_K=float(np.sqrt(np.mean([s.weight**2 for s in e.fit.parts]))),
+        threshold=float(np.min(thresholds(e))),
+        pulls=pulls,
+        cosine=confusion(e, [c.effect for c in rows[:CONFUSIONS]]),
+        bases=tuple(bases),
+        odds=odds(posterior, broken.names),
+        p_nothing=0.0 if broken.names else 1.0 - choice.sure,
+        events=possible_events(posterior),
+        remainder=remainder(posterior, choice, single),
+        contradiction=posterior.against,
+        question=best_question(posterior),
+    )
+
+
+def competing_models(e: Evidence, choice: Decision, single: Mapping[int, Weighed]) -> CompetingModels | None:
+    """The first group that could not be separated, with the refits of its leading members."""
+    group = next((g for g in choice.groups if len(g) > 1), ())
+    few = [k for k in group if not e.effects[k].whole][:RIVALS]
+    fits = {k: fit for k in few if (fit := single[k].fit) is not None}
+    return CompetingModels(tuple(fits), tuple(fits.values()), e.fit.noise) if len(fits) > 1 else None

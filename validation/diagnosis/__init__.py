@@ -1,1 +1,0 @@
-"""Where a model fails, and what a diagnosis says."""

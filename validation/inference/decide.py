@@ -1,0 +1,233 @@
+"""From probabilities to one of seven verdicts by three costs: of a wrong name, of a miss, of an abstention.
+
+What the numbers' own error could pass for is not named; nor is what hangs on which instants were looked at: every
+hypothesis is weighed again on every second instant, and a verdict that changes then is withheld.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from measured.doubt import COSTS
+from validation.calibration.calibrate import CachedSegments, Fit
+from validation.calibration.model_error import ModelError
+from validation.inference.contradiction import Contradiction
+from validation.inference.evidence import Evidence, continued, log_bayes
+from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
+from validation.inference.missing_heat import MissingHeat
+from validation.inference.result import Verdict
+
+Array = NDArray[np.float64]
+Group = tuple[int, ...]
+SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
+SILENT = COSTS["miss"].share / (COSTS["wrong"].share + COSTS["miss"].share)  # P(nothing) from which silence costs less
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What follows from the readings.
+
+    heat : of unknown cause at each place, most evident first
+    against : what would have to differ between the tests
+    """
+
+    evidence: Evidence
+    hypotheses: tuple[Weighed, ...]
+    heat: tuple[MissingHeat, ...]
+    against: Contradiction | None = None
+
+    @property
+    def single(self) -> dict[int, Weighed]:
+        """Index of each cause -> the hypothesis that it alone is missing."""
+        return dict(singles_by_member(self.hypotheses))
+
+    @property
+    def best(self) -> Weighed:
+        return best_first(self.hypotheses)[0]
+
+
+@dataclass(frozen=True)
+class Decision:
+    """groups : per thing that is missing the causes that may be it, most probable first;  sure : P(something)
+
+    others : what halves of the instants would decide, where that is something else
+    """
+
+    verdict: Verdict
+    groups: tuple[Group, ...]
+    sure: float
+    others: tuple[Decision, ...] = ()
+
+
+def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
+    """The statement of least expected cost."""
+    rows = [(h, float(p)) for h, p in zip(hypotheses, probabilities(hypotheses), strict=True)]
+    something = 1.0 - sum(p for h, p in rows if h.nothing)
+    if 1.0 - something > SILENT:
+        return Decision("adequate", (), something)
+    if sum(p for h, p in rows if h.heat) > 0.5 * something:
+        return Decision("outside", (), something)
+    every = [(frozenset(h.members), p) for h, p in rows]
+    groups = [smallest_cover(every)]
+    while more := further_group(every, groups):
+        groups.append(more)
+    if len(groups) > 1:
+        verdict: Verdict = "several"
+    elif all(evidence.effects[k].fault for k in groups[0]):
+        verdict = "data"
+    else:
+        sure = inclusion(hypotheses, len(evidence.effects))[groups[0][0]] >= SURE
+        verdict = "named" if len(groups[0]) == 1 and sure else "group"
+    return Decision(verdict, tuple(groups), something)
+
+
+def smallest_cover(rows: Sequence[tuple[frozenset[int], float]], without: frozenset[int] = frozenset()) -> Group:
+    """The fewest causes of which one is present with the probability SURE, given that any is; most probable first.
+
+    Parameters: `rows` members and probability of each hypothesis; `without` causes that do not count.
+    """
+    rows = [(m - without, p) for m, p in rows if m - without]
+    goal, out = SURE * sum(p for _, p in rows), []
+    while rows and goal > 0.0:
+        weight: dict[int, float] = {}
+        for members, p in rows:
+            for k in members:
+                weight[k] = weight.get(k, 0.0) + p
+        best = min(weight, key=lambda k: (-weight[k], k))
+        out.append(best)
+        goal -= weight[best]
+        rows = [(m, p) for m, p in rows if best not in m]
+        if goal <= 1e-12:
+            break
+    return tuple(out)
+
+
+def further_group(rows: Sequence[tuple[frozenset[int], float]], groups: Sequence[Group]) -> Group:
+    """What is missing beside the leads of the groups so far, if to keep silent about it costs more than to say it."""
+    lead, last = frozenset(g[0] for g in groups), groups[-1]
+    others = lead - set(last)
+    compatible = [(m, p) for m, p in rows if others <= m and m & set(last)]
+    both = [(m, p) for m, p in compatible if len(m) > len(groups)]
+    if sum(p for _, p in both) < (1.0 - SILENT) * sum(p for _, p in compatible):
+        return ()
+    return smallest_cover([(m, p) for m, p in both if lead <= m], lead)
+
+
+def clear_decision(posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> Decision:
+    """The decision without what the error of the model's own numbers could pass for.
+
+    budget : channel -> error (K) of the numbers there; what moves no reading by more is not named
+    """
+    e, single = posterior.evidence, posterior.single
+    clear = tuple(g for g in choice.groups if signal_to_error(peak_changes(e, single[g[0]]), budget).above_budget)
+    if len(clear) == len(choice.groups):
+        return choice
+    return Decision(choice.verdict if clear else "adequate", clear, choice.sure)
+
+
+def peak_changes(evidence: Evidence, h: Weighed) -> dict[str, float]:
+    """Channel -> largest change (K) that one cause makes there at its size, all else held."""
+    k, out = h.members[0], dict[str, float]()
+    fitted = evidence.score.amplitude[k] if h.fit is None else h.fit.theta[-1]
+    size = 1.0 if evidence.effects[k].whole else float(fitted)
+    for s, J in zip(evidence.run.parts, evidence.causes[k].columns(evidence.run), strict=True):
+        out[s.channel] = max(out.get(s.channel, 0.0), float(np.max(np.abs(size * J))))
+    return out
+
+
+@dataclass(frozen=True)
+class SignalToError:
+    """What an effect changes at the sensors, beside what the numbers themselves may be wrong by.
+
+    sensor : where it stands out most;  change_K, budget_K : largest change and error budget there
+    """
+
+    sensor: str
+    change_K: float
+    budget_K: float
+
+    @property
+    def above_budget(self) -> bool:
+        """Whether at least one sensor sees more of the effect than of the error."""
+        return self.change_K > self.budget_K
+
+
+def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, float]) -> SignalToError:
+    """Where an effect stands out most from the error budget.
+
+    change : sensor -> predicted change of its reading (K), a number or over time, NaN where nothing is read
+    budget : sensor -> K, as `ErrorBudget.total_K`; a sensor that is not in it has none
+    """
+    sizes = {sensor: float(np.nanmax(np.abs(values), initial=0.0)) for sensor, values in change.items()}
+
+    def share(sensor: str) -> float:
+        error, size = budget.get(sensor, 0.0), sizes[sensor]
+        return size / error if error > 0.0 else float("inf") if size > 0.0 else 0.0
+
+    best = max(sizes, key=share, default="")
+    return SignalToError(best, sizes.get(best, 0.0), budget.get(best, 0.0))
+
+
+def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decision]) -> Decision:
+    """The decision on all instants, with no more claimed than either half of them would."""
+    choice = decision(posterior)
+    halves = [decision(half_posterior(posterior, first)) for first in (0, 1)]
+    other = tuple(d for d in halves if differs(choice, d))
+    if not other or not choice.groups:
+        return replace(choice, others=other)
+    groups = choice.groups
+    for d in other:
+        groups = united_groups(groups, d.groups)
+    verdict: Verdict = "group" if choice.verdict == "named" else choice.verdict
+    return replace(choice, verdict=verdict, groups=groups, others=other)
+
+
+def differs(choice: Decision, other: Decision) -> bool:
+    """Does another decision say something else: that nothing or another thing is missing, or the same less surely?"""
+    if not choice.groups or len(choice.groups) != len(other.groups):
+        return (choice.verdict, len(choice.groups)) != (other.verdict, len(other.groups))
+    members = {k for g in choice.groups for k in g}
+    names, again = ({g[0] for g in d.groups if len(g) == 1} for d in (choice, other))
+    less_sure = not names <= again or choice.verdict == "named" != other.verdict
+    return not {g[0] for g in other.groups} <= members or less_sure
+
+
+def united_groups(groups: tuple[Group, ...], more: tuple[Group, ...]) -> tuple[Group, ...]:
+    """The groups, each with the members of that other one which shares an effect with it or stands in its place; what
+    one group has joins no other."""
+    out, members = [], {k for g in groups for k in g}
+    for i, g in enumerate(groups):
+        alike = [m for m in more if set(m) & set(g)] or list(more[i : i + 1])
+        out.append((*g, *dict.fromkeys(k for m in alike for k in m if k not in members)))
+        members |= set(out[-1])
+    return tuple(out)
+
+
+def half_posterior(posterior: Posterior, first: int) -> Posterior:
+    """The posterior on instants `first`, `first` + 2, ...: refits are weighed where they stand, and all that was too
+    improbable to be refitted gains or loses as the best of these does."""
+    e, every = posterior.evidence, posterior.hypotheses
+    fit = half_fit(e, e.fit, None, first)
+    new = replace(e, fit=fit)
+    gained = {
+        h.members: log_bayes(new, half_fit(e, h.fit, fit.error, first), h.members) - log_bayes(e, h.fit, h.members)
+        for h in every
+        if h.fit and h.members
+    }
+    best = max((h for h in every if h.members in gained), key=lambda h: h.log_bayes, default=None)
+    share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
+    increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
+    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))
+    return replace(posterior, evidence=new, hypotheses=now)
+
+
+def half_fit(e: Evidence, fit: Fit, error: ModelError | None, first: int) -> Fit:
+    """A fit where it stands, of every second instant.  error : of these instants, where it was made already"""
+    if error is None and fit.error is not None:
+        error = replace(fit.error, columns={key: columns[first::2] for key, columns in fit.error.columns.items()})
+    parts = [replace(s, time=s.time[first::2], r=s.r[first::2], J=s.J[first::2]) for s in fit.parts]
+    return continued(replace(fit, error=error), e.tests, e.fit.noise, 0, CachedSegments(parts, nearby=False))
