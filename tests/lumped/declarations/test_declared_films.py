@@ -17,6 +17,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.integration.steady import steady
 from lumped.schemas.schema import schema
 from lumped.transfer.properties import air, water
+from lumped.transfer.terms_value import coefficient
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 AREA = 0.4
@@ -228,6 +229,18 @@ def test_thin_air_cools_less():
         declared("natural", {"surface": "vertical plate", "size_m": 0.3, "altitude_m": m}) for m in (0.0, 3000.0)
     )
     assert steady(high, {}, {"ambient": 20.0})["a"] > steady(low, {}, {"ambient": 20.0})["a"] + 2.0
+
+
+@pytest.mark.parametrize("surface", MOVING)
+def test_anywhere_on_the_map_it_is_the_correlation(surface):
+    """0 to three times the largest speed that is expected, -40 to 150 degC, at 2,500 m; all of it in
+    benchmarks/operating_points.py."""
+    keys, film = MOVING[surface]
+    data = {"surface": surface, "speed": "v", "up_to_m_s": 20.0, "altitude_m": 2500.0}
+    law = declared("forced", data | keys).links[0].law
+    for v, hot, cold in np.random.default_rng(48).uniform((0.0, -40.0, -40.0), (60.0, 150.0, 80.0), (20, 3)):
+        h = film(v, air(0.5 * (hot + cold), altitude_m=2500.0))[0]
+        assert coefficient(law, {"v": np.array([v])}, hot, cold) == pytest.approx(h, rel=3e-3)
 
 
 def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
