@@ -4,8 +4,8 @@
 
 Every film of every library machine, and of circuits of one and of several branches with every coolant, at random speeds
 (0 to 3 times the rated one), flows (0 to 4 times), coolant from -40 to 130 degC where it is a liquid, air from -40 to
-150 degC. The network's coefficient is held against the correlation at the true state; beside it the shares of branches
-against equal pressure drop, and at rest the heat that comes in against the heat that leaves.
+150 degC and, of declared films, up to 4,000 m. The network's coefficient is held against the correlation at the true
+state; beside it the shares of branches against equal pressure drop, and at rest the heat in against the heat out.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from lumped.circuits.circuit import film_in
 from lumped.circuits.hydraulics import parallel_shares
 from lumped.correlations.air_gap import taylor_film
 from lumped.declarations.circuit import read_circuits
+from lumped.declarations.films import FORCED, over
 from lumped.declarations.network import read_network
 from lumped.integration.steady import steady
 from lumped.machine.films import Surroundings, surroundings
@@ -50,6 +51,15 @@ CIRCUITS: dict[str, list[dict[str, object]]] = {
     "two branches": [{**CHANNEL, "branch": "a"}, {**COIL, "branch": "b"}],
     "three branches": [{**CHANNEL, "branch": b, "length_m": x} for b, x in (("a", 0.5), ("b", 1.5), ("c", 5.0))],
 }
+MOVING: dict[str, dict[str, float]] = {
+    "plate": {"size_m": 0.5},
+    "cylinder": {"size_m": 0.3},
+    "fin channel": {"size_m": 0.25, "diameter_mm": 20.0, "speed_at_end": 0.2},
+    "duct": {"size_m": 0.3, "diameter_mm": 20.0},
+    "helical pipe": {"diameter_mm": 9.0, "coil_diameter_mm": 200.0},
+    "end space": {},
+}
+HIGHEST_M = 4000.0
 Pair = tuple[float, float]  # ours, the correlation's
 
 
@@ -82,6 +92,20 @@ def subjects(count: int) -> Iterator[tuple[str, list[Pair]]]:
         for name, passes in CIRCUITS.items():
             circuit = f"{name}, {coolant['name']}"
             yield from circuit_points(circuit, {"coolant": coolant, "passes": passes}, count, rng)
+    for surface in MOVING:
+        yield f"declared: {surface}", list(declared_points(surface, count, rng))
+
+
+def declared_points(surface: str, count: int, rng: np.random.Generator) -> Iterator[Pair]:
+    """Moving air of network.toml at 0 to 3 times the largest speed that is expected (20 m/s), at five altitudes."""
+    for k in range(5):
+        high = rng.uniform(0.0, HIGHEST_M)
+        data = {"surface": surface, "speed": "v", "up_to_m_s": 20.0, "altitude_m": high, **MOVING[surface]}
+        law = over(Table(dict(data), surface))
+        for _ in range(k * count // 5, (k + 1) * count // 5):
+            v, hot, cold = rng.uniform(0.0, 60.0), rng.uniform(-40.0, 150.0), rng.uniform(-40.0, 80.0)
+            exact = FORCED[surface](Table(dict(data), surface), air(0.5 * (hot + cold), high))(v)[0]
+            yield coefficient(law, {"v": np.array([v])}, hot, cold), exact
 
 
 def machine_points(name: str, count: int, rng: np.random.Generator) -> Iterator[tuple[str, list[Pair]]]:

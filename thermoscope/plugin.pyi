@@ -25,7 +25,6 @@ from lumped.build.pipeline import prepared as prepared, reduced as reduced
 from lumped.circuits.hydraulics import pressure_drop as pressure_drop, pumping_power as pumping_power
 from lumped.condensation.recovery import Shapes as Shapes
 from lumped.correlations.end_space import SCHUBERT as SCHUBERT
-from lumped.declarations.separated import FilmOver as FilmOver, Share as Share, over_grid as over_grid
 from lumped.drives.coupled import coupled as coupled
 from lumped.drives.drive import (
     Controller as Controller,

@@ -97,10 +97,10 @@ def _stream(model: Model, e: int, points: NDArray[np.float64]) -> dict[str, Any]
     T = model.terms
     of, size = model.sizes[T.part[e, PLACE] - len(model.factors)]
     nt, nd = int(T.par[e, 0]), int(max(-T.par[e, 1], 0.0))
-    end = len(points) - FILMS * nd
+    end = len(points) - FILMS * nd - (nd > 0)
     grid = points[nt : nt + (end - nt) // (1 + nt), 0]
     y = points[nt + len(grid) : end, 1].reshape(nt, -1)
-    still = {"still": _films(points[end:])} if nd else {}
+    still = {"still": _films(points[end:-1]), "exponent": points[-1, 0]} if nd else {}
     total, shift = points[:nt].T
     return {"input": of or "", "size": size, "total": total, "shift": shift, "x": grid, "y": y, **still}
 

@@ -9,13 +9,12 @@ from itertools import product as pairs
 
 import numpy as np
 
-from extras.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
+from extras.export.products import Mapped, Positive, Powered, Product, Straight, Sum
 from thermoscope.plugin import (
     BrushLoss,
     CopperLoss,
     Direction,
     EddyLoss,
-    FilmOver,
     Fixed,
     InputPower,
     IronLoss,
@@ -26,12 +25,10 @@ from thermoscope.plugin import (
     PowerLoss,
     Rate,
     Scaled,
-    Share,
     Stirred,
     Streamed,
     Switched,
     WithTemperature,
-    over_grid,
 )
 
 
@@ -115,17 +112,6 @@ def _(law: Rate) -> Sum | Unknown:
 def _(law: Stirred) -> Sum | Unknown:
     stirring = law.k1 * law.k2 * abs(law.per_rpm) ** law.k3
     return Product(law.k1), Product(stirring, (Powered("speed_rpm", 1.0, law.k3),))
-
-
-@expanded.register
-def _(law: Share) -> Sum | Unknown:
-    return (Product(1.0, (Tabulated(law.film.of, law.at, law.value, True),)),)
-
-
-@expanded.register
-def _(law: FilmOver) -> Sum | Unknown:
-    at, h = law.at, over_grid(law.film, law.at)
-    return (Product(1.0, (Tabulated(law.of, tuple(at.tolist()), tuple(h.tolist()), True),)),)
 
 
 def _each(base: Law, change: Callable[[Product], Product]) -> Sum | Unknown:

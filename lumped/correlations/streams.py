@@ -54,7 +54,7 @@ def streamed(
     totals = tuple(times * T for T in temperatures)
     table = StreamTable(of, usual, times * degC, totals, tuple(shift), tuple(number), tuple(each), stretch)
     name = film(usual, fluid(degC))[1].name
-    return Streamed(value, table, tops[1], name)
+    return Streamed(value, table, tops[1], name, liquid)
 
 
 def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -> float:

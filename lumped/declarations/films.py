@@ -7,15 +7,17 @@ from functools import cache, partial
 
 from geom.plugins import plugins
 from lumped.correlations import Info, film_tabulated, tabulated
-from lumped.declarations.separated import Film, FilmOver, following
+from lumped.correlations.streams import Moving, streamed
 from lumped.schemas.reader import Table
 from lumped.transfer.coolant import NAMES, Coolant, coolant
-from lumped.transfer.laws import FilmTable, Fixed, Law
-from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law
 from lumped.transfer.properties import Fluid, air
+from lumped.transfer.streamed import Streamed
 
 Still = Callable[[float, float], tuple[float, Info]]
+Film = Callable[[float], tuple[float, Info]]  # of |input|
 Of = Callable[[float], Fluid]
+TABLED = 4.0  # of the fastest that is expected: tables reach five times as far (streams.REACH)
 
 
 def natural(table: Table) -> Law:
@@ -24,14 +26,15 @@ def natural(table: Table) -> Law:
     return Fixed(factor, film)
 
 
-def natural_film(table: Table) -> tuple[FilmTable | TableLaw, float]:
+def natural_film(table: Table) -> tuple[FilmTable, float]:
     """The film of still air, and the factor on it. The air's properties follow its film temperature, or, where the
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
     surfaces = {**still_surfaces(), **plugins("still_air")}
     film, factor = surfaces[table.word("surface", None, surfaces)](table, film_air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
-    return tabulated(film, fluid_temperature=table.number("fluid_degC")), factor
+    held = tabulated(film, fluid_temperature=table.number("fluid_degC"))
+    return FilmTable(held.difference, held.value * FILMS), factor
 
 
 def film_air(table: Table) -> Callable[[float], Fluid]:
@@ -112,27 +115,24 @@ def read_coolant(table: Table) -> Coolant:
     return coolant(name, **shares)
 
 
-def over(table: Table) -> list[Law]:
+def over(table: Table) -> Streamed:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
     liquid = "coolant" in table and table.raw("coolant") != "air"
     surfaces = {**moving_surfaces(), **plugins("moving_air")}
     film, scale = surfaces[table.word("surface", None, surfaces)], table.number("m_s_per_unit", 1.0)
     fluid, usual = (read_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)
     of, top = table.word("speed"), table.number("up_to_m_s", 50.0) / scale
-    return film_laws(table, of, lambda x: partial(_scaled, film(table, x), scale), fluid, usual, top, liquid)
+    return moving_film(table, of, lambda v, x: film(table, x)(scale * v), fluid, usual, top, liquid)
 
 
-def film_laws(
-    table: Table, of: str, film: Callable[[Fluid], Film], fluid: Of, usual_degC: float, top: float, liquid: bool = False
-) -> list[Law]:
+def moving_film(
+    table: Table, of: str, film: Moving, fluid: Of, usual_degC: float, top: float, liquid: bool = False
+) -> Streamed:
     """A film over |input|: its properties hold at `fluid_degC` where the table says so, else they follow."""
     if "fluid_degC" in table:
-        return [FilmOver(of, film(fluid(table.number("fluid_degC"))), top)]
-    return following(of, film, fluid, usual_degC, top, liquid)
-
-
-def _scaled(film: Film, scale: float, x: float) -> tuple[float, Info]:
-    return film(scale * x)
+        held = fluid(table.number("fluid_degC"))
+        return streamed(of, top / TABLED, film, lambda _: held, usual_degC, liquid)
+    return streamed(of, top / TABLED, film, fluid, usual_degC, liquid)
 
 
 def contact(table: Table) -> Law:

@@ -15,7 +15,6 @@ from lumped.declarations.identity_tables import read_identities, read_quantities
 from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
-from lumped.declarations.separated import Share
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
 from lumped.model.soundness import checked_names, checked_network, checked_path
@@ -23,6 +22,7 @@ from lumped.schemas.reader import Table, suggestion
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.streamed import Streamed
 
 if TYPE_CHECKING:
     from lumped.circuits.circuit import Circuit
@@ -159,7 +159,7 @@ def _links(network: Network, top: Table) -> list[Link]:
             full = f"link:{name}{suffix}"
             kind = "film" if surface is not None else "link"
             link = node_link(network, full, kind, a, b, law, area if per_area else 1.0)
-            if isinstance(law, Share) and law.of_fluid:
+            if isinstance(law, Streamed) and law.liquid:
                 link = replace(link, hot=link.cold, cold=Row(np.empty(0, np.int64), np.empty(0)))
             out.append(replace(link, places=(ends[0], b)))
         table.raw("prior_sd")

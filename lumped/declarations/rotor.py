@@ -7,32 +7,32 @@ from functools import partial
 
 from geom.constants import RPM
 from lumped.correlations import Info
-from lumped.declarations.films import film_air, film_laws, millimetres
-from lumped.declarations.separated import Film
+from lumped.correlations.streams import Moving
+from lumped.declarations.films import film_air, millimetres, moving_film
 from lumped.schemas.reader import Table
-from lumped.transfer.laws import Law
 from lumped.transfer.properties import Fluid
+from lumped.transfer.streamed import Streamed
 
 
-def gap(table: Table) -> list[Law]:
+def gap(table: Table) -> Streamed:
     """From rotor to stator through the air between them, over the rotor's surface."""
     radius, width = millimetres(table, "rotor_radius_mm"), millimetres(table, "gap_mm")
     law = table.word("law", "taylor", ("taylor", "becker-kaye"))
-    return _over_speed(table, partial(partial, _gap_film, law, radius, width), 80.0)
+    return _over_speed(table, partial(_gap_film, law, radius, width), 80.0)
 
 
-def rotating(table: Table) -> list[Law]:
+def rotating(table: Table) -> Streamed:
     """A disc or a shaft that turns in open air."""
     film = ROTATING[table.word("surface", None, ROTATING)]
     return _over_speed(table, partial(film, millimetres(table, "diameter_mm")), 50.0)
 
 
-def _over_speed(table: Table, film: Callable[[Fluid], Film], usual_degC: float) -> list[Law]:
+def _over_speed(table: Table, film: Moving, usual_degC: float) -> Streamed:
     of, top = table.word("speed", "speed_rpm"), table.number("up_to_rpm", 20000.0)
-    return film_laws(table, of, film, film_air(table), usual_degC, top)
+    return moving_film(table, of, film, film_air(table), usual_degC, top)
 
 
-def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+def _gap_film(law: str, radius: float, width: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
     from lumped.correlations.air_gap import becker_kaye, taylor_film
 
     if law == "becker-kaye":
@@ -41,19 +41,16 @@ def _gap_film(law: str, radius: float, width: float, fluid: Fluid, rpm: float) -
     return 0.5 * one, info
 
 
-def _disc_film(diameter: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+def _disc_film(diameter: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
     from lumped.correlations.rotating import rotating_disc
 
     return rotating_disc(rpm * RPM, 0.5 * diameter, fluid)
 
 
-def _shaft_film(diameter: float, fluid: Fluid, rpm: float) -> tuple[float, Info]:
+def _shaft_film(diameter: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
     from lumped.correlations.rotating import rotating_shaft
 
     return rotating_shaft(rpm * RPM, diameter, fluid)
 
 
-ROTATING: dict[str, Callable[[float, Fluid], Film]] = {
-    "disc": lambda diameter, fluid: partial(_disc_film, diameter, fluid),
-    "shaft": lambda diameter, fluid: partial(_shaft_film, diameter, fluid),
-}
+ROTATING: dict[str, Callable[[float, float, Fluid], tuple[float, Info]]] = {"disc": _disc_film, "shaft": _shaft_film}

@@ -173,8 +173,10 @@ def _table(law: laws.TemperatureLaw) -> Array:
     if isinstance(law, laws.FilmTable):
         points = [law.difference * laws.FILMS, law.value]
     if isinstance(law, laws.StreamTable):
-        still, grid = _table(law.still).T if law.still else np.empty((2, 0)), (*law.number, *law.value)
-        points = [(*law.total, *grid, *still[0]), (*law.shift, *grid, *still[1])]
+        grid = (*law.number, *law.value)
+        points = [(*law.total, *grid), (*law.shift, *grid)]
+        if law.still:
+            points = [(*a, *b, law.exponent) for a, b in zip(points, _table(law.still).T, strict=True)]
     return np.ascontiguousarray(np.array(points, float).T)
 
 

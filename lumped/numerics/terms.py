@@ -133,11 +133,13 @@ def _filmed(points, first, nd, hot, cold, out):
 def streamed(T, e, size, hot, cold, out):
     """The StreamTable of term e: shifts over its totals, then its numbers, then its values, one total after the other.
 
-    par : how many totals; the stretch, or less than 0 how many differences the film of still air has that comes last
+    par : how many totals; the stretch, or less than 0 how many differences the film of still air has that comes next;
+    last is then the exponent of their mixture
     """
     points, first, nt, stretch = T.point, T.part[e, POINT], int(T.par[e, 0]), T.par[e, 1]
     total, nd = hot + cold, int(max(-stretch, 0.0))
-    nn = (T.part[e, LAST] - first - nt - FILMS * nd) // (1 + nt)
+    last = T.part[e, LAST] - (1 if nd > 0 else 0)
+    nn = (last - first - nt - FILMS * nd) // (1 + nt)
     u, at = max(size, LEAST), min(max(total, points[first, 0]), points[first + nt - 1, 0])
     i = _segment(points, first, first + nt - 1, at)
     wide, begin = points[i + 1, 0] - points[i, 0], first + nt
@@ -155,7 +157,7 @@ def streamed(T, e, size, hot, cold, out):
     by_T, by_u = inside * ((two - one) / wide - drift * by_y), by_y / u
     twice, cross = -2.0 * inside * drift * both, inside * both / u
     if nd > 0:
-        _excess(points, T.part[e, LAST] - FILMS * nd, nd, hot, cold, h, by_T, by_u, twice, cross, out)
+        _excess(points, last - FILMS * nd, nd, points[last, 0], hot, cold, h, by_T, by_u, twice, cross, out)
         return
     if stretch > 0.0:
         N = h * stretch / u
@@ -173,19 +175,24 @@ def streamed(T, e, size, hot, cold, out):
 
 
 @pasted
-def _excess(points, first, nd, hot, cold, h, by_T, by_u, twice, cross, out):
-    """What blown air adds to a film of still air, from the film h of blown air alone and its derivatives."""
+def _excess(points, first, nd, n, hot, cold, h, by_T, by_u, twice, cross, out):
+    """What blown air adds to a film of still air, from the film h of blown air alone and its derivatives.
+
+    With m = (h^n + s^n)^(1/n), p = h / m and q = s / m the derivatives of m are p^(n-1) and q^(n-1), the second ones
+    (n-1) (p q)^(n-2) / m times q^2, -p q and p^2.
+    """
     for k in range(6):
         out[k] = 0.0
     _filmed(points, first, nd, hot, cold, out)
     s, s_hot, s_cold = out[0], out[1], out[2]
-    m = (h * h * h + s * s * s) ** (1.0 / 3.0)
+    m = (h**n + s**n) ** (1.0 / n)
     if m == 0.0:
         out[6] = out[7] = out[8] = 0.0
         return
     p, q = h / m, s / m
-    by_h, by_s = p * p, q * q - 1.0
-    hh, hs, ss = 2.0 * p * q * q * q / m, -2.0 * p * p * q * q / m, 2.0 * q * p * p * p / m
+    by_h, by_s = p ** (n - 1.0), q ** (n - 1.0) - 1.0
+    bend = (n - 1.0) * (p * q) ** (n - 2.0) / m
+    hh, hs, ss = bend * q * q, -bend * p * q, bend * p * p
     out[0] = m - s
     out[3] = by_s * out[3] + by_h * twice + hh * by_T * by_T + 2.0 * hs * by_T * s_hot + ss * s_hot * s_hot
     out[4] = by_s * out[4] + by_h * twice + hh * by_T * by_T + hs * by_T * (s_hot + s_cold) + ss * s_hot * s_cold

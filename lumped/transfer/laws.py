@@ -108,8 +108,8 @@ class StreamTable(TemperatureLaw):
     stretch : of a film onto what leaves an upwind cell, the wetted area over the heat capacity rate of an input of 1
         (m2 K/W); with N = h stretch / |input| the value is then h (exp(N) - 1) / N, exact for walls of one temperature.
         Beyond FULL_UNITS the coolant leaves as warm as its walls; where it all but stands the value is h again.
-    still : film of still air on the same face; the value is then what blown air adds to it, (h^3 + still^3)^(1/3) -
-        still (Churchill 1977)
+    still : film of still air on the same face; the value is then what blown air adds to it, (h^n + still^n)^(1/n) -
+        still with n = exponent (Churchill 1977)
     """
 
     of: str | None
@@ -121,6 +121,7 @@ class StreamTable(TemperatureLaw):
     value: tuple[float, ...]
     stretch: float = 0.0
     still: FilmTable | None = None
+    exponent: float = 3.0
 
     def level(self, inputs: Inputs) -> Array | float:
         return self.at(self.size(inputs), self.degC)
@@ -140,7 +141,7 @@ class StreamTable(TemperatureLaw):
         h = (1 - p) * ((1 - q) * H[i, j] + q * H[i, j + 1]) + p * ((1 - q) * H[i + 1, j] + q * H[i + 1, j + 1])
         if self.still is not None:
             still = self.still.at(difference, total)
-            return np.asarray(np.cbrt(h**3 + still**3) - still)
+            return np.asarray((h**self.exponent + still**self.exponent) ** (1.0 / self.exponent) - still)
         if not self.stretch:
             return np.asarray(h)
         N = h * self.stretch / u

@@ -15,12 +15,14 @@ class Streamed(Law):
     """A number times a StreamTable: the film or share of a stream, which warns where its correlation would.
 
     top : |input| up to which the correlation holds at the table's usual temperature;  what : the correlation
+    liquid : whether the fluid's own temperature counts, else that of the film
     """
 
     value: float
     table: StreamTable
     top: float
     what: str
+    liquid: bool = False
 
     @property
     def temperature(self) -> StreamTable:  # type: ignore[override]

@@ -30,8 +30,8 @@ def stream(g, hot, cold, u):
     each = y[:, k] + (y[:, k + 1] - y[:, k]) * (at - x[k]) / (x[k + 1] - x[k])
     h = np.interp(T, g["total"], each)
     if "still" in g:
-        still = film(g["still"], hot, cold)
-        return np.cbrt(h**3 + still**3) - still
+        still, n = film(g["still"], hot, cold), g["exponent"]
+        return (h**n + still**n) ** (1 / n) - still
     return max(h, np.expm1(min(h * g["b"] / u, 5.0)) * u / g["b"]) if g["b"] > 0 else h
 
 

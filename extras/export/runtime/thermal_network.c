@@ -90,9 +90,9 @@ static void film(const real *x, const real *y, int nd, real hot, real cold, real
 }
 
 /* A film by Reynolds number and temperature: nt totals with shifts, then numbers, then values, one total after the other;
-   onto what leaves a cell where `stretch` is above 0, beyond still air (whose film comes last) where it is below. */
+   onto what leaves a cell where `stretch` is above 0, beyond still air where it is below: its film comes next, the exponent last. */
 static void stream(const real *x, const real *y, int n, int nt, real stretch, real size, real hot, real cold, real *out) {
-    int nd = stretch < 0 ? (int)-stretch : 0, nn = (n - FILMS * nd - nt) / (1 + nt), i, j;
+    int nd = stretch < 0 ? (int)-stretch : 0, nn = (n - (nd > 0) - FILMS * nd - nt) / (1 + nt), i, j;
     real u = most(size, LEAST), total = hot + cold, at = least(most(total, x[0]), x[nt - 1]);
     real wide, share, drift, place, high, up, cool, warm, one, two, by_y, by_T, by_u, h;
     const real *number = x + nt, *low;
@@ -115,14 +115,15 @@ static void stream(const real *x, const real *y, int n, int nt, real stretch, re
     by_u = by_y / u;
     if (nd > 0) {
         real s[3], m, p, q;
-        film(x + n - FILMS * nd, y + n - FILMS * nd, nd, hot, cold, s);
-        m = (real)pow((double)(h * h * h + s[0] * s[0] * s[0]), 1.0 / 3.0);
-        p = m > 0 ? h / m : 0;
-        q = m > 0 ? s[0] / m : 1;
+        double e = (double)x[n - 1];
+        film(x + n - 1 - FILMS * nd, y + n - 1 - FILMS * nd, nd, hot, cold, s);
+        m = (real)pow(pow((double)h, e) + pow((double)s[0], e), 1.0 / e);
+        p = m > 0 ? (real)pow((double)(h / m), e - 1.0) : 0;
+        q = m > 0 ? (real)pow((double)(s[0] / m), e - 1.0) : 1;
         out[0] = m - s[0];
-        out[1] = p * p * by_T + (q * q - 1) * s[1];
-        out[2] = p * p * by_T + (q * q - 1) * s[2];
-        out[3] = p * p * by_u;
+        out[1] = p * by_T + (q - 1) * s[1];
+        out[2] = p * by_T + (q - 1) * s[2];
+        out[3] = p * by_u;
         return;
     }
     if (stretch > 0) {

@@ -79,7 +79,7 @@ def test_films_by_reynolds_number(kind):
         3e-4 if "cell" in kind else 0.0,
     )
     if "still" in kind:
-        law = replace(law, table=replace(law.table, still=net.links[1].law.temperature))
+        law = replace(law, table=replace(law.table, still=net.links[1].law.temperature, exponent=4.0))
     link = node_link(net, "s", "film", "body", "air", law)
     to_air = Row(np.array([2]), np.array([1.0]))  # a liquid's own temperature, where nothing is mixed
     if "still" not in kind:

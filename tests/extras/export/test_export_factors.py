@@ -15,7 +15,6 @@ from extras.export.tables import factors
 from geom.errors import InputError
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.streams import streamed
-from lumped.declarations.separated import FilmOver, Share
 from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
@@ -31,14 +30,8 @@ from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours
 from validation.parameters.model_form import ExponentError, exponent_derivative
 
-
-def film(speed):
-    return 3.0 + 2.0 * speed**0.6, None
-
-
 COPPER = EddyLoss(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), (1.1, 0.02, 0.4), "speed_rpm", 4000.0)
 MAP = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0), ((0.0, 1.0), (5.0, 9.0), (20.0, 60.0)), torque="iq_A")
-OVER = FilmOver("flow_l_min", film, 12.0)
 COUNTER = Exchanger(300.0, Flow(60.0, "flow_l_min"), Flow(0.2, "speed_rpm"))
 STREAM = streamed("flow_l_min", 4.0, lambda v, fluid: duct_film(v, 0.01, 1.0, fluid), water, 40.0, True, 0.1)
 EXACT = [
@@ -54,11 +47,9 @@ EXACT = [
     BrushLoss(2.0, "id_A", 5.0, "speed_rpm", 900.0),
     MeasuredLoss(((1.0, ("power_W",)), (-0.1, ("speed_rpm", "iq_A")))),
     Scaled(COPPER, -1.0),
-    OVER,
     Stirred(15.0, 0.4, 0.9, 0.01),
     STREAM,
     Rate(Flow(60.0, "flow_l_min")),
-    Share(OVER, (0.0, 5.0, 9.0), (1.0, 7.0, 8.0)),
     Switched(Fixed(4.0), "on", True),
     Switched(COPPER, "on", False),
     Direction(InputPower(2.0, ()), "signed", -1),

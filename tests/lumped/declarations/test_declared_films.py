@@ -17,6 +17,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.integration.steady import steady
 from lumped.schemas.schema import schema
 from lumped.transfer.properties import air, water
+from lumped.transfer.terms_value import coefficient
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 AREA = 0.4
@@ -103,9 +104,8 @@ def test_a_declared_temperature_holds_the_properties():
     assert 1.02 < (follows - 60.0) / (holds - 60.0) < 1.06
 
 
-def at_film_temperature(network, inputs, degC, film, within=0.01):
-    """A node rests where the film says, with the air of the mean of surface and air: within a regime the few products
-    that make up the table are the correlation to 1 %."""
+def at_film_temperature(network, inputs, degC, film, within=3e-3):
+    """A node rests where the film says, with the air of the mean of surface and air; 0.3 % for the table."""
     T = steady(network, inputs, {"ambient": degC})["a"]
     assert film(air(0.5 * (T + degC)))[0] * AREA * (T - degC) == pytest.approx(100.0, rel=within)
 
@@ -120,12 +120,13 @@ def test_moving_air_has_the_properties_of_its_film_temperature(surface, degC):
 
 
 @pytest.mark.parametrize("degC", [-10.0, 20.0, 60.0, 100.0])
-def test_the_edge_of_a_regime_is_blurred(degC):
-    """Where a plate's boundary layer turns turbulent, at 11 to 25 m/s in air of -10 to 100 degC."""
-    keys, film = MOVING["plate"]
-    network = declared("forced", {"surface": "plate", "speed": "v"} | keys)
-    for v in (12.0, 16.0, 20.0, 25.0):
-        at_film_temperature(network, {"v": v}, degC, lambda fluid, v=v: film(v, fluid), 0.07)
+@pytest.mark.parametrize("surface", ["plate", "duct", "helical pipe"])
+def test_the_edge_of_a_regime_is_where_the_correlation_has_it(surface, degC):
+    """A plate's boundary layer turns turbulent at 11 to 25 m/s in air of -10 to 100 degC, a duct of 20 mm at 2 m/s."""
+    keys, film = MOVING[surface]
+    network = declared("forced", {"surface": surface, "speed": "v"} | keys)
+    for v in (1.6, 2.0, 2.5, 3.5, 12.0, 16.0, 20.0, 25.0):
+        at_film_temperature(network, {"v": v}, degC, lambda fluid, v=v: film(v, fluid))
 
 
 @pytest.mark.parametrize("surface", MOVING)
@@ -175,17 +176,6 @@ def test_a_liquid_in_a_channel_has_the_properties_of_its_own_temperature(degC):
         assert h * AREA * (T - degC) == pytest.approx(100.0, rel=0.02)
 
 
-def test_every_product_is_positive_and_a_parameter_moves_all():
-    """So that the maximum principle holds for a network with such films."""
-    data = document("forced", {"surface": "plate", "size_m": 0.5, "speed": "v"})
-    data["parameters"] = {"wind": {"acts_on": ["link:out:forced"]}}
-    network = read_network(data)
-    products = [x for x in network.links if x.name.startswith("link:out:forced")]
-    assert len(products) > 1
-    assert all(min(x.law.value) >= 0.0 and min(x.law.temperature.value) >= 0.0 for x in products)
-    assert {name for name, _ in network.parameters[0].targets} == {x.name for x in products}
-
-
 MIXTURES = {
     ("vertical plate", "plate"): (natural.churchill_chu_plate, forced.flat_plate, 3.0),
     ("horizontal cylinder", "cylinder"): (natural.churchill_chu_cylinder, forced.churchill_bernstein, 4.0),
@@ -195,17 +185,17 @@ MIXTURES = {
 @pytest.mark.parametrize("degC", [20.0, 60.0])
 @pytest.mark.parametrize("pair", MIXTURES, ids=" ".join)
 def test_still_and_moving_air_mix_by_churchill(pair, degC):
-    """(h_f^n + h_n^n)^(1/n), from still air through 0.1 < Gr/Re^2 < 10 to wind; 1.5 % for the table."""
+    """(h_f^n + h_n^n)^(1/n), from still air through 0.1 < Gr/Re^2 < 10 to wind; 0.3 % for the table."""
     still, moving, n = MIXTURES[pair]
     keys = {"natural": {"surface": pair[0], "size_m": 0.3}, "exponent": n}
     keys["forced"] = {"surface": pair[1], "size_m": 0.3, "speed": "v", "up_to_m_s": 20.0}
     network = declared("mixed", keys)
-    assert len(network.links) <= 6  # over speed, difference and film temperature
+    assert len(network.links) == 2  # still air, and what moving air adds to it
     for v in (0.0, 0.2, 0.5, 1.0, 2.0, 6.0, 20.0):
         T = steady(network, {"v": v}, {"ambient": degC})["a"]
         blown = moving(v, 0.3, air(0.5 * (T + degC)))[0]
         h = (still(0.3, T, degC)[0] ** n + blown**n) ** (1 / n)
-        assert h * AREA * (T - degC) == pytest.approx(100.0, rel=0.015)
+        assert h * AREA * (T - degC) == pytest.approx(100.0, rel=3e-3)
 
 
 def test_a_mixture_has_one_multiplier_and_warns_once():
@@ -216,8 +206,8 @@ def test_a_mixture_has_one_multiplier_and_warns_once():
     network = read_network(data)
     (parameter,) = network.parameters
     assert {name for name, _ in parameter.targets} == {link.name for link in network.links}
-    with pytest.warns(RangeWarning, match="v = 30 outside 0 to 20") as said:
-        simulate(network, Record(np.arange(3.0), {"v": 30.0}, {"ambient": 20.0}))
+    with pytest.warns(RangeWarning, match="v = 8000 outside 0 to") as said:
+        simulate(network, Record(np.arange(3.0), {"v": 8000.0}, {"ambient": 20.0}))
     assert len(said) == 1
 
 
@@ -241,10 +231,24 @@ def test_thin_air_cools_less():
     assert steady(high, {}, {"ambient": 20.0})["a"] > steady(low, {}, {"ambient": 20.0})["a"] + 2.0
 
 
-def test_faster_than_the_table_warns_with_value_and_range():
+@pytest.mark.parametrize("surface", MOVING)
+def test_anywhere_on_the_map_it_is_the_correlation(surface):
+    """0 to three times the largest speed that is expected, -40 to 150 degC, at 2,500 m; all of it in
+    benchmarks/operating_points.py."""
+    keys, film = MOVING[surface]
+    data = {"surface": surface, "speed": "v", "up_to_m_s": 20.0, "altitude_m": 2500.0}
+    law = declared("forced", data | keys).links[0].law
+    for v, hot, cold in np.random.default_rng(48).uniform((0.0, -40.0, -40.0), (60.0, 150.0, 80.0), (20, 3)):
+        h = film(v, air(0.5 * (hot + cold), altitude_m=2500.0))[0]
+        assert coefficient(law, {"v": np.array([v])}, hot, cold) == pytest.approx(h, rel=3e-3)
+
+
+def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
+    """Up to a Reynolds number of 1e8."""
     network = declared("forced", {"surface": "plate", "speed": "v", "size_m": 0.5, "up_to_m_s": 10.0})
-    with pytest.warns(RangeWarning, match="v = 30 outside 0 to 10"):
-        simulate(network, Record(np.arange(3.0), {"v": 30.0}, {"ambient": 20.0}))
+    at_film_temperature(network, {"v": 200.0}, 20.0, lambda fluid: forced.flat_plate(200.0, 0.5, fluid))
+    with pytest.warns(RangeWarning, match=r"v = 5000 outside 0 to \d+"):
+        simulate(network, Record(np.arange(3.0), {"v": 5000.0}, {"ambient": 20.0}))
 
 
 @pytest.mark.parametrize(

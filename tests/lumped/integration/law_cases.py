@@ -12,7 +12,6 @@ import thermoscope
 import validation
 import viz
 from extras.export.tables import ExponentRatio
-from lumped.declarations.separated import FilmOver, Share
 from lumped.integration.simulate import Record
 from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
@@ -74,12 +73,13 @@ def grid(value):
     return tuple(v * f for f in np.linspace(1.0, 1.2, FILMS) for v in value)
 
 
-def streams(stretch=0.0, still=None):
+def streams(stretch=0.0, still=None, exponent=3.0):
     """Three regimes over Re and a temperature."""
     total, number = np.array([-20.0, 40.0, 90.0, 160.0]), np.array([-4.0, -1.0, 0.0, 0.6, 1.2, 3.0])
     value = np.outer(1.0 + 0.002 * total, [0.3, 0.3, 0.4, 0.9, 1.2, 3.0])
     shift = tuple(-0.01 * (total - 80.0))
-    return StreamTable("flow", 1.5, 80.0, tuple(total), shift, tuple(number), tuple(value.ravel()), stretch, still)
+    values = tuple(value.ravel())
+    return StreamTable("flow", 1.5, 80.0, tuple(total), shift, tuple(number), values, stretch, still, exponent)
 
 
 STREAM = Streamed(0.9, streams(), 9.0, "three regimes")
@@ -91,8 +91,6 @@ LAWS = [
     AtUsualTemperature(STREAM),
     Switched(FORCED, "switch", True),
     Switched(FORCED, "switch", False),
-    FilmOver("speed_rpm", lambda x: (0.3 + 0.01 * np.sqrt(x), None), 4000.0),
-    Share(FilmOver("speed_rpm", lambda x: (0.3, None), 4000.0), (0.0, 4000.0), (0.3, 0.7)),
     Scaled(Fixed(0.4), -1.0),
     MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
     MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))),
@@ -127,6 +125,7 @@ TEMPERATURES = [
     streams(),
     streams(2.0),
     streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5)))),
+    streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5))), exponent=4.0),
 ]
 LAWS += [Fixed(0.5, law) if type(law) is not StreamTable else Streamed(0.5, law, 9.0, "") for law in TEMPERATURES]
 NAMES = [
@@ -155,10 +154,6 @@ def every(base):
     return found
 
 
-def _film(x):
-    return 0.3 + 0.01 * np.sqrt(x), None
-
-
 STEEP = ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 1.0),)), "speed_rpm", {"speed_rpm": 1000.0})
 # law -> [(law, inputs, its factor there)]: at rest, at its ends, beyond them, where its formula is known by heart
 LIMITS = {
@@ -183,8 +178,6 @@ LIMITS = {
         (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0),
         (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
     ],
-    FilmOver: [(FilmOver("v", _film, 4.0), {"v": 0.0}, 0.3), (FilmOver("v", _film, 4.0), {"v": -4.0}, 0.32)],
-    Share: [(Share(FilmOver("v", _film, 4.0), (0.0, 4.0), (0.3, 0.7)), {"v": -9.0}, 0.7)],
     Scaled: [(Scaled(Fixed(0.4), -1.0), {}, -0.4), (Scaled(Fixed(0.4), 0.0), {}, 0.0)],
     MeasuredLoss: [  # what goes in leaves at the shaft
         (MeasuredLoss(((1.0, ("P",)), (-np.pi / 30.0, ("M", "n")))), {"P": 100.0 * np.pi, "M": 2.0, "n": 1500.0}, 0.0)

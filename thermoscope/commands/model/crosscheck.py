@@ -77,18 +77,26 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
 def bearable(built: Built) -> dict[str, float]:
     """The rated point with its current lowered until the machine settles: a short-time rating has no steady state.
 
+    That it does not settle is one note; what its films leave on the way there says nothing more.
+
     Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
     """
     from lumped.build.crosscheck import steady_state
     from lumped.machine.motor import rated_inputs
+    from lumped.transfer.ranges import within_silence
 
     point = rated_inputs(built.machine)
     means = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
     while True:
         with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
-            T = steady_state(built.network, point, 20.0)[means]
+            with within_silence():
+                T = steady_state(built.network, point, 20.0)[means]
             if T.min() > 0.0 and T.max() < HOT:
+                if point["current_A"] != rated:
+                    notes(
+                        [f"at {rated:g} A it does not settle below {HOT:g} degC: checked at {point['current_A']:.4g} A"]
+                    )
                 return point
         point = {**point, "current_A": 0.8 * point["current_A"]}
         if point["current_A"] <= 0.01 * rated:
