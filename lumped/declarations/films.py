@@ -130,8 +130,8 @@ def moving_film(
 ) -> Streamed:
     """A film over |input|: its properties hold at `fluid_degC` where the table says so, else they follow."""
     if "fluid_degC" in table:
-        held = fluid(table.number("fluid_degC"))
-        return streamed(of, top / TABLED, film, lambda _: held, usual_degC, liquid)
+        properties = fluid(table.number("fluid_degC"))
+        return streamed(of, top / TABLED, film, lambda _: properties, usual_degC, liquid)
     return streamed(of, top / TABLED, film, fluid, usual_degC, liquid)
 
 
