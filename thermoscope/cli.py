@@ -16,7 +16,7 @@ from geom.plugins import plugins
 from geom.storage import cache_folder
 from thermoscope.console.answer import LINES, within
 from thermoscope.console.groups import added, grouped, narrowed, old_name
-from thermoscope.console.options import Accuracy, Anyway, Case, Effect, Json, Machine, Out, Sure
+from thermoscope.console.options import Accuracy, Anyway, Case, Effect, Effects, Json, Machine, Out, Sure
 from thermoscope.console.terminal import ranges_as_notes
 from thermoscope.files import STOPPED, checked_out, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
@@ -140,8 +140,9 @@ def diagnose(case: Case, draws: Draws = None, json: Json = None) -> None:
 
 
 @app.command()
-def add(case: Case, effect: Effect, anyway: Anyway = False, json: Json = None) -> None:
-    """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
+def add(case: Case, effect: Effects, anyway: Anyway = False, json: Json = None) -> None:
+    """Add an effect, or several that need each other; recalibrate, and show the error before and after on every test,
+    held-out ones too. Accepted is what predicts tests left out of the fit better than before."""
     from thermoscope.commands.model.revise import add as run
 
     raise typer.Exit(run(case, effect, anyway, json))

@@ -21,6 +21,7 @@ from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
+BEYOND = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 
 
@@ -169,9 +170,14 @@ def freed(network: Network, names: Collection[str]) -> Network:
     """The network with the data alone to say how large some effects are.
 
     The prior of an effect speaks of machines at large. For one that is in the model because the readings ask for it, it
-    would press the rest of the effect into whatever else may move.
+    would press the rest of the effect into whatever else may move. So would the bound of its usual size, which no
+    physics sets for what is counted in watts; shares and factors keep theirs.
     """
-    return replace(network, parameters=tuple(widened(p) if p.name in names else p for p in network.parameters))
+
+    def free(p: Parameter) -> Parameter:
+        return replace(widened(p), high=BEYOND * p.high if p.unit.startswith("W") else p.high)
+
+    return replace(network, parameters=tuple(free(p) if p.name in names else p for p in network.parameters))
 
 
 def widened(parameter: Parameter) -> Parameter:

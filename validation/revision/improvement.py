@@ -143,10 +143,12 @@ def _added(
         if name is None:
             why.append(f"{' or '.join(c.effect for c in choice)}: not added")
             break
-        step = add(case, name, progress)
-        if step.accepted:
-            return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-        why.append(f"{name} was not accepted: {step.why}")
+        for names in ((name,), needed_together(diagnosis, name)):
+            if names:
+                step = add(case, names, progress)
+                if step.accepted:
+                    return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
+                why.append(f"{step.effect} was not accepted: {step.why}")
     return None, {}, "; ".join(why) or diagnosis.words
 
 
@@ -163,6 +165,12 @@ def offered(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     first = diagnosis.groups[0] if diagnosis.groups and diagnosis.verdict != "absorbed" else ()
     rows = [c for c in diagnosis.candidates if c.effect in first]
     return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def needed_together(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:
+    """The most probable set of effects that this one is in with others; () where there is none."""
+    sets = [o for o in diagnosis.odds if len(o.effects) > 1 and name in o.effects]
+    return max(sets, key=lambda o: o.probability).effects if sets else ()
 
 
 def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:

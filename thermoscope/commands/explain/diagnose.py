@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from shlex import quote
+from shlex import join, quote
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.commands.explain.bases_table import hypotheses_table
@@ -49,6 +49,12 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     return diagnosis, document
 
 
+def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
+    """What to add: the effect that is named first, or the set that it is in where that is the likeliest of all."""
+    likeliest = document["odds"][0]["effects"] if document.get("odds") else []
+    return list(likeliest) if first in likeliest else [first]
+
+
 def answer(document: Mapping[str, Any], called: str) -> Answer:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
@@ -56,9 +62,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
     if any(h["declared"] and h["excluded"] for h in bases):
         return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects = document.get("named", [])
-    step = (
-        f"Next: thermoscope model add {case} {effects[0]}" if effects else f"Next: thermoscope explain effects {case}"
-    )
+    step = f"explain effects {case}" if not effects else f"model add {case} {join(_proposed(document, effects[0]))}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     remaining = " ".join(row["words"] for row in document.get("remainder", []))
@@ -77,7 +81,7 @@ def answer(document: Mapping[str, Any], called: str) -> Answer:
         question(document, case),
     ]
     rest = [*events(document, likely=False), *budget(document.get("error_budget", {}), steps), *hidden]
-    return Answer(sentence, parts, f"{step}; --json FILE; thermoscope show report {case}", rest)
+    return Answer(sentence, parts, f"Next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
 
 
 def question(document: Mapping[str, Any], case: str) -> str:

@@ -29,14 +29,17 @@ CHANGE_K = 1.0  # what a step has to move where no sensor is, to be told
 LINE = 75  # letters, so that its unit still fits into 80
 
 
-def add(case: str, effect: str, anyway: bool, target: str | None) -> int:
-    """Exit code 1, and nothing written, when a check fails: bounds, or tests left out in turn.
+def add(case: str, effects: Sequence[str], anyway: bool, target: str | None) -> int:
+    """Exit code 1, and nothing written, where what was left out is not predicted better.
 
     "event@N" is the likeliest explanation of the N-th event of the last diagnosis
     """
     from validation.revision.revise import add as added
 
-    return revised(case, lambda folder, tell: added(folder.case, meant(folder, effect), tell), anyway, target)
+    def step(folder: Folder, tell: Callable[[str], None]) -> revise.Revision:
+        return added(folder.case, [meant(folder, effect) for effect in effects], tell)
+
+    return revised(case, step, anyway, target)
 
 
 def meant(folder: Folder, effect: str) -> str:
@@ -87,7 +90,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
-    keep = result.accepted or anyway
+    keep = result.kept or anyway
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
@@ -95,7 +98,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     places = unmeasured(folder, result)
     document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
     give(document, target, lambda: answer(document, folder, case))
-    return 0 if keep else 1
+    return 0 if result.accepted or anyway else 1
 
 
 def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
