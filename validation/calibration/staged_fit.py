@@ -12,7 +12,7 @@ from geom.errors import InputError
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
-from measured.sensors.operators import of_measurement
+from measured.sensors.operators import of_measurement, starts
 from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
 from validation.parameters.unknowns import Unknowns, working
 
@@ -90,7 +90,8 @@ def _measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
     ends = (
         {t.name for t in tests} | {c.name for t in tests for c in t.channels} | {b for t in tests for b in t.boundaries}
     )
-    return of_measurement(p) and p.targets[0][0].split(":", 1)[1] in ends
+    target = p.targets[0][0]
+    return of_measurement(p) and (target.split(":", 1)[1] in ends or any(starts(target, t.name) for t in tests))
 
 
 def _one(

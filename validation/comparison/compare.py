@@ -17,7 +17,7 @@ from measured.doubt import USUAL, Doubt
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.counting import counted
-from validation.parameters.unknowns import measured, standing
+from validation.parameters.unknowns import measured, standing, start_name
 
 Budget = Mapping[str, float]
 
@@ -238,8 +238,13 @@ def _of_every_test(
 
 
 def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start."""
-    return {k: v for k, v in (case.model.values if values is None else values).items() if not measured(k)}
+    """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start.
+
+    Where a state began that no sensor sees is no reading's, but the machine's.
+    """
+    began = {start_name(state, t.name) for t in case.tests for state in case.model.network.states}
+    of = case.model.values if values is None else values
+    return {k: v for k, v in of.items() if k in began or not measured(k)}
 
 
 def _with_sensors(network: Network, test: Test, error: TestError, values: Mapping[str, float]) -> TestError:

@@ -14,7 +14,7 @@ from lumped.model.once import once
 from lumped.transfer.laws import Law
 from measured.case import Case, Channel, Model, Reference, Test
 from measured.doubt import USUAL, Doubt
-from measured.sensors.operators import of_measurement
+from measured.sensors.operators import of_measurement, start_target
 from validation.effects import Effect, Scene, effect, extended
 from validation.effects.sensors.input_offset import Shift
 from validation.parameters.model_form import with_model_form
@@ -22,6 +22,7 @@ from validation.parameters.reference import effect_sizes, reference_of, value_co
 
 Array = NDArray[np.float64]
 BEYOND = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
+UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 
 
@@ -73,7 +74,33 @@ def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> 
     air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", doubt["start"], "uneven start") for t in tests]
     clocks = [_offset(f"clock of {t.name}", f"delay:{t.name}", clock(t, doubt), "logger's clock", "s") for t in tests]
-    return [*sensors, *air, *start, *clocks]
+    return [*sensors, *air, *start, *clocks, *(p for t in tests for p in hidden_starts(network, t, doubt))]
+
+
+def hidden_starts(network: Network, test: Test, doubt: Doubt = USUAL) -> list[Parameter]:
+    """The temperature at which each state without a sensor begins a test, above the mean of those with one (K).
+
+    Where these and the boundaries agree, the machine was at rest and nothing is open. Where not, something went before:
+    what nobody sees may lie anywhere between them, and as far outside.
+    """
+    if not isinstance(test.initial, Mapping):
+        return []
+    known = [*test.initial.values(), *(float(np.ravel(u)[0]) for u in test.boundaries.values())]
+    spread, sigma = max(known) - min(known), max((c.sigma_K for c in test.channels), default=0.0)
+    if spread <= UNEVEN * float(np.hypot(doubt["start"], sigma)):
+        return []
+    seen = {int(i) for c in test.channels for i in c.row.index[c.row.weights != 0.0]}
+    seen |= {network.column(network.places[n].part if n in network.places else n) for n in test.initial}
+    return [
+        _offset(start_name(n, test.name), start_target(test.name, n), spread, "what went before")
+        for i, n in enumerate(network.states)
+        if i not in seen and "#" not in n and network.C[i] > 0.0
+    ]
+
+
+def start_name(state: str, test: str) -> str:
+    """What the start of a state in a test is called among the parameters."""
+    return f"start of {state} in {test}"
 
 
 OF_MEASUREMENT = ("bias", "slope", "lag", "start", "clock")  # first words of the names that `nuisances` gives

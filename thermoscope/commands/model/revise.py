@@ -183,6 +183,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         errors,
         *failed,
         _unmeasured_words(document["unmeasured"]),
+        _hidden_starts(document["parameters"]),
         *passed,
         _fixed(document["parameters"]),
         _blind(document["parameters"]),
@@ -211,6 +212,14 @@ def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
             break
         text = longer
     return f"{text} degC" if text else ""
+
+
+def _hidden_starts(parameters: Sequence[Mapping[str, Any]]) -> str:
+    """Where what no sensor sees began, above the mean of what is read: as many as a sentence holds."""
+    rows = [p for p in parameters if p["of_measurement"] and p["name"].startswith("start of ") and " in " in p["name"]]
+    each = [f"{p['name'].removeprefix('start of ')} {p['value']:+.1f} K" for p in rows]
+    more = f" and {len(each) - FEW} more" if len(each) > FEW else ""
+    return f"Began off the mean of the first readings: {', '.join(each[:FEW])}{more}." if each else ""
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:
