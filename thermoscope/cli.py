@@ -151,14 +151,19 @@ def add(case: Case, effect: Effects, anyway: Anyway = False, json: Json = None) 
 @app.command()
 def answer(
     case: Case,
-    word: Annotated[str, typer.Argument(metavar="yes|no", help="To the question that `diagnose` ended with.")],
+    word: Annotated[
+        str, typer.Argument(metavar="yes|no|NAME", help="To what `diagnose` asked; or a boundary or sensor.")
+    ],
+    size: Annotated[
+        str | None, typer.Argument(metavar="[[REASON:] 0.3 K]", help="How well NAME is known, and why.")
+    ] = None,
     about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
     json: Json = None,
 ) -> None:
-    """Answer what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
+    """Answer what `diagnose` asked, or say how well a boundary or sensor is known; `undo` takes it back."""
     from thermoscope.commands.explain.answer import answer as run
 
-    raise typer.Exit(run(case, word, about, json))
+    raise typer.Exit(run(case, word, about, json, size))
 
 
 @app.command()

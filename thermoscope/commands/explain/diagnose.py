@@ -39,12 +39,14 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     from lumped.condensation.error_budget import ErrorBudget
     from validation import diagnose as search
     from validation.comparison.error_budget import documents
+    from validation.parameters.unknowns import strain_words
 
     checked_diagnosis(folder)
     budgets = folder.budgets
     diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
+    document["strained"] = strain_words(folder.case)
     save_diagnosis(folder, document)
     return diagnosis, document
 
@@ -58,6 +60,7 @@ def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
 def answer(document: Mapping[str, Any], called: str) -> Answer:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
+    sentence = " ".join(filter(None, [document.get("strained", ""), sentence]))
     bases, steps = document.get("bases", []), document.get("sampling", {})
     if any(h["declared"] and h["excluded"] for h in bases):
         return Answer(sentence, [hypotheses_table(bases)], f"--json FILE; thermoscope bench bases {case}")

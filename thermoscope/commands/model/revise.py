@@ -19,6 +19,7 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.answer import Answer, Grid, cell
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
+from validation.parameters.unknowns import strain_words
 
 if TYPE_CHECKING:
     from validation.revision import revise
@@ -96,7 +97,9 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     places = unmeasured(folder, result)
-    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
+    strained = strain_words(replace(folder.case, model=result.model))
+    more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": strained}
+    document = {**result.document(), **more}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if result.accepted or anyway else 1
 
@@ -189,7 +192,7 @@ def answer(document: Mapping[str, Any], folder: Folder, called: str) -> Answer:
         _blind(document["parameters"]),
     ]
     return Answer(
-        f"{name}: {verdict}; {document['why']}; {outcome}.",
+        " ".join(filter(None, [document["strained"], f"{name}: {verdict}; {document['why']}; {outcome}."])),
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )

@@ -64,6 +64,7 @@ def compared(
     from thermoscope.bands import of_tests, wanted
     from thermoscope.case_folder.stored_yardstick import yardstick_document
     from validation.comparison.error_budget import documents
+    from validation.parameters.unknowns import strain_words
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
@@ -74,6 +75,7 @@ def compared(
     bands = {"bands": of_tests(folder, tell)} if wanted(folder.case.model.network, sure) else {}
     return result, {
         **result.document(),
+        "strained": strain_words(folder.case),
         **more,
         "error_budget": documents(budgets),
         **sampling(folder),
@@ -120,7 +122,7 @@ def answer(document: Mapping[str, Any], called: str, unseen: str = "") -> Answer
         bands_of(document.get("bands", ())),
     ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"]]
+    words = [f"{unseen}." * bool(unseen), plain["warning"], document.get("strained", ""), document["words"]]
     return Answer(" ".join(filter(None, words)), parts, more, rest)
 
 
