@@ -80,7 +80,7 @@ def compared(
         "error_budget": documents(budgets),
         **sampling(folder),
         **bands,
-        **yardstick_document(folder.yardstick, result),
+        **yardstick_document(folder.yardstick, result, folder.case),
     }
 
 
@@ -100,12 +100,14 @@ def answer(document: Mapping[str, Any], called: str, unseen: str = "") -> Answer
 
     called : what the user calls the case;  unseen : what stands before all else of a machine without a warm sensor
     """
+    from thermoscope.case_folder.stored_yardstick import lacking_words
+
     records = [{"test": t["name"], **c} for t in document["tests"] for c in t["channels"]]
     over = sorted((r for r in records if r["verdict"] == "over"), key=lambda r: -r["rmse_K"] / r["limit_K"])
     why = _why(document) if "patterns" in document else []
     plain = document.get("yardstick", {"warning": "", "sentence": ""})
     parts = [
-        plain["sentence"],
+        f"{plain['sentence']} {lacking_words(document)}".strip(),
         *why,
         records_of("Over: error is measured - model", over),
         tests(document["tests"]),
