@@ -165,7 +165,8 @@ def measured_row(source: Source, most: int, scratch: Path) -> Row:
         folder = imported(source, scratch) if source.files else find_case(source.case)
         case = load_case(folder).case
         yard = yardstick(case)
-        result = improve(case, Supervisor(best), most, lambda message: print(f"  {message}", file=sys.stderr))
+        supervisor = Supervisor(best, suggest=True)
+        result = improve(case, supervisor, most, lambda message: print(f"  {message}", file=sys.stderr))
     except (ThermoscopeError, RuntimeError) as fault:
         return Row(source.name, fault=str(fault), cpu_s=cpu_s() - begin)
     if yard is None or not yard.hold_out:

@@ -11,6 +11,7 @@ from playground import Truth, wind
 from lumped.model.network import Parameter
 from measured.case import AddedEffect, Case, Model
 from validation.calibration.calibrate import minimise, with_model_error
+from validation.calibration.staged_fit import fit_stages, measured_in
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.parameters.unknowns import Unknowns, working
@@ -131,3 +132,13 @@ def test_no_test_pays_for_another():
     assert not found.passed
     assert "stand 0.40 -> 20.00 K" in found.words
     assert not judge("add", changes, (), (found,), {"stand", "road"})[0]
+
+
+@pytest.mark.parametrize("name", ["sensor.swap@flange.left|flange.right", "sensor.bias@yoke", "ambient.offset@ambient"])
+def test_an_effect_on_the_measurement_is_free_in_the_fit_of_the_model_that_has_it(name):
+    case = Truth(10).case()
+    grown = replace(case, model=replace(case.model, effects=(AddedEffect(*name.split("@")),)))
+    network, unknowns = working(grown)
+    (stage,) = fit_stages(grown, grown.usable, unknowns)
+    p = next(p for p in network.parameters if p.name == name)
+    assert p.name in stage.free or measured_in(p, stage.tests)

@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 from two_bodies import bench
 
+from validation.calibration.calibrate import no_progress
 from validation.effects import effect
+from validation.revision.improvement import Supervisor, best, free_network_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
@@ -70,3 +72,17 @@ def test_a_link_that_follows_an_input_is_told_at_rest_and_at_most(case):
 def test_per_capacity_there_is_no_start(case):
     (found,) = suggested_effects([link("core", "ambient", "", 1e-3, unit="1/s")], case)
     assert (found.starts, found.unit) == ({}, "1/s")
+
+
+def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(case):
+    """The film that was left out is accepted, with the words of the free network as its evidence."""
+    poorer = without(case, ("body", "ambient"))
+    step, evidence, tried = free_network_step(poorer, Supervisor(best, suggest=True), no_progress)
+    assert step is not None, tried
+    assert step.accepted
+    assert evidence["free network"].startswith("body to ambient: ")
+    assert free_network_step(poorer, Supervisor(best), no_progress) == (None, {}, [])
+
+
+def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
+    assert free_network_step(case, Supervisor(best, suggest=True), no_progress) == (None, {}, [])
