@@ -19,7 +19,7 @@ from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
-from measured.doubt import told
+from measured.doubt import split_answers
 from thermoscope.caches import recalled_result, store_result
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
@@ -62,7 +62,7 @@ def _of_revisions(folder: Folder) -> list[tuple[Revision, Case]]:
 
 def _at_revision(folder: Folder, revision: Revision) -> Case:
     model = folder.history.model(folder.case.model.network, revision)
-    doubt, answers = told(folder.settings.doubt, revision.answers)
+    doubt, answers = split_answers(folder.settings.doubt, revision.answers)
     return replace(folder.case, model=model, doubt=doubt, answers=answers)
 
 

@@ -30,8 +30,8 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     if yard is None:
         return {}
     words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
-    grown = replace(case, model=replace(case.model, network=standing(case)))
-    lacking = [s.document() for s in suggested_effects(yard.terms, grown)]
+    larger = replace(case, model=replace(case.model, network=standing(case)))
+    lacking = [s.document() for s in suggested_effects(yard.terms, larger)]
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
 
 

@@ -245,10 +245,10 @@ def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str,
     as it did in those that were, on average.
     """
     of, began = case.model.values if values is None else values, dict[str, float]()
-    for test in case.tests if any(k.startswith("start of ") for k in of) else ():
+    for test in case.tests:
         for p in hidden_starts(case.model.network, test, case.doubt):
-            alike = start_name(p.targets[0][0].removeprefix(start_target(test.name, "")), "")
-            others = [v for k, v in of.items() if k.startswith(alike)]
+            state = p.targets[0][0].removeprefix(start_target(test.name, ""))
+            others = [of[name] for t in case.tests if (name := start_name(state, t.name)) in of]
             began |= {p.name: of.get(p.name, float(np.mean(others)))} if others else {}
     return {**{k: v for k, v in of.items() if not measured(k)}, **began}
 

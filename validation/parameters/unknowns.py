@@ -22,8 +22,8 @@ from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
-BEYOND = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
-STRAINED = 2.0  # deviations: one nuisance in twenty goes so far by chance
+LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
+LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 3  # in a sentence
 POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
@@ -91,16 +91,16 @@ def hidden_starts(network: Network, test: Test, doubt: Doubt = USUAL) -> list[Pa
     """
     if not isinstance(test.initial, Mapping):
         return []
-    known = [*test.initial.values(), *(float(np.ravel(u)[0]) for u in test.boundaries.values())]
-    spread, sigma = max(known) - min(known), max((c.sigma_K for c in test.channels), default=0.0)
+    first = [*test.initial.values(), *(float(np.ravel(u)[0]) for u in test.boundaries.values())]
+    spread, sigma = max(first) - min(first), max((c.sigma_K for c in test.channels), default=0.0)
     if spread <= UNEVEN * float(np.hypot(doubt["start"], sigma)):
         return []
-    seen = {int(i) for c in test.channels for i in c.row.index[c.row.weights != 0.0]}
-    seen |= {network.column(network.places[n].part if n in network.places else n) for n in test.initial}
+    read = {int(i) for c in test.channels for i in c.row.index[c.row.weights != 0.0]}
+    read |= {network.column(network.places[n].part if n in network.places else n) for n in test.initial}
     return [
         _offset(start_name(n, test.name), start_target(test.name, n), spread, "what went before")
         for i, n in enumerate(network.states)
-        if i not in seen and "#" not in n and network.C[i] > 0.0
+        if i not in read and "#" not in n and network.C[i] > 0.0
     ]
 
 
@@ -227,7 +227,7 @@ def freed(network: Network, names: Collection[str]) -> Network:
     """
 
     def free(p: Parameter) -> Parameter:
-        return replace(widened(p), high=BEYOND * p.high if p.unit.startswith("W") else p.high)
+        return replace(widened(p), high=LARGER * p.high if p.unit.startswith("W") else p.high)
 
     return replace(network, parameters=tuple(free(p) if p.name in names else p for p in network.parameters))
 
@@ -284,7 +284,7 @@ def _grown(
     return replace(network, parameters=(*network.parameters, *sensors)), forms
 
 
-def strained(case: Case) -> list[tuple[str, float, str, float]]:
+def large_nuisances(case: Case) -> list[tuple[str, float, str, float]]:
     """What a fit moved beyond two deviations that is not the machine's size, but sensor, boundary, start, clock or the
     exponent of a law: name, value, unit, deviations; most strained first."""
     unknowns = working(replace(case, tests=case.fitted or case.tests))[1] if case.model.values else Unknowns(())
@@ -292,14 +292,14 @@ def strained(case: Case) -> list[tuple[str, float, str, float]]:
     rows = [
         (p.name, values[p.name], p.unit, float(z))
         for p, z in zip(unknowns.parameters, unknowns.coordinates(values) / unknowns.sd, strict=True)
-        if p.name in values and abs(z) > STRAINED and (of_measurement(p) or "^" in p.name)
+        if p.name in values and abs(z) > LARGE_NUISANCE and (of_measurement(p) or "^" in p.name)
     ]
     return sorted(rows, key=lambda row: -abs(row[3]))
 
 
 def strain_words(case: Case) -> str:
     """That, as the first thing to say of a model; "" where nothing is strained."""
-    rows = strained(case)
+    rows = large_nuisances(case)
     each = [
         f"{name} {value:.3g} {unit.removesuffix('1')}".strip() + f" ({abs(z):.1f} deviations)"
         for name, value, unit, z in rows

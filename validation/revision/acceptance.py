@@ -49,7 +49,7 @@ class Fold:
 
 
 @dataclass(frozen=True)
-class Foretold:
+class FoldPrediction:
     """How well a fold was predicted.
 
     nats : log density of its readings;  square_K2, count : sum of their squared errors, of so many
@@ -98,7 +98,7 @@ def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
     return [name for name, largest in size.items() if largest > FELT * max(size.values())]
 
 
-def foretold(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> Foretold:
+def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> FoldPrediction:
     """A fold as a fit's model, fitted to the rest of it, predicts it.
 
     fit : to all tests, model error in account;  fixed : values of what is not free
@@ -109,17 +109,17 @@ def foretold(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> Foretold:
         fit.network, fold.fitted, fit.unknowns, fit.theta, fit.noise, fixed, REFITS, start, draft=True, worth=ROUGH
     )
     values = {**fixed, **alone.values}
-    found = segments(fit.network, fold.predicted, values)
-    return Foretold(_log_density(fit, learnt, unseen, found), *squares(found, fold))
+    parts = segments(fit.network, fold.predicted, values)
+    return FoldPrediction(_log_density(fit, learnt, unseen, parts), *squares(parts, fold))
 
 
-def squares(found: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
+def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
     """Sum of squared errors of a fold's predicted tests, the same where nothing changes (K2), and of how many."""
     both = [(t.name, c) for t in (*fold.predicted, *fold.fitted) for c in t.channels if np.isfinite(c.y).any()]
     first = {(name, c.name): c.y[np.isfinite(c.y)][0] for name, c in both}
     read = {(t.name, c.name): c.y for t in fold.predicted for c in t.channels}
-    still = sum(s.r.size * np.nanmean((read[s.test, s.channel] - first[s.test, s.channel]) ** 2) for s in found)
-    return sum(float(s.r @ s.r) for s in found), float(still), sum(s.r.size for s in found)
+    still = sum(s.r.size * np.nanmean((read[s.test, s.channel] - first[s.test, s.channel]) ** 2) for s in parts)
+    return sum(float(s.r @ s.r) for s in parts), float(still), sum(s.r.size for s in parts)
 
 
 def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
@@ -135,7 +135,7 @@ def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
 
 
 def _log_density(
-    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], found: Sequence[Segment]
+    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], parts: Sequence[Segment]
 ) -> float:
     """Log density of unseen readings: noise, model error, and what the learnt ones leave open of the parameters.
 
@@ -148,7 +148,7 @@ def _log_density(
         X = fit.noise.whiten(s, np.column_stack([s.J, D]))
         H += X.T @ X
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
-    for (s, D), now in zip(unseen, found, strict=True):
+    for (s, D), now in zip(unseen, parts, strict=True):
         X = fit.noise.whiten(s, np.column_stack([s.J, D, now.r]))
         more += X[:, :-1].T @ X[:, :-1]
         pull += X[:, :-1].T @ X[:, -1]
@@ -159,7 +159,7 @@ def _log_density(
 
 
 def prediction_checks(
-    before: Sequence[Foretold], after: Sequence[Foretold], telling: Sequence[str]
+    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str]
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
@@ -179,7 +179,7 @@ def prediction_checks(
     )
 
 
-def rms(folds: Sequence[Foretold]) -> float:
+def rms(folds: Sequence[FoldPrediction]) -> float:
     """Root mean square error (K) of what was left out."""
     return float(np.sqrt(sum(f.square_K2 for f in folds) / max(sum(f.count for f in folds), 1)))
 

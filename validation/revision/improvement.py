@@ -154,8 +154,8 @@ def _added(
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 why.append(f"{step.effect} was not accepted: {step.why}")
-    further, document, tried = free_network_step(case, supervisor, progress)
-    return further, document, "; ".join([*why, *tried]) or diagnosis.words
+    further, document, refusals = free_network_step(case, supervisor, progress)
+    return further, document, "; ".join([*why, *refusals]) or diagnosis.words
 
 
 def free_network_step(
@@ -168,14 +168,14 @@ def free_network_step(
     yard = yardstick(case) if supervisor.suggest else None
     if yard is None or not yard.left_out["free_network"] * WORTH < pooled_training(case):
         return None, {}, []
-    tried = list[str]()
+    refusals = list[str]()
     for suggestion in suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case)))):
         for name in list(suggestion.starts)[:1]:
             step = add(case, name, progress)
             if step.accepted:
-                return step, {"free network": suggestion.words, "share": suggestion.share}, tried
-            tried.append(f"{suggestion.words}, as {name}: not accepted: {step.why}")
-    return None, {}, tried
+                return step, {"free network": suggestion.words, "share": suggestion.share}, refusals
+            refusals.append(f"{suggestion.words}, as {name}: not accepted: {step.why}")
+    return None, {}, refusals
 
 
 def pooled_training(case: Case) -> float:

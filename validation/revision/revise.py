@@ -30,8 +30,8 @@ from validation.revision.acceptance import (
     bound_check,
     failures,
     fall,
+    fold_prediction,
     folds,
-    foretold,
     prediction_checks,
     squares,
     telling_tests,
@@ -82,7 +82,7 @@ class Revision:
     checks: tuple[Check, ...] = ()
 
     @property
-    def kept(self) -> bool:
+    def worth_keeping(self) -> bool:
         """Whether it belongs into the model: also a calibration that only its own tests gain by, which is told."""
         return self.accepted or (self.action == "calibrate" and self.converged and bool(failures(self.checks)))
 
@@ -222,7 +222,7 @@ def _effect_checks(
     telling = telling_tests(fit, names)
     parts = folds(tests, telling)
     before, after = (
-        [foretold(one, fold, parameter_values(one.network, values)) for fold in parts]
+        [fold_prediction(one, fold, parameter_values(one.network, values)) for fold in parts]
         for one, values in ((bare, {**case.model.values, **bare.values}), (fit, new.values))
     )
     return (*(bound_check(fit, n) for n in names), *prediction_checks(before, after, telling), _lost(changes, tests))
@@ -243,15 +243,15 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     Those are the tests that a fit may use and this one did not, and each of its own left out in turn, if the model as
     it stood had not seen it either.
     """
-    seen = {t.name for t in case.fitted} if case.model.values else set()
+    previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
     for fold in folds(fitted, ()):
-        if not seen & {t.name for t in fold.predicted}:
+        if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)
-            square += np.array([was, foretold(fit, fold, values).square_K2])
+            square += np.array([was, fold_prediction(fit, fold, values).square_K2])
             count += n
-    mine = {t.name for t in fitted} | seen
+    mine = {t.name for t in fitted} | previous
     others = [c for c in changes if c.role in TRAINING and c.name not in mine and isfinite(c.before)]
     pairs = {"left out": np.sqrt(square / count)} if count else {}
     if others:

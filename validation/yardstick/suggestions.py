@@ -55,15 +55,15 @@ def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ..
     groups: dict[tuple[str, ...], list[Term]] = {}
     for term in terms:
         groups.setdefault((term.kind, *sorted({term.place, term.other or term.place})), []).append(term)
-    found = (_suggestion([t for t in group if t.place == group[0].place], case) for group in groups.values())
-    return tuple(sorted((s for s in found if s), key=lambda s: -s.share))
+    every = (_suggestion([t for t in group if t.place == group[0].place], case) for group in groups.values())
+    return tuple(sorted((s for s in every if s), key=lambda s: -s.share))
 
 
 def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
     """Of the terms between two places, or at one; None where what is declared can do the same."""
     first, network = group[0], case.model.network
-    declared = [set(law.reads) for law in _laws(network, first)]
-    lacking = [t for t in group if not any(inputs_of(t) <= reads for reads in declared)]
+    laws = [set(law.reads) for law in _laws(network, first)]
+    lacking = [t for t in group if not any(inputs_of(t) <= reads for reads in laws)]
     if not lacking:
         return None
     inputs = tuple(dict.fromkeys(name for t in lacking for name in sorted(inputs_of(t))))
@@ -107,9 +107,9 @@ def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str,
     for one in catalogue(scene_of(case)):
         if one.fault or one.mapping != "amplitude":
             continue
-        grown = one.extend(network)
+        larger = one.extend(network)
         old = {*(x.name for x in network.links), *(x.name for x in network.sources)}
-        new = [x for x in _elements(grown, term) if x.name not in old and set(x.law.reads) == inputs]
+        new = [x for x in _elements(larger, term) if x.name not in old and set(x.law.reads) == inputs]
         size = sum(_largest(x, tests) for x in new)
         if size > 0.0:
             out[one.name] = value / size

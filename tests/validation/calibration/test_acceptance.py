@@ -15,7 +15,7 @@ from validation.calibration.staged_fit import fit_stages, measured_in
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.parameters.unknowns import Unknowns, working
-from validation.revision.acceptance import folds, foretold, halves, prediction_checks
+from validation.revision.acceptance import fold_prediction, folds, halves, prediction_checks
 from validation.revision.revise import Change, add, calibrate, judge
 
 BIAS = Parameter(
@@ -52,7 +52,7 @@ def both(tests):
 def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
     """30 % more loss in both tests, or 30 % more in one and 30 % less in the other; 25 K of rise, read to 0.3 K."""
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
-    before, after = ([foretold(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in both(tests))
+    before, after = ([fold_prediction(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in both(tests))
     assert prediction_checks(before, after, ["one", "two"])[0].passed == better
 
 
@@ -66,7 +66,7 @@ def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
     W = fit.noise.whiten(read, np.eye(read.r.size))
     S = np.linalg.inv(W.T @ W) + read.J @ alone.covariance @ read.J.T
     density = -0.5 * (read.r @ np.linalg.solve(S, read.r) + np.linalg.slogdet(S)[1])
-    found = foretold(fit, fold, {})
+    found = fold_prediction(fit, fold, {})
     assert found.square_K2 / found.count == pytest.approx(np.mean(read.r**2), rel=1e-3)
     assert found.nats == pytest.approx(density, rel=1e-3, abs=0.05)
 
@@ -85,7 +85,7 @@ def test_no_change_is_the_first_reading_of_the_test_not_of_its_half():
     test = measured("one")
     second = halves(test)[1]
     (fit, _) = both([test])
-    found = foretold(fit, folds([test], [])[0], {})
+    found = fold_prediction(fit, folds([test], [])[0], {})
     y = second.channels[0].y
     assert found.no_change_K2 / found.count == pytest.approx(np.nanmean((y - test.channels[0].y[0]) ** 2), rel=1e-6)
 
@@ -95,7 +95,7 @@ def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
     odd = measured("odd", loss=1.6)
     case = Case("one", Model(one_node(FILM)), (odd, measured("usual", "validate")))
     done = calibrate(case)
-    assert (done.accepted, done.kept) == (False, True)
+    assert (done.accepted, done.worth_keeping) == (False, True)
     assert done.why.startswith("kept for the fitted tests only: usual: ")
 
 

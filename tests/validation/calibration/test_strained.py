@@ -7,9 +7,9 @@ from one_body import FILM, measured, one_node
 from playground import Truth
 
 from measured.case import AddedEffect, Case, Model
-from measured.doubt import USUAL, told
+from measured.doubt import USUAL, split_answers
 from validation.effects import effect
-from validation.parameters.unknowns import strain_words, strained, working
+from validation.parameters.unknowns import large_nuisances, strain_words, working
 
 
 def case(**values):
@@ -18,7 +18,7 @@ def case(**values):
 
 def test_what_is_beyond_two_deviations_is_said_first_and_worst_first():
     off = case(**{"film": 5.0, "slope of body": -0.15, "bias of ambient": 1.1, "bias of body": 0.5})
-    assert [(row[0], pytest.approx(row[3])) for row in strained(off)] == [
+    assert [(row[0], pytest.approx(row[3])) for row in large_nuisances(off)] == [
         ("slope of body", -5.0),
         ("bias of ambient", 2.2),
     ]
@@ -28,7 +28,7 @@ def test_what_is_beyond_two_deviations_is_said_first_and_worst_first():
 
 
 def test_what_the_user_knows_narrows_a_boundary_and_a_sensor():
-    doubt, answers = told(USUAL, {"boundary:ambient": 0.1, "bias:body": 0.05, "warm": True})
+    doubt, answers = split_answers(USUAL, {"boundary:ambient": 0.1, "bias:body": 0.05, "warm": True})
     assert answers == {"warm": True}
     known = {p.name: p for p in working(replace(case(), doubt=doubt))[1].parameters}
     usual = {p.name: p for p in working(case())[1].parameters}
@@ -41,7 +41,7 @@ def test_what_the_user_knows_narrows_a_boundary_and_a_sensor():
 def test_a_room_is_off_by_no_more_than_its_doubt_allows(sd, most):
     """Twenty deviations: 10 K of a thermometer that is usual, 2 K of one that was checked to 0.1 K."""
     name, whole = "ambient.offset@ambient", Truth(3).case()
-    doubt = told(USUAL, {} if sd is None else {"boundary:ambient": sd})[0]
+    doubt = split_answers(USUAL, {} if sd is None else {"boundary:ambient": sd})[0]
     model = replace(whole.model, effects=(AddedEffect(*name.split("@")),))
     for of in (
         working(replace(whole, doubt=doubt), [effect(name)])[0],

@@ -28,7 +28,7 @@ def answer(case: str, word: str, about: str | None, target: str | None, size: st
     word : yes or no; with a size, "0.3 K" or "checked in an ice bath: 0.3 K", the boundary or sensor known so well
     """
     if size is not None:
-        return known(case, word, size, target)
+        return narrow_doubt(case, word, size, target)
     if word.lower() not in WORDS:
         raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
@@ -50,7 +50,7 @@ def _keep(
     return 0
 
 
-def known(case: str, name: str, size: str, target: str | None) -> int:
+def narrow_doubt(case: str, name: str, size: str, target: str | None) -> int:
     """How well a boundary or a sensor is known, as a step of the history with its reason."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
@@ -64,10 +64,10 @@ def known(case: str, name: str, size: str, target: str | None) -> int:
             f"'{name}' is no boundary and no sensor", "thermoscope explain answer", suggestion(name, names)
         )
     (subject, widest), where = next(iter(usual.items())), f"thermoscope explain answer {name} '{size}'"
-    found = re.fullmatch(r"\s*([0-9.]+(?:e-?[0-9]+)?)\s*K?\s*", number)
-    if not found:
+    match = re.fullmatch(r"\s*([0-9.]+(?:e-?[0-9]+)?)\s*K?\s*", number)
+    if not match:
         raise InputError(f"'{number.strip()}' is no temperature difference", where, "for example 0.3 K")
-    sd = float(found[1])
+    sd = float(match[1])
     if not 0.0 < sd <= widest:
         right = f"above 0 and up to {widest:g} K, which is usual; [doubt] and sigma_K in the files widen"
         raise InputError(f"{sd:g} K does not narrow the doubt of {name}", where, right)

@@ -91,14 +91,14 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
-    keep = result.kept or anyway
+    keep = result.worth_keeping or anyway
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     places = unmeasured(folder, result)
-    strained = strain_words(replace(folder.case, model=result.model))
-    more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": strained}
+    nuisance_words = strain_words(replace(folder.case, model=result.model))
+    more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
     document = {**result.document(), **more}
     give(document, target, lambda: answer(document, folder, case))
     return 0 if result.accepted or anyway else 1
