@@ -1,6 +1,6 @@
 """Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the run says.
 
-    python benchmarks/peers/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE] [--references FOLDER]
+    python benchmarks/peers/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE]
 
 Networks, equations and reference are those of tests/random_networks.py: 3 to 40 nodes, capacities over six
 decades and none, cells of 0.1 J/K, samples of 1 to 60 s, inputs in steps and ramps, streams through zero and reversed,
