@@ -128,7 +128,7 @@ def calibrate(
 
 
 def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress) -> Revision:
-    """Add an effect 'kind@place', or several that need each other, and calibrate on all tests but the held-out ones.
+    """Add effect 'kind@place', or several that need each other, and calibrate on all tests but the held-out ones.
 
     names : of one string "a + b" too.  What was never calibrated is calibrated first: an effect is compared with the
         best model without it.
