@@ -85,6 +85,18 @@ def widened(lines: Mapping[str, float], where: str = "[doubt]") -> Doubt:
     return {**USUAL, **lines}
 
 
+def split_answers(doubt: Doubt, answers: Mapping[str, bool | float]) -> tuple[Doubt, dict[str, bool]]:
+    """The table with what the user knows better of boundaries and sensors, as "boundary:NAME" and "bias:NAME" (K); and
+    the answers that are yes or no."""
+    sizes = {subject: float(size) for subject, size in answers.items() if not isinstance(size, bool)}
+    return {**doubt, **sizes}, {about: yes for about, yes in answers.items() if isinstance(yes, bool)}
+
+
+def boundary_doubt(doubt: Doubt, name: str) -> float:
+    """Standard deviation (K) of a boundary's thermometer."""
+    return doubt.get(f"boundary:{name}", doubt["boundary"])
+
+
 @dataclass(frozen=True)
 class Odds:
     """How often something is missing, before a look at the readings.  share : of all cases;  reason : why"""

@@ -80,7 +80,7 @@ def demo(
     if effects:
         headline(f"6  Add {effects[0]}")
         with limited_lines(SHORT):
-            success = add(str(case), effects[0], False, str(out / "add.json")) == 0
+            success = add(str(case), effects[:1], False, str(out / "add.json")) == 0
         folder = open_demo(case)
         stages.append(Stage(f"with {effects[0]}", folder.compared.document()))
     headline("7  What is left, and where to look")

@@ -14,7 +14,7 @@ from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive
 from lumped.drives.induction import InductionMachine
 from lumped.drives.permanent_magnet import PMMachine
 from lumped.integration.compiled import READINGS
-from lumped.integration.simulate import Record, Run, initial_state, simulate
+from lumped.integration.simulate import Record, Run, simulate, start_state
 from lumped.model.network import Network, Row
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ def coupled(
     tolerance : K, largest change of a watched temperature over the whole record between two rounds
     """
     looks = [network.place(place).mean for place in places.values()]
-    start = np.concatenate([initial_state(network, record.initial), np.zeros(len(network.boundaries))])
+    start = np.concatenate([start_state(network, record), np.zeros(len(network.boundaries))])
     T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(places, looks, strict=True)}
     residuals: list[float] = []
     for _ in range(most):

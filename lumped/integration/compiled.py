@@ -118,8 +118,9 @@ def _pack_tangents(
     column, state = map(np.ascontiguousarray, np.nonzero(dC))  # columns of one array: another layout compiles anew
     hidden = hidden_states(network)
     first = np.zeros((hidden.size + len(network.boundaries), len(slope) + len(shifts)))
+    every = (*network.states, *network.boundaries)
     for j, name in enumerate(shifts, len(slope)):
-        first[hidden.size + network.boundaries.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
+        first[every.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
     return Tangents(
         np.array([x[0] for x in triplets], np.int64),
         np.array([x[1] for x in triplets], np.int64),

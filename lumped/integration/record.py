@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Record:
     """time (nt,) s; inputs and boundaries: name -> (nt,) or scalar; initial: degC everywhere or per place.
+    above: K by which some states start above that.
 
     Inputs and boundaries are linear between the times; a time given twice is a jump.
     """
@@ -24,6 +25,7 @@ class Record:
     inputs: Mapping[str, Array | float]
     boundaries: Mapping[str, Array | float]
     initial: float | Mapping[str, float] = 20.0
+    above: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         each = ("inputs", self.inputs), ("boundaries", self.boundaries)

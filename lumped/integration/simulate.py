@@ -115,6 +115,14 @@ def initial_state(network: Network, initial: float | Mapping[str, float]) -> Arr
     return x
 
 
+def start_state(network: Network, record: Record) -> Array:
+    """(n_states,) degC at which a record begins."""
+    x = initial_state(network, record.initial)
+    for name, rise in record.above.items():
+        x[network.states.index(name)] += rise
+    return x
+
+
 def simulate(
     network: Network,
     record: Record,
@@ -133,7 +141,7 @@ def simulate(
     rows : linear outputs of z = [x; u] (sensors, before bias, gain and lag)
     tangents : parameters of the network with respect to which y is differentiated: d y / d value for
         mappings "amplitude", "relative" and "offset", d y / d log(value) for "log"
-    shifts : further tangents, by an offset (K) of these boundaries, or of the start (None)
+    shifts : further tangents, by an offset (K) of these boundaries, of the start of these states, or of all (None)
     begin : where another run of the same network, values and tangents ended, at this record's first time
     steps : those of another run over the same record, to be taken here too whatever their errors are
     precision : what a step may be wrong by, and whether one ends at every sample
@@ -192,7 +200,7 @@ class _Course:
         self.dy = np.zeros((nt, nr, p))
         self.order = np.concatenate([core.order, np.arange(n, n + nb)])
         self.place = np.argsort(self.order)
-        x0, u0 = (begin.x if begin else initial_state(network, record.initial))[core.order], core.forcing.u[0]
+        x0, u0 = (begin.x if begin else start_state(network, record))[core.order], core.forcing.u[0]
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
         most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, portion)

@@ -39,6 +39,16 @@ def _kind(target: str) -> str:
     return first if first in OPERATORS + SHIFTS else "thermal"
 
 
+def start_target(test: str, state: str) -> str:
+    """What a parameter acts on that says at what temperature a state begins a test."""
+    return f"initial:{test}:{state}"
+
+
+def starts(target: str, test: str) -> bool:
+    """Does what acts on a target move the start of this test, of the whole machine or of a state?"""
+    return target == f"initial:{test}" or target.startswith(start_target(test, ""))
+
+
 def of_measurement(parameter: Parameter) -> bool:
     """Is it a sensor's, a boundary's, a start's or a clock's?"""
     return head(parameter) != "thermal"

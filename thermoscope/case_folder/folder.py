@@ -14,6 +14,7 @@ from lumped.machine.loss_sources import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
 from measured.case import Case, LowFidelity, Reference, Test
+from measured.doubt import split_answers
 from measured.recordings.formats import recording
 from measured.recordings.readings import read_test, rows_of
 from measured.recordings.sheet import Sheet, load_sheet
@@ -150,8 +151,7 @@ def load_case(
         history.model(network, history.last),
         tests,
         _free(network, settings),
-        settings.doubt,
-        history.last.answers,
+        *split_answers(settings.doubt, history.last.answers),
         low,
     )
     steps = {r.test.name: r.step for r in read}

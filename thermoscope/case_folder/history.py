@@ -29,7 +29,7 @@ class Revision:
 
     effects : in the model after this step;  values : parameter -> value;  intervals : parameter -> (low, high) 95 %
     rmse_K : test -> (before, after);  evidence : what spoke for the step
-    answers : what the user was asked and said so far
+    answers : what the user was asked and said so far; of a boundary or a sensor how well it is known (K)
     reference : what exponents and effects refer to; None in files of before it was kept, and where nothing was fitted
     """
 
@@ -42,7 +42,7 @@ class Revision:
     rmse_K: Mapping[str, Pair] = field(default_factory=dict)
     why: str = ""
     evidence: Mapping[str, float | str] = field(default_factory=dict)
-    answers: Mapping[str, bool] = field(default_factory=dict)
+    answers: Mapping[str, bool | float] = field(default_factory=dict)
     reference: Reference | None = None
 
     def document(self) -> dict[str, Any]:
@@ -241,8 +241,8 @@ def _evidence(table: Table) -> dict[str, float | str]:
     return {k: v if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
 
 
-def _answers(table: Table) -> dict[str, bool]:
-    return {about: table.flag(about) for about in table.data}
+def _answers(table: Table) -> dict[str, bool | float]:
+    return {k: table.flag(k) if isinstance(v, bool) else table.number(k, of="answers") for k, v in table.data.items()}
 
 
 def _pairs(table: Table) -> dict[str, Pair]:

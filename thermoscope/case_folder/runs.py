@@ -20,6 +20,7 @@ from lumped.integration.simulate import Run, simulate
 from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
+from measured.doubt import split_answers
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
@@ -61,7 +62,8 @@ def _of_revisions(folder: Folder) -> list[tuple[Revision, Case]]:
 
 def _at_revision(folder: Folder, revision: Revision) -> Case:
     model = folder.history.model(folder.case.model.network, revision)
-    return replace(folder.case, model=model, answers=revision.answers)
+    doubt, answers = split_answers(folder.settings.doubt, revision.answers)
+    return replace(folder.case, model=model, doubt=doubt, answers=answers)
 
 
 def before_last(folder: Folder) -> Case | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,17 +13,31 @@ from geom.storage import cache_folder
 from measured.case import Case
 from thermoscope.case_folder.content import code_digest, digest, recorded_arrays
 from validation.comparison.compare import Comparison
+from validation.parameters.unknowns import standing
+from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.words import model_error, sentence, warning
 from validation.yardstick.yardstick import Yardstick, yardstick
 
+FEW = 3  # of what is lacking in a sentence
 
-def yardstick_document(yard: Yardstick | None, comparison: Comparison) -> dict[str, Any]:
+
+def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Case) -> dict[str, Any]:
     """What plain models leave beside a model, for a document; empty where the tests teach nothing."""
     if yard is None:
         return {}
     words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
-    return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), **words}}
+    larger = replace(case, model=replace(case.model, network=standing(case)))
+    lacking = [s.document() for s in suggested_effects(yard.terms, larger)]
+    return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
+
+
+def lacking_words(document: Mapping[str, Any]) -> str:
+    """What a free network has and the model lacks, as a sentence; "" where nothing, or where it predicts no better."""
+    yard = document.get("yardstick", {})
+    best = yard.get("free_network_K") or float("inf")
+    each = [row["words"] for row in yard.get("lacking", [])][:FEW] if best < yard.get("model_K", 0.0) else []
+    return f"The free network has what the model lacks: {'; '.join(each)}." if each else ""
 
 
 def stored_yardstick(case: Case) -> Yardstick | None:

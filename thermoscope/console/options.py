@@ -11,6 +11,10 @@ from thermoscope.files import checked_out, checked_target
 
 Case = Annotated[str, typer.Argument(metavar="CASE", help="A case folder, or the name of a case that comes along.")]
 Effect = Annotated[str, typer.Argument(metavar="EFFECT@PLACE", help="For example convection@flange.right.")]
+Effects = Annotated[
+    list[str],
+    typer.Argument(metavar="EFFECT@PLACE...", help="For example convection@flange.right; several are added together."),
+]
 Json = Annotated[
     str | None,
     typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),

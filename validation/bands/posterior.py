@@ -25,7 +25,7 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter, Row
 from measured.case import Case, Test
 from measured.doubt import Doubt
-from measured.sensors.operators import of_measurement
+from measured.sensors.operators import of_measurement, starts
 from validation.calibration.calibrate import CachedSegments, Fit, minimise, with_model_error
 from validation.calibration.model_error import with_cores, with_doubts
 from validation.comparison.linearisation import Segment, segments
@@ -189,4 +189,4 @@ def _of_sensor(p: Parameter, test: Test) -> bool:
     if not of_measurement(p):
         return False
     kind, _, of = p.targets[0][0].partition(":")
-    return not (kind == "boundary" and of in test.boundaries) and not (kind == "initial" and of == test.name)
+    return not (kind == "boundary" and of in test.boundaries) and not starts(p.targets[0][0], test.name)

@@ -12,9 +12,9 @@ from geom.errors import InputError
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
-from measured.sensors.operators import of_measurement
+from measured.sensors.operators import of_measurement, starts
 from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
-from validation.parameters.unknowns import Unknowns, working
+from validation.parameters.unknowns import Unknowns, measured, working
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum
 
@@ -78,19 +78,23 @@ def staged_fit(
     search = search or Search()
     values, fits = {**start, **search.begin}, []
     for stage in fit_stages(case, tests, unknowns):
-        names = {p.name for p in unknowns.parameters if p.name in stage.free or _measured_in(p, stage.tests)}
+        names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         fits.append(_one(network, stage.tests, free, values, search, progress))
         values |= fits[-1].values
     return fits
 
 
-def _measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
-    """Does a nuisance of the measurement concern one of these tests?"""
+def measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
+    """Does a nuisance of the measurement concern one of these tests? An effect on it, such as two plugs exchanged,
+    concerns all of them."""
     ends = (
         {t.name for t in tests} | {c.name for t in tests for c in t.channels} | {b for t in tests for b in t.boundaries}
     )
-    return of_measurement(p) and p.targets[0][0].split(":", 1)[1] in ends
+    target = p.targets[0][0]
+    if not of_measurement(p) or not measured(p.name):
+        return of_measurement(p)
+    return bool(target.split(":", 1)[1] in ends or any(starts(target, t.name) for t in tests))
 
 
 def _one(

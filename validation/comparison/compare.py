@@ -15,10 +15,11 @@ from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
 from measured.case import Case, Channel, Test
 from measured.doubt import USUAL, Doubt
+from measured.sensors.operators import start_target
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.counting import counted
-from validation.parameters.unknowns import measured, standing
+from validation.parameters.unknowns import hidden_starts, measured, standing, start_name
 from validation.tables import comparison_tables
 
 Budget = Mapping[str, float]
@@ -244,8 +245,18 @@ def _of_every_test(
 
 
 def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start."""
-    return {k: v for k, v in (case.model.values if values is None else values).items() if not measured(k)}
+    """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start.
+
+    Where a state began that no sensor sees is no reading's, but the machine's. In a test that was not fitted it began
+    as it did in those that were, on average.
+    """
+    of, began = case.model.values if values is None else values, dict[str, float]()
+    for test in case.tests:
+        for p in hidden_starts(case.model.network, test, case.doubt):
+            state = p.targets[0][0].removeprefix(start_target(test.name, ""))
+            others = [of[name] for t in case.tests if (name := start_name(state, t.name)) in of]
+            began |= {p.name: of.get(p.name, float(np.mean(others)))} if others else {}
+    return {**{k: v for k, v in of.items() if not measured(k)}, **began}
 
 
 def _with_sensors(network: Network, test: Test, error: TestError, values: Mapping[str, float]) -> TestError:

@@ -10,7 +10,7 @@ import numpy as np
 from lumped.model.network import Network
 from lumped.model.quantities import AIR, LIQUID
 from measured.case import Test
-from measured.doubt import Doubt
+from measured.doubt import Doubt, boundary_doubt
 
 FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid"}
 
@@ -33,5 +33,5 @@ def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[s
 def moved_boundaries(test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
     """The record with one boundary at a time off by what its thermometer may be."""
     for name, T in test.boundaries.items():
-        off = np.asarray(T, float) + doubt["boundary"]
+        off = np.asarray(T, float) + boundary_doubt(doubt, name)
         yield f"boundary:{name}", replace(test, boundaries={**test.boundaries, name: off})

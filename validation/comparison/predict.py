@@ -17,7 +17,19 @@ from lumped.integration.simulate import Record, Run, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from measured.case import Test
-from measured.sensors.operators import OPERATORS, SHIFTS, Memory, Stretch, head, moved, setting, shifted, stretch_of
+from measured.sensors.operators import (
+    OPERATORS,
+    SHIFTS,
+    Memory,
+    Stretch,
+    head,
+    moved,
+    setting,
+    shifted,
+    start_target,
+    starts,
+    stretch_of,
+)
 from validation.effects.time_window import IN, lasts
 
 Array = NDArray[np.float64]
@@ -69,7 +81,9 @@ def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Re
     boundaries = {n: u + sum(a for target, a in shift.items() if moves(target, n, test)) for n, u in air.items()}
     move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
-    return Record(test.time[some], test.signals.part(some), boundaries, start)
+    here = start_target(test.name, "")
+    above = {t.removeprefix(here): a for t, a in shift.items() if t.startswith(here)}
+    return Record(test.time[some], test.signals.part(some), boundaries, start, above)
 
 
 def moves(target: str, boundary: str, test: Test) -> bool:
@@ -230,11 +244,14 @@ def softened(T: Array, spread: float) -> Array:
 
 
 def _shift(network: Network, test: Test, p: Parameter) -> str | None:
-    """The boundary that a parameter offsets, None for the start."""
-    return next((b for b in network.boundaries if moves(p.targets[0][0], b, test)), None)
+    """The boundary that a parameter offsets, the state whose start it offsets, None for the start of all."""
+    target = p.targets[0][0]
+    if target.startswith(start_target(test.name, "")):
+        return target.removeprefix(start_target(test.name, ""))
+    return next((b for b in network.boundaries if moves(target, b, test)), None)
 
 
 def _felt(network: Network, test: Test, p: Parameter) -> bool:
     """Is the boundary one of the network's and of this test's, or the start this test's?"""
     target, both = p.targets[0][0], [b for b in network.boundaries if b in test.boundaries]
-    return target == f"initial:{test.name}" or any(moves(target, b, test) for b in both)
+    return starts(target, test.name) or any(moves(target, b, test) for b in both)

@@ -13,15 +13,21 @@ from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from lumped.transfer.laws import Law
 from measured.case import Case, Channel, Model, Reference, Test
-from measured.doubt import USUAL, Doubt
-from measured.sensors.operators import of_measurement
+from measured.doubt import USUAL, Doubt, boundary_doubt
+from measured.sensors.operators import of_measurement, start_target
 from validation.effects.base import Effect, Scene
 from validation.effects.registry import effect, extended
 from validation.effects.sensors.input_offset import Shift
+from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
+LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
+LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
+NAMES = 3  # in a sentence
+POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
+UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 
 
@@ -70,10 +76,38 @@ def nuisances(network: Network, tests: Sequence[Test], doubt: Doubt = USUAL) -> 
         channels.setdefault(c.name, []).append(c)
     boundaries = dict.fromkeys(b for test in tests for b in test.boundaries)
     sensors = [p for same in channels.values() for p in _sensor(network, same, doubt)]
-    air = [_offset(f"bias of {b}", f"boundary:{b}", doubt["boundary"], "sensor of the boundary") for b in boundaries]
+    air = [
+        _offset(f"bias of {b}", f"boundary:{b}", boundary_doubt(doubt, b), "sensor of the boundary") for b in boundaries
+    ]
     start = [_offset(f"start of {t.name}", f"initial:{t.name}", doubt["start"], "uneven start") for t in tests]
     clocks = [_offset(f"clock of {t.name}", f"delay:{t.name}", clock(t, doubt), "logger's clock", "s") for t in tests]
-    return [*sensors, *air, *start, *clocks]
+    return [*sensors, *air, *start, *clocks, *(p for t in tests for p in hidden_starts(network, t, doubt))]
+
+
+def hidden_starts(network: Network, test: Test, doubt: Doubt = USUAL) -> list[Parameter]:
+    """The temperature at which each state without a sensor begins a test, above the mean of those with one (K).
+
+    Where these and the boundaries agree, the machine was at rest and nothing is open. Where not, something went before:
+    what nobody sees may lie anywhere between them, and as far outside.
+    """
+    if not isinstance(test.initial, Mapping):
+        return []
+    first = [*test.initial.values(), *(float(np.ravel(u)[0]) for u in test.boundaries.values())]
+    spread, sigma = max(first) - min(first), max((c.sigma_K for c in test.channels), default=0.0)
+    if spread <= UNEVEN * float(np.hypot(doubt["start"], sigma)):
+        return []
+    read = {int(i) for c in test.channels for i in c.row.index[c.row.weights != 0.0]}
+    read |= {network.column(network.places[n].part if n in network.places else n) for n in test.initial}
+    return [
+        _offset(start_name(n, test.name), start_target(test.name, n), spread, "what went before")
+        for i, n in enumerate(network.states)
+        if i not in read and "#" not in n and network.C[i] > 0.0
+    ]
+
+
+def start_name(state: str, test: str) -> str:
+    """What the start of a state in a test is called among the parameters."""
+    return f"start of {state} in {test}"
 
 
 OF_MEASUREMENT = ("bias", "slope", "lag", "start", "clock")  # first words of the names that `nuisances` gives
@@ -93,7 +127,8 @@ def clock(test: Test, doubt: Doubt) -> float:
 def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Parameter]:
     """Of one sensor, as it is declared in each of its tests. Its lag is below zero in none of them."""
     c, lags = same[0], [c.lag_s for c in same]
-    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", max(c.sigma_K for c in same), "calibration of the sensor")
+    sigma = min(max(c.sigma_K for c in same), doubt.get(f"bias:{c.name}", np.inf))
+    bias = _offset(f"bias of {c.name}", f"bias:{c.name}", sigma, "calibration of the sensor")
     stream = c.place in network.places and network.places[c.place].kind == "fluid"
     sd = doubt["gain of stream" if stream else "gain"]
     gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
@@ -107,8 +142,8 @@ def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> 
         ((target, 1.0),),
         value=0.0,
         unit=unit,
-        low=-20 * sd,
-        high=20 * sd,
+        low=-POSSIBLE * sd,
+        high=POSSIBLE * sd,
         prior_sd=sd,
         mapping="offset",
         neutral=0.0,
@@ -166,13 +201,36 @@ def at_level(network: Network, names: Collection[str], reference: Reference) -> 
     return replace(network, parameters=tuple(map(scaled, network.parameters)))
 
 
+def possible(network: Network, names: Collection[str], doubt: Doubt) -> Network:
+    """The network with effects that put a boundary off no larger than its doubt allows.
+
+    Declared for the usual doubt: where the case knows better, the prior narrows with it.
+    """
+
+    def within(p: Parameter) -> Parameter:
+        kind, _, boundary = p.targets[0][0].partition(":") if p.targets else ("", "", "")
+        if p.name not in names or kind != "boundary":
+            return p
+        sd = boundary_doubt(doubt, boundary.partition(IN)[0])
+        most = POSSIBLE * sd
+        prior = p.prior_sd * sd / doubt["boundary"]
+        return replace(p, prior_sd=prior, low=max(p.low, -most), high=min(p.high, most))
+
+    return replace(network, parameters=tuple(map(within, network.parameters)))
+
+
 def freed(network: Network, names: Collection[str]) -> Network:
     """The network with the data alone to say how large some effects are.
 
     The prior of an effect speaks of machines at large. For one that is in the model because the readings ask for it, it
-    would press the rest of the effect into whatever else may move.
+    would press the rest of the effect into whatever else may move. So would the bound of its usual size, which no
+    physics sets for what is counted in watts; shares and factors keep theirs.
     """
-    return replace(network, parameters=tuple(widened(p) if p.name in names else p for p in network.parameters))
+
+    def free(p: Parameter) -> Parameter:
+        return replace(widened(p), high=LARGER * p.high if p.unit.startswith("W") else p.high)
+
+    return replace(network, parameters=tuple(free(p) if p.name in names else p for p in network.parameters))
 
 
 def widened(parameter: Parameter) -> Parameter:
@@ -221,10 +279,34 @@ def _grown(
     sizes = effect_sizes(network, {e.name for e in more} - added, case.usable)
     reference = replace(reference, sizes={**reference.sizes, **sizes})
     network = at_level(network, added.union(e.name for e in more), reference)
-    network = freed(network, added)
+    network = freed(possible(network, added.union(e.name for e in more), case.doubt), added)
     network, forms = with_model_form(network, reference.levels, counts, case.model.values, added, case.doubt)
     sensors = nuisances(case.model.network, case.tests, case.doubt)
     return replace(network, parameters=(*network.parameters, *sensors)), forms
+
+
+def large_nuisances(case: Case) -> list[tuple[str, float, str, float]]:
+    """What a fit moved beyond two deviations that is not the machine's size, but sensor, boundary, start, clock or the
+    exponent of a law: name, value, unit, deviations; most strained first."""
+    unknowns = working(replace(case, tests=case.fitted or case.tests))[1] if case.model.values else Unknowns(())
+    values = case.model.values
+    rows = [
+        (p.name, values[p.name], p.unit, float(z))
+        for p, z in zip(unknowns.parameters, unknowns.coordinates(values) / unknowns.sd, strict=True)
+        if p.name in values and abs(z) > LARGE_NUISANCE and (of_measurement(p) or "^" in p.name)
+    ]
+    return sorted(rows, key=lambda row: -abs(row[3]))
+
+
+def strain_words(case: Case) -> str:
+    """That, as the first thing to say of a model; "" where nothing is strained."""
+    rows = large_nuisances(case)
+    each = [
+        f"{name} {value:.3g} {unit.removesuffix('1')}".strip() + f" ({abs(z):.1f} deviations)"
+        for name, value, unit, z in rows
+    ]
+    more = f" and {len(each) - NAMES} more" if len(each) > NAMES else ""
+    return f"The fit leans on what should be small: {', '.join(each[:NAMES])}{more}." if each else ""
 
 
 def with_model(case: Case, model: Model) -> Case:

@@ -1,7 +1,8 @@
-"""What an added effect must stand up to: its bounds, and the prediction of each test from the others.
+"""What a step must stand up to: it predicts what it was not fitted to better than the model did before, and than none.
 
-Each test is left out in turn and predicted by the model with the effect and by the refitted model without it. Nothing
-is simulated again: the fit's own residuals and Jacobian say it, model error in account. Held-out tests have no say.
+Each test is left out in turn, of the only one that tells of the step the second half: fitted to the rest, with the step
+and without it, and its readings predicted with sensors as the rest has them. Log predictive density and error have to
+agree. Held-out tests have no say.
 """
 
 from __future__ import annotations
@@ -12,13 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.calibration.calibrate import Fit
-from validation.comparison.linearisation import Segment
-from validation.inference.score import Gram, gram
+from measured.case import Test
+from measured.sensors.blocks import groups
+from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
+from validation.comparison.linearisation import Segment, segments
 from validation.parameters.unknowns import to_value
 
 Array = NDArray[np.float64]
-FELT = 1e-6  # of the largest trace in a test: below it the effect does not act there
+FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
+FEWEST = 3  # readings of a channel that a fit looks at
+MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits
+REFITS = 3  # steps of such a fit: it begins at an optimum that all tests but few share
 
 
 @dataclass(frozen=True)
@@ -35,81 +40,162 @@ class Check:
         return dict(vars(self))
 
 
-def checks(fit: Fit, name: str) -> tuple[Check, ...]:
-    """The checks of one effect at a fit that has it among its unknowns."""
-    k = fit.unknowns.names.index(name)
-    return (bounds(fit, k), cross_validation(fit, k))
+@dataclass(frozen=True)
+class Fold:
+    """Tests, or halves of one, that are fitted, and those that are predicted from them."""
+
+    fitted: tuple[Test, ...]
+    predicted: tuple[Test, ...]
 
 
-def bounds(fit: Fit, k: int) -> Check:
-    """Is the amplitude inside its physical bounds?"""
-    p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
-    free = not bool(fit.at_bound[k])
-    inside = f"{value:.3g} lies between {p.low:.3g} and {p.high:.3g} {p.unit}"
-    words = inside if free else f"its amplitude sticks to a bound, {value:.3g} {p.unit}"
-    return Check("bounds", free, value, p.high, words)
+@dataclass(frozen=True)
+class FoldPrediction:
+    """How well a fold was predicted.
+
+    nats : log density of its readings;  square_K2, count : sum of their squared errors, of so many
+    no_change_K2 : the same sum where every sensor stays as it began
+    """
+
+    nats: float
+    square_K2: float
+    no_change_K2: float
+    count: int
 
 
-def cross_validation(fit: Fit, k: int) -> Check:
-    """Does the effect foretell tests that it was not fitted to better than the refitted model without it?"""
-    falls = predicted_without(fit, k)
-    if len(falls) < 2:
-        return Check("left out", True, float("nan"), 0.0, "felt in one test only")
-    fell, whole = sum(f > 0 for f in falls.values()), sum(falls.values())
-    words = f"each test predicted from the others: better in {fell} of {len(falls)}, deviance {-whole:+.3g} in all"
-    return Check("left out", whole > 0, whole, 0.0, words)
+def folds(tests: Sequence[Test], telling: Sequence[str]) -> list[Fold]:
+    """Each test, or of many each share of them, left out in turn; of the only one that tells of a step its second half.
 
-
-def predicted_without(fit: Fit, k: int) -> dict[str, float]:
-    """Test -> deviance without the effect minus with it, both fitted to the other tests (linear about the fit)."""
-    error, p = fit.error, fit.theta.size
-    d = error.size if error else 0
-    parts = [_last(error.beside(s, p) if error else s, k) for s in fit.parts]
-    grams = gram(parts, fit.noise, p + d - 1)
-    order = np.append(np.delete(np.arange(p + d), k), k)
-    theta = np.concatenate([fit.theta, np.zeros(d)])[order]
-    weight = np.concatenate([fit.unknowns.sd, np.ones(d)])[order] ** -2.0
-    whole, out = {name: _joined(g) for name, g in grams.items()}, {}
-    for name, form in whole.items():
-        others = [g for other, g in whole.items() if other != name]
-        if not others or not _felt(grams, name):
-            continue
-        A, b = (np.asarray(sum(part)) for part in zip(*((g[0], g[1]) for g in others), strict=True))
-        out[name] = _deviance(form, _step(A, b, theta, weight, -1)) - _deviance(form, _step(A, b, theta, weight, None))
+    telling : names of the tests in which the step acts
+    """
+    halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
+    whole = [t for t in tests if t.name != halved]
+    count = min(len(whole), MOST_FOLDS)
+    shares = [whole[i::count] for i in range(count)] if len(tests) > 1 else []
+    out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
+    for test in (t for t in tests if t.name == halved):
+        first, second = halves(test)
+        out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
     return out
 
 
-def _last(s: Segment, k: int) -> Segment:
-    """The segment with column k behind all others."""
-    return replace(s, J=np.column_stack([np.delete(s.J, k, axis=1), s.J[:, k]]))
+def halves(test: Test) -> tuple[Test, Test]:
+    """A test with the readings of its first half, and with those of its second."""
+    start = groups(test.time.size)
+    first = np.arange(test.time.size) < start[start.size // 2]
+
+    def read(where: NDArray[np.bool_]) -> Test:
+        return replace(test, channels=tuple(replace(c, y=np.where(where, c.y, np.nan)) for c in test.channels))
+
+    return read(first), read(~first)
 
 
-def _felt(grams: Mapping[str, Gram], name: str) -> bool:
-    """Does the effect act in this test at all?"""
-    return bool(grams[name].ZZ[0, 0] > FELT * max(g.ZZ[0, 0] for g in grams.values()))
+def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
+    """The tests in which the traces of some parameters reach a sensor."""
+    columns = [fit.unknowns.names.index(name) for name in names]
+    size: dict[str, float] = {}
+    for s in fit.parts:
+        size[s.test] = max(size.get(s.test, 0.0), float(np.max(np.abs(s.J[:, columns]), initial=0.0)))
+    return [name for name, largest in size.items() if largest > FELT * max(size.values())]
 
 
-def _joined(g: Gram) -> tuple[Array, Array, float]:
-    """J'J, J'r and r'r with the effect as the last column."""
-    A = np.block([[g.JJ, g.JZ], [g.JZ.T, g.ZZ]])
-    return A, np.concatenate([g.Jr, g.Zr]), g.rr
+def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> FoldPrediction:
+    """A fold as a fit's model, fitted to the rest of it, predicts it.
+
+    fit : to all tests, model error in account;  fixed : values of what is not free
+    """
+    learnt, unseen = _rows(fit, fold.fitted), _rows(fit, fold.predicted)
+    start = CachedSegments([s for s, _ in learnt], nearby=True)
+    alone = minimise(
+        fit.network, fold.fitted, fit.unknowns, fit.theta, fit.noise, fixed, REFITS, start, draft=True, worth=ROUGH
+    )
+    values = {**fixed, **alone.values}
+    parts = segments(fit.network, fold.predicted, values)
+    return FoldPrediction(_log_density(fit, learnt, unseen, parts), *squares(parts, fold))
 
 
-def _step(A: Array, b: Array, theta: Array, weight: Array, without: int | None) -> Array:
-    """Move from theta to the optimum of some tests; `without` holds one coordinate at zero."""
-    step = np.zeros_like(theta)
-    free = np.ones(theta.size, bool)
-    if without is not None:
-        free[without], step[without] = False, -theta[without]
-    H = A + np.diag(weight)
-    rhs = b - weight * theta - H @ step
-    step[free] = np.linalg.solve(H[np.ix_(free, free)], rhs[free])
-    return step
+def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
+    """Sum of squared errors of a fold's predicted tests, the same where nothing changes (K2), and of how many."""
+    both = [(t.name, c) for t in (*fold.predicted, *fold.fitted) for c in t.channels if np.isfinite(c.y).any()]
+    first = {(name, c.name): c.y[np.isfinite(c.y)][0] for name, c in both}
+    read = {(t.name, c.name): c.y for t in fold.predicted for c in t.channels}
+    still = sum(s.r.size * np.nanmean((read[s.test, s.channel] - first[s.test, s.channel]) ** 2) for s in parts)
+    return sum(float(s.r @ s.r) for s in parts), float(still), sum(s.r.size for s in parts)
 
 
-def _deviance(gram: tuple[Array, Array, float], step: Array) -> float:
-    A, b, square = gram
-    return float(square - 2.0 * b @ step + step @ A @ step)
+def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
+    """A fit's segments where some tests, or halves of tests, were read; each with what the model error does there."""
+    by_name = {(s.test, s.channel): s for s in fit.parts}
+    out = []
+    for test, c in ((t, c) for t in tests for c in t.channels if np.isfinite(c.y).sum() >= FEWEST):
+        s, (begin, end) = by_name[test.name, c.name], test.time[np.isfinite(c.y)][[0, -1]]
+        some = (s.time >= begin) & (s.time <= end)
+        error = fit.error.of(s)[some] if fit.error else np.zeros((int(some.sum()), 0))
+        out.append((replace(s, time=s.time[some], r=s.r[some], J=s.J[some]), error))
+    return out
+
+
+def _log_density(
+    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], parts: Sequence[Segment]
+) -> float:
+    """Log density of unseen readings: noise, model error, and what the learnt ones leave open of the parameters.
+
+    By the determinant lemma and Woodbury: with X the whitened columns of parameters and doubts and H their curvature,
+    r'S^-1 r = r'r - r'X (H + X'X)^-1 X'r and log|S| = log|noise| + log|H + X'X| - log|H|.
+    """
+    doubts = fit.error.size if fit.error else 0
+    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(doubts)]))
+    for s, D in learnt:
+        X = fit.noise.whiten(s, np.column_stack([s.J, D]))
+        H += X.T @ X
+    more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
+    for (s, D), now in zip(unseen, parts, strict=True):
+        X = fit.noise.whiten(s, np.column_stack([s.J, D, now.r]))
+        more += X[:, :-1].T @ X[:, :-1]
+        pull += X[:, :-1].T @ X[:, -1]
+        square += float(X[:, -1] @ X[:, -1])
+        noise += fit.noise.logdet(s)
+    inside = square - float(pull @ np.linalg.solve(more, pull))
+    return -0.5 * (inside + noise + float(np.linalg.slogdet(more)[1] - np.linalg.slogdet(H)[1]))
+
+
+def prediction_checks(
+    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str]
+) -> tuple[Check, ...]:
+    """Does a step predict what was left out better than the model before it, and than no change?
+
+    before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
+    """
+    nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
+    was, now = rms(before), rms(after)
+    better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, {sum(nats):+.3g} nats in all"
+    only = (
+        f"; seen in {telling[0]} only, judged on its second half: not yet tested elsewhere" if len(telling) == 1 else ""
+    )
+    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"
+    none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
+    return (
+        Check("left out", sum(nats) > 0.0 and now <= was, sum(nats), 0.0, words),
+        Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K"),
+    )
+
+
+def rms(folds: Sequence[FoldPrediction]) -> float:
+    """Root mean square error (K) of what was left out."""
+    return float(np.sqrt(sum(f.square_K2 for f in folds) / max(sum(f.count for f in folds), 1)))
+
+
+def bound_check(fit: Fit, name: str) -> Check:
+    """Whether an amplitude is inside its bounds: told, and no reason to refuse what predicts."""
+    k = fit.unknowns.names.index(name)
+    p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
+    inside = f"{name} {value:.3g} lies between {p.low:.3g} and {p.high:.3g} {p.unit}"
+    at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"
+    return Check("bounds", True, value, p.high, at if fit.at_bound[k] else inside)
+
+
+def fall(before: float, after: float) -> str:
+    """Two errors (K) in words, with the digits that tables have."""
+    return " -> ".join(f"{x:.2f}" if x >= 0.1 else f"{x:.3g}" for x in (before, after)) + " K"
 
 
 def failures(checks: Sequence[Check]) -> str:

@@ -7,12 +7,15 @@ from dataclasses import dataclass, field, replace
 
 from measured.case import Case
 from validation.calibration.calibrate import no_progress
-from validation.comparison.compare import Comparison, errors
+from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.inference.result import Candidate, Diagnosis
-from validation.parameters.unknowns import with_model
+from validation.parameters.unknowns import standing, with_model
 from validation.revision.revise import Revision, add, calibrate
+from validation.yardstick.suggestions import suggested_effects
+from validation.yardstick.words import WORTH
+from validation.yardstick.yardstick import yardstick
 
 Progress = Callable[[str], None]
 MOST = 6  # effects at a time: more are a reason to look at the model
@@ -85,12 +88,14 @@ class Supervisor:
 
     offer : of a diagnosis the candidates that may be added now
     choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
+    suggest : add what a free network has and the model lacks, where no effect of the diagnosis is left
     keep : told every accepted revision and the evidence for it
     """
 
     choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
     keep: Callable[[Revision, Mapping[str, float | str]], None] = field(default=lambda step, evidence: None)
     offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda diagnosis: offered(diagnosis))
+    suggest: bool = False
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
@@ -143,11 +148,39 @@ def _added(
         if name is None:
             why.append(f"{' or '.join(c.effect for c in choice)}: not added")
             break
-        step = add(case, name, progress)
-        if step.accepted:
-            return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-        why.append(f"{name} was not accepted: {step.why}")
-    return None, {}, "; ".join(why) or diagnosis.words
+        for names in ((name,), needed_together(diagnosis, name)):
+            if names:
+                step = add(case, names, progress)
+                if step.accepted:
+                    return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
+                why.append(f"{step.effect} was not accepted: {step.why}")
+    further, document, refusals = free_network_step(case, supervisor, progress)
+    return further, document, "; ".join([*why, *refusals]) or diagnosis.words
+
+
+def free_network_step(
+    case: Case, supervisor: Supervisor, progress: Progress
+) -> tuple[Revision | None, Mapping[str, float | str], list[str]]:
+    """The first effect that a free network has and the model lacks, if it is accepted; or None, and what was tried.
+
+    Only where that network predicts better what is left out, and where nobody is asked.
+    """
+    yard = yardstick(case) if supervisor.suggest else None
+    if yard is None or not yard.left_out["free_network"] * WORTH < pooled_training(case):
+        return None, {}, []
+    refusals = list[str]()
+    for suggestion in suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case)))):
+        for name in list(suggestion.starts)[:1]:
+            step = add(case, name, progress)
+            if step.accepted:
+                return step, {"free network": suggestion.words, "share": suggestion.share}, refusals
+            refusals.append(f"{suggestion.words}, as {name}: not accepted: {step.why}")
+    return None, {}, refusals
+
+
+def pooled_training(case: Case) -> float:
+    """Error (K rms) of the model on the tests that a fit may use."""
+    return pooled([c for t in errors(replace(case, tests=case.usable)).tests for c in t.channels])
 
 
 def _with_step(
@@ -163,6 +196,12 @@ def offered(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     first = diagnosis.groups[0] if diagnosis.groups and diagnosis.verdict != "absorbed" else ()
     rows = [c for c in diagnosis.candidates if c.effect in first]
     return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def needed_together(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:
+    """The most probable set of effects that this one is in with others; () where there is none."""
+    sets = [o for o in diagnosis.odds if len(o.effects) > 1 and name in o.effects]
+    return max(sets, key=lambda o: o.probability).effects if sets else ()
 
 
 def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:

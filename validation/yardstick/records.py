@@ -144,10 +144,10 @@ def table_record(test: Test, columns: Columns, step: int = 1) -> Record:
     inputs = [np.asarray(test.inputs[i], float) / s for i, s in zip(columns.inputs, columns.scale, strict=True)]
 
     def mean(table: Array) -> Array:
-        return table[:n].reshape(-1, step, *table.shape[1:]).mean(axis=1)
+        return table[:n].reshape(n // step, step, *table.shape[1:]).mean(axis=1)
 
     empty = np.empty((test.time.size, 0))
-    read = np.isfinite(y)[:n].reshape(-1, step, y.shape[1]).any(axis=1)
+    read = np.isfinite(y)[:n].reshape(n // step, step, y.shape[1]).any(axis=1)
     return Record(
         test.name,
         mean(test.time),

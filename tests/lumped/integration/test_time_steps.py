@@ -22,7 +22,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "network-toml.md"
 DOCUMENTED = read_network(tomllib.loads(re.findall(r"```toml\n(.*?)```", PAGE.read_text(), re.S)[0]))
 PRINCIPLE = 0.01  # K, beyond what is allowed
 ROUNDING = 1e-9  # K
-SEEDS = range(1000, 1012)  # benchmarks/time_steps.py takes a thousand
+SEEDS = range(1000, 1012)  # benchmarks/peers/time_steps.py takes a thousand
 
 
 def pump(before, step):

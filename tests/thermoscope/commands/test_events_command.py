@@ -11,6 +11,7 @@ from thermoscope.case_folder.history import load_history
 from thermoscope.commands.explain.answer import answer
 from thermoscope.commands.explain.diagnose import diagnose
 from thermoscope.commands.model import revise
+from thermoscope.commands.open_case import open_case
 
 LID = (1000.0, 1500.0)
 
@@ -51,7 +52,7 @@ def test_the_tests_contradict_each_other(opened_lid):
 def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
     case, found = opened_lid
     file, recording = case / "tests" / "road.derived.csv", (case / "tests" / "road.csv").read_bytes()
-    assert revise.add(str(case), "event@1", False, None) == 0
+    assert revise.add(str(case), ["event@1"], False, None) == 0
     header, *rows = file.read_text().splitlines()
     assert header.startswith("time_s,")
     open_ = np.array([[float(x) for x in row.split(",")] for row in rows])
@@ -76,7 +77,7 @@ def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
 )
 def test_an_event_that_cannot_be_is_refused(opened_lid, name, says):
     with pytest.raises(InputError, match=says):
-        revise.add(str(opened_lid[0]), name, False, None)
+        revise.add(str(opened_lid[0]), [name], False, None)
 
 
 def test_a_file_of_the_users_stays(opened_lid):
@@ -96,6 +97,26 @@ def test_an_answer_is_kept_and_taken_back(opened_lid, capsys):
     revise.undo(case, None, None)
     assert load_history(opened_lid[0] / "model.toml").last.answers == {}
     capsys.readouterr()
+
+
+def test_how_well_a_boundary_is_known_is_kept_with_its_reason(opened_lid, capsys):
+    case, file = str(opened_lid[0]), opened_lid[0] / "model.toml"
+    answer(case, "ambient", None, None, "checked in an ice bath: 0.1 K")
+    last = load_history(file).last
+    assert (last.why, last.answers) == ("ambient is known to 0.1 K: checked in an ice bath", {"boundary:ambient": 0.1})
+    assert open_case(case, lambda message: None).case.doubt["boundary:ambient"] == 0.1
+    revise.undo(case, None, None)
+    assert load_history(file).last.answers == {}
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "says"),
+    [("ambient", "5 K", "does not narrow"), ("ambiant", "0.1 K", "did you mean"), ("ambient", "well", "for example")],
+)
+def test_what_does_not_narrow_a_doubt_is_refused(opened_lid, name, size, says):
+    with pytest.raises(InputError, match=says):
+        answer(str(opened_lid[0]), name, None, None, size)
 
 
 @pytest.mark.parametrize(

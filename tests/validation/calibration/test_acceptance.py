@@ -1,21 +1,22 @@
-"""The checks of an added effect: each passes where it should and fails where it must."""
+"""What a step must stand up to: each check passes where it should and fails where it must."""
 
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
-from one_body import LOSS, measured, one_node
+from one_body import FILM, LOSS, measured, one_node
 from playground import Truth, wind
 
 from lumped.model.network import Parameter
-from measured.case import AddedEffect
-from validation.calibration.calibrate import minimise
+from measured.case import AddedEffect, Case, Model
+from validation.calibration.calibrate import minimise, with_model_error
+from validation.calibration.staged_fit import fit_stages, measured_in
 from validation.comparison.linearisation import segments
 from validation.effects import effect
-from validation.parameters.unknowns import Unknowns
-from validation.revision.acceptance import checks, predicted_without
-from validation.revision.revise import staged_fit, start
+from validation.parameters.unknowns import Unknowns, working
+from validation.revision.acceptance import fold_prediction, folds, halves, prediction_checks
+from validation.revision.revise import Change, add, calibrate, judge
 
 BIAS = Parameter(
     "bias of body", (("bias:body", 1.0),), value=0.0, low=-9, high=9, prior_sd=0.3, mapping="offset", neutral=0.0
@@ -24,54 +25,120 @@ RIGHT = "convection@flange.right"
 
 
 @cache
-def case():
-    return Truth(10, wind("flange.right", 12.0)).case()
-
-
-@cache
-def checked(name):
-    """Checks of one effect, by name."""
-    one = effect(name)
-    grown = replace(case(), model=replace(case().model, effects=(AddedEffect(one.kind, one.place),)))
-    (fit,) = staged_fit(grown, grown.usable, start(grown))
-    return fit, {c.check: c for c in checks(fit, name)}
+def added(name):
+    return add(Truth(10, wind("flange.right", 12.0)).case(), name)
 
 
 def test_the_true_effect_passes_all():
-    _, found = checked(RIGHT)
-    assert {"bounds", "left out"} == set(found)
-    assert all(c.passed for c in found.values()), found
+    assert added(RIGHT).accepted, added(RIGHT).why
+    assert {"bounds", "left out", "no change", "other tests"} == {c.check for c in added(RIGHT).checks}
 
 
-def test_leaving_a_test_out_agrees_with_fitting_without_it():
-    """A linear model: the deviance of each test as predicted by fits to the other, with and without the effect."""
-    tests = [measured("one", shift=0.8), measured("two", shift=-0.3)]
-    network = one_node(LOSS, BIAS)
-    fit = minimise(network, tests, Unknowns((BIAS, LOSS)), np.zeros(2))
-    found = predicted_without(fit, 1)
-    for test in tests:
-        others = [t for t in tests if t is not test]
-        deviance = []
-        for free in ((BIAS,), (BIAS, LOSS)):
-            alone = minimise(network, others, Unknowns(free), np.zeros(len(free)), fit.noise)
-            left = segments(network, [test], alone.values)
-            deviance.append(sum(float(np.sum(fit.noise.whiten(s, s.r[:, None]) ** 2)) for s in left))
-        assert found[test.name] == pytest.approx(deviance[0] - deviance[1], rel=1e-3, abs=1e-6)
+def test_a_wrong_effect_predicts_no_better():
+    done = added("radiation@flange.left")
+    (left_out,) = [c for c in done.checks if c.check == "left out"]
+    assert not left_out.passed, left_out.words
+    assert not done.accepted
 
 
-def test_an_amplitude_at_its_bound_fails():
-    fit, _ = checked(RIGHT)
-    k = fit.unknowns.names.index(RIGHT)
-    low = fit.unknowns.bounds[0]
-    theta = np.array(fit.theta)
-    theta[k] = low[k]
-    stuck = {c.check: c for c in checks(replace(fit, theta=theta), RIGHT)}
-    assert not stuck["bounds"].passed
+def both(tests):
+    """The fits of one body with and without a factor on its loss, model error in account."""
+    for free in ((BIAS,), (BIAS, LOSS)):
+        fit = minimise(one_node(*free), tests, Unknowns(free), np.zeros(len(free)))
+        yield with_model_error(fit, tests, fit.values)
 
 
 @pytest.mark.parametrize(("loss", "better"), [(1.3, True), (0.7, False)])
 def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
     """30 % more loss in both tests, or 30 % more in one and 30 % less in the other; 25 K of rise, read to 0.3 K."""
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
-    fit = minimise(one_node(LOSS, BIAS), tests, Unknowns((BIAS, LOSS)), np.zeros(2))
-    assert {c.check: c.passed for c in checks(fit, "loss")}["left out"] == better
+    before, after = ([fold_prediction(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in both(tests))
+    assert prediction_checks(before, after, ["one", "two"])[0].passed == better
+
+
+def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
+    """Its error and its density, noise and all, by fitting to the other alone and the whole covariance of readings."""
+    tests = [measured("one", shift=0.8), measured("two", loss=1.2)]
+    fit = replace(list(both(tests))[1], error=None)
+    fold = folds(tests, ["one", "two"])[0]
+    alone = minimise(fit.network, fold.fitted, fit.unknowns, np.zeros(2), fit.noise)
+    (read,) = segments(fit.network, fold.predicted, alone.values, fit.unknowns.parameters)
+    W = fit.noise.whiten(read, np.eye(read.r.size))
+    S = np.linalg.inv(W.T @ W) + read.J @ alone.covariance @ read.J.T
+    density = -0.5 * (read.r @ np.linalg.solve(S, read.r) + np.linalg.slogdet(S)[1])
+    found = fold_prediction(fit, fold, {})
+    assert found.square_K2 / found.count == pytest.approx(np.mean(read.r**2), rel=1e-3)
+    assert found.nats == pytest.approx(density, rel=1e-3, abs=0.05)
+
+
+def test_of_the_only_test_that_tells_the_second_half_is_predicted():
+    tests = [measured("one"), measured("two")]
+    whole, half = folds(tests, ["two"])
+    assert [t.name for t in whole.predicted] == ["one"]
+    first, second = (t.channels[0].y for t in (half.fitted[1], half.predicted[0]))
+    assert np.array_equal(np.where(np.isfinite(first), first, second), tests[1].channels[0].y)
+    assert np.isfinite(second).sum() == pytest.approx(100, abs=2)
+    assert [f.predicted[0].name for f in folds(tests[:1], ["one"])] == ["one"]
+
+
+def test_no_change_is_the_first_reading_of_the_test_not_of_its_half():
+    test = measured("one")
+    second = halves(test)[1]
+    (fit, _) = both([test])
+    found = fold_prediction(fit, folds([test], [])[0], {})
+    y = second.channels[0].y
+    assert found.no_change_K2 / found.count == pytest.approx(np.nanmean((y - test.channels[0].y[0]) ** 2), rel=1e-6)
+
+
+def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
+    """A film of half its size in the one test that is fitted; the other, which it may not see, was right before."""
+    odd = measured("odd", loss=1.6)
+    case = Case("one", Model(one_node(FILM)), (odd, measured("usual", "validate")))
+    done = calibrate(case)
+    assert (done.accepted, done.worth_keeping) == (False, True)
+    assert done.why.startswith("kept for the fitted tests only: usual: ")
+
+
+def test_the_hold_out_has_no_say():
+    """The same words whatever the held-out test reads, but for the sentence about it."""
+
+    def verdict(loss):
+        tests = (measured("one", loss=1.6), measured("two", loss=1.6), measured("kept", "hold-out", loss=loss))
+        done = calibrate(Case("one", Model(one_node(FILM)), tests))
+        return done.accepted, [c.words for c in done.checks], done.model.values
+
+    assert verdict(1.6) == verdict(0.4)
+    assert verdict(1.6)[0]
+
+
+@pytest.mark.parametrize(("name", "times"), [("convection.constant@yoke", 10.0), ("radiation@yoke", 1.0)])
+def test_what_the_readings_ask_for_may_be_larger_than_the_catalogue_looks_for(name, times):
+    """A film of the model may be ten times the largest that is looked for; an emissivity stays below one."""
+    case = Truth(10).case()
+    model = replace(case.model, effects=(AddedEffect(*name.split("@")),))
+    extended = effect(name).extend(case.model.network)
+    looked_for, free = (
+        next(p for p in network.parameters if p.name == name)
+        for network in (extended, working(replace(case, model=model))[0])
+    )
+    assert free.high == pytest.approx(times * looked_for.high)
+
+
+def test_no_test_pays_for_another():
+    changes = (Change("stand", "calibrate", 0.4, 20.0), Change("road", "calibrate", 60.0, 11.0))
+    from validation.revision.revise import _lost
+
+    found = _lost(changes, [measured("stand"), measured("road")])
+    assert not found.passed
+    assert "stand 0.40 -> 20.00 K" in found.words
+    assert not judge("add", changes, (), (found,), {"stand", "road"})[0]
+
+
+@pytest.mark.parametrize("name", ["sensor.swap@flange.left|flange.right", "sensor.bias@yoke", "ambient.offset@ambient"])
+def test_an_effect_on_the_measurement_is_free_in_the_fit_of_the_model_that_has_it(name):
+    case = Truth(10).case()
+    grown = replace(case, model=replace(case.model, effects=(AddedEffect(*name.split("@")),)))
+    network, unknowns = working(grown)
+    (stage,) = fit_stages(grown, grown.usable, unknowns)
+    p = next(p for p in network.parameters if p.name == name)
+    assert p.name in stage.free or measured_in(p, stage.tests)

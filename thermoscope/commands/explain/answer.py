@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
+from shlex import quote
 from typing import Annotated
 
 import typer
 
 from geom.errors import InputError
+from lumped.schemas.reader import suggestion
 from measured.case import Test
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
@@ -25,24 +28,62 @@ WORDS = {"yes": True, "y": True, "no": False, "n": False}
 
 def answer(
     case: Case,
-    word: Annotated[str, typer.Argument(metavar="yes|no", help="To the question that `diagnose` ended with.")],
+    word: Annotated[
+        str, typer.Argument(metavar="yes|no|NAME", help="To what `diagnose` asked; or a boundary or sensor.")
+    ],
+    size: Annotated[
+        str | None, typer.Argument(metavar="[[REASON:] 0.3 K]", help="How well NAME is known, and why.")
+    ] = None,
     about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
     target: Json = None,
 ) -> int:
-    """Summary what `diagnose` asked; the next diagnosis takes it as evidence, `undo` takes it back."""
+    """Answer what `diagnose` asked, or say how well a boundary or sensor is known; `undo` takes it back."""
+    if size is not None:
+        return narrow_doubt(case, word, size, target)
     if word.lower() not in WORDS:
         raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
     yes, subject = WORDS[word.lower()], checked_subject(folder, about or open_question(folder))
     why = f"{subject}: {'yes' if yes else 'no'}"
-    step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers={subject: yes})
+    return _keep(folder, case, {subject: yes}, why, "The next diagnosis takes it as evidence", target)
+
+
+def _keep(
+    folder: Folder, case: str, answers: Mapping[str, bool | float], why: str, then: str, target: str | None
+) -> int:
+    step = replace(folder.history.last, action="answer", effect="", why=why, rmse_K={}, answers=answers)
     history = folder.history.and_then(step)
     save_history(folder.settings.model_file, history, folder.history)
     document = {"case": folder.case.name, "revision": history.last.number, "answers": dict(history.last.answers)}
-    sentence = f"Revision {history.last.number}: {why}. The next diagnosis takes it as evidence."
-    give(document, target, lambda: Summary(sentence, more=f"Next: thermoscope explain diagnose {case}"))
+    sentence = f"Revision {history.last.number}: {why}. {then}."
+    give(document, target, lambda: Summary(sentence, more=f"Next: thermoscope explain diagnose {quote(case)}"))
     return 0
+
+
+def narrow_doubt(case: str, name: str, size: str, target: str | None) -> int:
+    """How well a boundary or a sensor is known, as a step of the history with its reason."""
+    with progress() as tell:
+        folder = open_case_for_writing(case, tell)
+    reason, _, number = size.rpartition(":")
+    tests = folder.case.tests
+    sigma = {f"bias:{c.name}": c.sigma_K for t in tests for c in t.channels if c.name == name}
+    usual = sigma or {f"boundary:{b}": folder.case.doubt["boundary"] for t in tests for b in t.boundaries if b == name}
+    if not usual:
+        names = sorted({b for t in tests for b in t.boundaries} | {c.name for t in tests for c in t.channels})
+        raise InputError(
+            f"'{name}' is no boundary and no sensor", "thermoscope explain answer", suggestion(name, names)
+        )
+    (subject, widest), where = next(iter(usual.items())), f"thermoscope explain answer {name} '{size}'"
+    match = re.fullmatch(r"\s*([0-9.]+(?:e-?[0-9]+)?)\s*K?\s*", number)
+    if not match:
+        raise InputError(f"'{number.strip()}' is no temperature difference", where, "for example 0.3 K")
+    sd = float(match[1])
+    if not 0.0 < sd <= widest:
+        right = f"above 0 and up to {widest:g} K, which is usual; [doubt] and sigma_K in the files widen"
+        raise InputError(f"{sd:g} K does not narrow the doubt of {name}", where, right)
+    why = f"{name} is known to {sd:g} K" + f": {reason.strip()}" * bool(reason.strip())
+    return _keep(folder, case, {subject: sd}, why, "The next calibration and diagnosis take it so", target)
 
 
 def open_question(folder: Folder) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from shlex import quote
+from shlex import join, quote
 from typing import TYPE_CHECKING, Any
 
 from geom.table import cell
@@ -38,24 +38,33 @@ def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]
     from lumped.condensation.error_budget import ErrorBudget
     from validation import diagnose as search
     from validation.comparison.error_budget import documents
+    from validation.parameters.unknowns import strain_words
 
     checked_diagnosis(folder)
     budgets = folder.budgets
     diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
+    document["strained"] = strain_words(folder.case)
     save_diagnosis(folder, document)
     return diagnosis, document
+
+
+def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
+    """What to add: the effect that is named first, or the set that it is in where that is the likeliest of all."""
+    likeliest = document["odds"][0]["effects"] if document.get("odds") else []
+    return list(likeliest) if first in likeliest else [first]
 
 
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
+    sentence = " ".join(filter(None, [document.get("strained", ""), sentence]))
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
-    step = f"model add {case} {effects[0]}" if effects else f"explain effects {case}"
+    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     events, odds, candidate_rows = (

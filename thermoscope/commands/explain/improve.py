@@ -15,7 +15,7 @@ from geom.text import visible
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
-from thermoscope.case_folder.stored_yardstick import yardstick_document
+from thermoscope.case_folder.stored_yardstick import lacking_words, yardstick_document
 from thermoscope.commands.model.revise import recorded
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import save_diagnosis
@@ -47,7 +47,7 @@ def improve(
         result = climb(folder.case, supervisor, most, tell, folder.settings.kinds)
     last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
-    plain = yardstick_document(folder.yardstick, result.stairs[-1].comparison)
+    plain = yardstick_document(folder.yardstick, result.stairs[-1].comparison, result.case)
     document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
     give(document, target, lambda: improvement_summary(document, folder, case))
     return 0 if result.adequate else 1
@@ -101,5 +101,5 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
     outcome = destination if document["written"] else "nothing written"
     further = [] if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
-    plain = document["yardstick"]["sentence"] if "yardstick" in document else ""
+    plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
     return Summary(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, plain, *further], more)

@@ -19,10 +19,11 @@ from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import current_diagnosis
-from thermoscope.console.options import Anyway, Case, Effect, Json
+from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
+from validation.parameters.unknowns import strain_words
 from validation.tables import parameters_table, revision_tables
 
 if TYPE_CHECKING:
@@ -34,11 +35,15 @@ CHANGE_K = 1.0  # what a step has to move where no sensor is, to be told
 LINE = 75  # letters, so that its unit still fits into 80
 
 
-def add(case: Case, effect: Effect, anyway: Anyway = False, target: Json = None) -> int:
-    """Add an effect, recalibrate, and show the error before and after on every test, held-out ones too."""
+def add(case: Case, effect: Effects, anyway: Anyway = False, target: Json = None) -> int:
+    """Add an effect, or several that need each other; recalibrate, and show the error before and after on every test,
+    held-out ones too. Accepted is what predicts tests left out of the fit better than before."""
     from validation.revision.revise import add as added
 
-    return revised(case, lambda folder, tell: added(folder.case, meant(folder, effect), tell), anyway, target)
+    def step(folder: Folder, tell: Callable[[str], None]) -> revise.Revision:
+        return added(folder.case, [meant(folder, one) for one in effect], tell)
+
+    return revised(case, step, anyway, target)
 
 
 def meant(folder: Folder, effect: str) -> str:
@@ -95,15 +100,17 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
-    keep = result.accepted or anyway
+    keep = result.worth_keeping or anyway
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
     places = unmeasured(folder, result)
-    document = {**result.document(), "case": folder.case.name, "written": keep, "unmeasured": places}
+    nuisance_words = strain_words(replace(folder.case, model=result.model))
+    more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
+    document = {**result.document(), **more}
     give(document, target, lambda: revision_summary(document, folder, case))
-    return 0 if keep else 1
+    return 0 if result.accepted or anyway else 1
 
 
 def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
@@ -171,12 +178,13 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
         errors,
         *failed,
         _unmeasured_words(document["unmeasured"]),
+        _hidden_starts(document["parameters"]),
         *passed,
         _fixed(document["parameters"]),
         _blind(document["parameters"]),
     ]
     return Summary(
-        f"{name}: {verdict}; {document['why']}; {outcome}.",
+        " ".join(filter(None, [document["strained"], f"{name}: {verdict}; {document['why']}; {outcome}."])),
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
@@ -197,6 +205,14 @@ def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
             break
         text = longer
     return f"{text} degC" if text else ""
+
+
+def _hidden_starts(parameters: Sequence[Mapping[str, Any]]) -> str:
+    """Where what no sensor sees began, above the mean of what is read: as many as a sentence holds."""
+    rows = [p for p in parameters if p["of_measurement"] and p["name"].startswith("start of ") and " in " in p["name"]]
+    each = [f"{p['name'].removeprefix('start of ')} {p['value']:+.1f} K" for p in rows]
+    more = f" and {len(each) - FEW} more" if len(each) > FEW else ""
+    return f"Began off the mean of the first readings: {', '.join(each[:FEW])}{more}." if each else ""
 
 
 def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:

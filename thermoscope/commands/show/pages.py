@@ -60,7 +60,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
     from viz.pages.report import Report, write_report
 
     tell("running the model and its error budget")
-    compared = {**folder.compared.document(), **yardstick_document(folder.yardstick, folder.compared)}
+    compared = {**folder.compared.document(), **yardstick_document(folder.yardstick, folder.compared, folder.case)}
     diagnosis, earlier = _diagnosis(folder)
     curves = [marked(runs.comparison_of(folder, test), diagnosis) for test in runs.by_interest(folder)]
     tell("drawing")

@@ -74,6 +74,7 @@ def compared(
     from thermoscope.bands import bands_requested, test_bands
     from thermoscope.case_folder.stored_yardstick import yardstick_document
     from validation.comparison.error_budget import documents
+    from validation.parameters.unknowns import strain_words
 
     tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
     budgets = folder.budgets
@@ -89,11 +90,12 @@ def compared(
     bands = {"bands": test_bands(folder, tell)} if bands_requested(folder.case.model.network, sure) else {}
     return result, {
         **result.document(),
+        "strained": strain_words(folder.case),
         **more,
         "error_budget": documents(budgets),
         **sampling(folder),
         **bands,
-        **yardstick_document(folder.yardstick, result),
+        **yardstick_document(folder.yardstick, result, folder.case),
     }
 
 
@@ -102,11 +104,13 @@ def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "
 
     called : what the user calls the case;  unseen : what stands before all else of a machine without a warm sensor
     """
+    from thermoscope.case_folder.stored_yardstick import lacking_words
+
     tests, budgets, steps = document["tests"], document["error_budget"], document["sampling"]
     plain = document.get("yardstick", {"warning": "", "sentence": ""})
     first, *rest = comparison_tables(document)
     parts = [
-        plain["sentence"],
+        f"{plain['sentence']} {lacking_words(document)}".strip(),
         *(_reasons(document) if "patterns" in document else []),
         sensors_table("Over: error is measured - model", tests, "over"),
         first,
@@ -114,7 +118,7 @@ def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"]]
+    words = [f"{unseen}." * bool(unseen), plain["warning"], document.get("strained", ""), document["words"]]
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(" ".join(filter(None, words)), parts, more, every)
 

@@ -1,6 +1,6 @@
 """Random networks against SciPy's Radau: how far off, whether any node leaves what is allowed, what the run says.
 
-    python benchmarks/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE] [--references FOLDER]
+    python benchmarks/peers/time_steps.py [--first SEED] [--count 1000] [--tangents 3] [--json FILE]
 
 Networks, equations and reference are those of tests/random_networks.py: 3 to 40 nodes, capacities over six
 decades and none, cells of 0.1 J/K, samples of 1 to 60 s, inputs in steps and ramps, streams through zero and reversed,
@@ -21,7 +21,7 @@ from lumped.integration.record import Record
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network, Row
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "shared"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "shared"))
 from random_networks import Machine, admissible, built, machine, reference
 
 WRONG_K, WRONG_SHARE, OUTSIDE_K = 0.1, 1e-3, 0.01

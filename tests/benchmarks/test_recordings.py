@@ -1,0 +1,44 @@
+"""Recordings from raw file to last improvement: what is kept back, and what the table says."""
+
+import math
+
+import recordings as bench
+
+
+def test_of_a_single_file_the_last_third_of_its_rows_is_kept_back(tmp_path):
+    rows = [f"{i},{20 + i}" for i in range(300)]
+    (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "log.csv").write_text("\n".join(["time_s,T", *rows]) + "\n")
+    (source,) = bench.of_folder(tmp_path, tmp_path / "scratch")
+    assert (source.name, source.kept) == ("one", ("last",))
+    text = [f.read_text().splitlines() for f in source.files]
+    assert all(lines[0] == "time_s,T" for lines in text)
+    assert [line for lines in text for line in lines[1:]] == rows
+
+
+def test_of_files_alike_a_third_is_kept_back_and_others_are_a_recording_of_their_own(tmp_path):
+    (tmp_path / "two").mkdir()
+    for name in "abcdef":
+        (tmp_path / "two" / f"{name}.csv").write_text("time_s,T\n0,20\n")
+    (tmp_path / "two" / "short.csv").write_text("time_s,other\n0,20\n")
+    (source,) = bench.of_folder(tmp_path, tmp_path / "scratch")
+    assert (len(source.files), source.kept) == (6, ("c", "f"))
+
+
+def test_the_table_holds_the_last_step_against_the_best_yardstick():
+    yards = {"persistence": 12.0, "black_box": 3.0, "free_network": 2.0}
+    good = bench.Row("good", 4, 1, 2, yards, [("start", 9.0), ("calibrate", 4.0), ("wind@a|b", 2.2)], cpu_s=61.4)
+    none = bench.Row("none", fault="no column is a temperature")
+    assert math.isclose(good.ratio, 1.1)
+    assert math.isnan(none.ratio)
+    lines = bench.table([good, none]).splitlines()
+    cells = [c.strip() for c in lines[2].replace("\\|", "/").strip("|").split("|")]
+    assert cells == ["good", "4 (1)", "12.00", "3.00", "2.00", "", "4.00", "**2.20**", "1.10", "wind@a/b", "61"]
+    assert lines[-1] == "none: no column is a temperature"
+    assert "median 1.10, worst 1.10 of 1" in lines[-3]
+
+
+def test_the_shipped_recordings_keep_back_the_profiles_of_the_paper():
+    raw = next(s for s in bench.shipped() if s.files)
+    assert {f.name.partition(".")[0] for f in raw.files} >= set(raw.kept)
+    assert len(raw.files) == 12

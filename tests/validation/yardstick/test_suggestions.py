@@ -1,0 +1,88 @@
+"""What a free network knows and the declared one lacks, as effects with place and start."""
+
+from dataclasses import replace
+
+import pytest
+from two_bodies import bench
+
+from validation.calibration.calibrate import no_progress
+from validation.effects import effect
+from validation.revision.improvement import Supervisor, best, free_network_step
+from validation.yardstick.suggestions import suggested_effects
+from validation.yardstick.terms import Term
+from validation.yardstick.yardstick import yardstick
+
+
+def link(place, other, on, value, share=0.2, unit="W/K"):
+    return Term(place, "link", other, on, value, value, value, unit, share)
+
+
+def without(case, *links):
+    """The case whose network lacks some of its links."""
+    network = case.model.network
+    kept = tuple(x for x in network.links if set(x.places) not in [set(pair) for pair in links])
+    assert len(kept) < len(network.links)
+    return replace(case, model=replace(case.model, network=replace(network, links=kept, parameters=())))
+
+
+@pytest.fixture(scope="module")
+def case():
+    return bench(held=())
+
+
+def test_what_is_declared_is_not_suggested(case):
+    assert [s for s in suggested_effects(yardstick(case).terms, case) if s.other] == []
+
+
+def test_a_link_that_was_left_out_is_suggested_with_the_size_that_it_has(case):
+    """The film of 2 W/K from the body to the air."""
+    poorer = without(case, ("body", "ambient"))
+    first = suggested_effects(yardstick(poorer).terms, poorer)[0]
+    assert (first.place, first.other, first.inputs) == ("body", "ambient", ())
+    assert first.most == pytest.approx(2.0, rel=0.05)
+    assert first.words == f"body to ambient: {first.rest:.3g} W/K"
+    assert "convection.constant@body" in first.starts
+
+
+def test_a_start_makes_the_conductance_that_was_found(case):
+    """Whatever the law counts in: a bare node in W/K, a face in W/m2/K."""
+    poorer = without(case, ("body", "ambient"))
+    (found,) = suggested_effects([link("body", "ambient", "", 2.0)], poorer)
+    for name, start in found.starts.items():
+        grown = effect(name).extend(poorer.model.network)
+        new = [x for x in grown.links if x.name not in {y.name for y in poorer.model.network.links}]
+        size = sum(abs(x.vals).max() * x.law.size(case.tests[0].inputs) for x in new)
+        assert start * size == pytest.approx(2.0)
+
+
+def test_both_ends_of_a_link_are_one_suggestion(case):
+    poorer = without(case, ("core", "body"))
+    found = suggested_effects([link("core", "body", "", 4.0, 0.3), link("body", "core", "", 3.8, 0.2)], poorer)
+    assert [(s.place, s.other, s.most) for s in found] == [("core", "body", 4.0)]
+
+
+def test_a_link_that_follows_an_input_is_told_at_rest_and_at_most(case):
+    """ "power_W" stands for any input: what matters is that no declared law of the link reads it."""
+    name = next(iter(case.tests[0].inputs))
+    (found,) = suggested_effects([link("body", "ambient", "", 2.0), link("body", "ambient", f"{name}^2", 1.5)], case)
+    assert (found.rest, found.most, found.inputs) == (2.0, 3.5, (name,))
+    assert found.words == f"body to ambient: 2 W/K at rest, 3.5 at the largest {name}"
+
+
+def test_per_capacity_there_is_no_start(case):
+    (found,) = suggested_effects([link("core", "ambient", "", 1e-3, unit="1/s")], case)
+    assert (found.starts, found.unit) == ({}, "1/s")
+
+
+def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(case):
+    """The film that was left out is accepted, with the words of the free network as its evidence."""
+    poorer = without(case, ("body", "ambient"))
+    step, evidence, tried = free_network_step(poorer, Supervisor(best, suggest=True), no_progress)
+    assert step is not None, tried
+    assert step.accepted
+    assert evidence["free network"].startswith("body to ambient: ")
+    assert free_network_step(poorer, Supervisor(best), no_progress) == (None, {}, [])
+
+
+def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
+    assert free_network_step(case, Supervisor(best, suggest=True), no_progress) == (None, {}, [])

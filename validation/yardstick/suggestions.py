@@ -1,0 +1,123 @@
+"""What a free network knows and a declared one lacks: place, law, start; in words and as effects of the catalogue."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.model.network import Link, Network, Source
+from lumped.transfer.laws import Law
+from measured.case import Case, Test
+from validation.effects import catalogue
+from validation.parameters.unknowns import scene_of
+from validation.yardstick.terms import Term
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """Heat between two places, or put in at one, that follows inputs as nothing declared does.
+
+    other : the link's other end, "" of a loss;  inputs : that it follows and what is declared does not
+    rest, most : value where nothing turns or flows, and at the largest inputs;  unit : W/K, W; 1/s, K/s per capacity
+    starts : effect of the catalogue that adds it -> where a fit may begin; empty where the catalogue has none
+    share : of all heat that the sensor exchanges
+    """
+
+    place: str
+    other: str
+    inputs: tuple[str, ...]
+    rest: float
+    most: float
+    unit: str
+    share: float
+    starts: Mapping[str, float]
+
+    @property
+    def words(self) -> str:
+        """stator to coolant: 18.5 W/K at rest, 29.9 at the largest speed_rpm"""
+        what = f"{self.place} to {self.other}" if self.other else f"a loss at {self.place}"
+        if not self.inputs:
+            return f"{what}: {self.rest:.3g} {self.unit}"
+        return (
+            f"{what}: {self.rest:.3g} {self.unit} at rest, {self.most:.3g} at the largest {' and '.join(self.inputs)}"
+        )
+
+    def document(self) -> dict:
+        """As an entry of `lacking`."""
+        return {**vars(self), "inputs": list(self.inputs), "starts": dict(self.starts), "words": self.words}
+
+
+def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:
+    """Of the terms that a free network needs those that the case's network lacks, what carries most heat first."""
+    groups: dict[tuple[str, ...], list[Term]] = {}
+    for term in terms:
+        groups.setdefault((term.kind, *sorted({term.place, term.other or term.place})), []).append(term)
+    every = (_suggestion([t for t in group if t.place == group[0].place], case) for group in groups.values())
+    return tuple(sorted((s for s in every if s), key=lambda s: -s.share))
+
+
+def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
+    """Of the terms between two places, or at one; None where what is declared can do the same."""
+    first, network = group[0], case.model.network
+    laws = [set(law.reads) for law in _laws(network, first)]
+    lacking = [t for t in group if not any(inputs_of(t) <= reads for reads in laws)]
+    if not lacking:
+        return None
+    inputs = tuple(dict.fromkeys(name for t in lacking for name in sorted(inputs_of(t))))
+    rest = sum(t.value for t in group if not t.input)
+    missing = sum(t.value for t in lacking)
+    return Suggestion(
+        first.place,
+        first.other,
+        inputs,
+        rest,
+        sum(t.value for t in group),
+        first.unit,
+        sum(t.share for t in lacking),
+        _starts(first, set(inputs), missing, case) if first.unit.startswith("W") else {},
+    )
+
+
+def inputs_of(term: Term) -> set[str]:
+    """The names in "id_A^2 speed_rpm"."""
+    return {re.sub(r"\^[0-9]+$", "", word) for word in term.input.split()}
+
+
+def _laws(network: Network, term: Term) -> list[Law]:
+    """Of the links between the two places of a term, or of the losses at its place."""
+    return [x.law for x in _elements(network, term)]
+
+
+def _elements(network: Network, term: Term) -> list[Link | Source]:
+    def node(place: str) -> str:
+        return network.places[place].part if place in network.places else place
+
+    pair = {node(term.place), node(term.other)}
+    if term.kind == "loss":
+        return [s for s in network.sources if node(s.place) in pair]
+    return [x for x in network.links if {node(p) for p in x.places} == pair]
+
+
+def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str, float]:
+    """Effects that add a law of just these inputs there, with the amplitude that makes `value` at their largest."""
+    network, tests, out = case.model.network, case.usable, dict[str, float]()
+    for one in catalogue(scene_of(case)):
+        if one.fault or one.mapping != "amplitude":
+            continue
+        larger = one.extend(network)
+        old = {*(x.name for x in network.links), *(x.name for x in network.sources)}
+        new = [x for x in _elements(larger, term) if x.name not in old and set(x.law.reads) == inputs]
+        size = sum(_largest(x, tests) for x in new)
+        if size > 0.0:
+            out[one.name] = value / size
+    return out
+
+
+def _largest(element: Link | Source, tests: Sequence[Test]) -> float:
+    """The largest conductance (W/K) or loss (W) of an element of amplitude one over some tests."""
+    area = float(np.max(np.abs(element.vals))) if isinstance(element, Link) else 1.0
+    sizes = [np.abs(element.law.size(t.inputs)) for t in tests if set(element.law.reads) <= set(t.inputs)]
+    return area * max((float(np.max(x)) for x in sizes), default=0.0)
