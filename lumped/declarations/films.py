@@ -33,8 +33,8 @@ def natural_film(table: Table) -> tuple[FilmTable, float]:
     film, factor = surfaces[table.word("surface", None, surfaces)](table, film_air(table)), table.number("factor", 1.0)
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
-    held = tabulated(film, fluid_temperature=table.number("fluid_degC"))
-    return FilmTable(held.difference, held.value * FILMS), factor
+    curve = tabulated(film, fluid_temperature=table.number("fluid_degC"))
+    return FilmTable(curve.difference, curve.value * FILMS), factor
 
 
 def film_air(table: Table) -> Callable[[float], Fluid]:

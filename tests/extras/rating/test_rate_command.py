@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from small_case import small_case
 
-from extras.rating.commands.rate import answer
+from extras.rating.commands.rate import rating_summary
 from extras.rating.request import places, rated_point
 from geom.description.identity import Identity
 from geom.description.roles import Role
@@ -102,7 +102,7 @@ def test_ratings_stand_beside_those_of_the_model_before(thermoscope, tmp_path):
     first = said.document["ratings"][0]
     more = 100.0 * (first["value"] / first["before"] - 1.0)
     assert more > 1.0
-    assert f"{more:.3g} % more than the model before its last step said." in answer(said.document).sentence
+    assert f"{more:.3g} % more than the model before its last step said." in rating_summary(said.document).sentence
     derated = {(d["of"], d["value"]): d for d in said.document["derating"]}
     assert derated["ambient", 20.0]["share_before"] == pytest.approx(first["before"] / first["value"], rel=5e-3)
     warm = derated["ambient", 60.0]
