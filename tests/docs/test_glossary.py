@@ -14,6 +14,7 @@ from validation.inference.result import Decided, Verdict
 PLAIN = {
     "",
     "%",
+    "now",
     "k",
     "degc",
     "w/k",

@@ -2,6 +2,7 @@
 
 import json
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import viz
 from extras.workbench import revisions, steps
 from lumped.build import pipeline
 from lumped.condensation.reduction import Recipe
+from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import History, Revision
 from thermoscope.case_folder.runs import by_interest, fields, stored_range, temperature_range
@@ -39,10 +41,10 @@ def test_one_range_for_all(folder, tmp_path, monkeypatch):
     every = [fields(folder.case, test, nodes, 7)[1] for test in by_interest(folder)]
     assert expected[0] <= min(T.min() for T in every) + 1.0
     assert expected[1] >= max(T.max() for T in every) - 1.0
-    monkeypatch.setattr(viz, "cutaway", lambda *_, limits, **__: given.append(limits))
+    scene = SimpleNamespace(close=lambda: None)
+    monkeypatch.setattr(viz, "cutaway", lambda *_, limits, **__: given.append(limits) or scene)
     monkeypatch.setattr(viz, "write_recording", lambda path, *_, limits, **__: given.append(limits) or path)
-    for module in (pages, viewer):  # one test: what costs time is done for each
-        monkeypatch.setattr(module, "by_interest", lambda folder: by_interest(folder)[:1])
+    monkeypatch.setattr(runs, "by_interest", lambda folder: by_interest(folder)[:1])  # one test: each costs time
     pages.rendered(folder, tmp_path, silent)
     bench = next(steps.machine_documents(folder, silent))
     page = viewer.viewer_page(folder, silent)

@@ -31,11 +31,11 @@ def answer(
     word: Annotated[
         str, typer.Argument(metavar="yes|no|NAME", help="To what `diagnose` asked; or a boundary or sensor.")
     ],
+    about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
+    target: Json = None,
     size: Annotated[
         str | None, typer.Argument(metavar="[[REASON:] 0.3 K]", help="How well NAME is known, and why.")
     ] = None,
-    about: Annotated[str | None, typer.Option(metavar="NAME", help="Test, event or fault; else what it asked.")] = None,
-    target: Json = None,
 ) -> int:
     """Answer what `diagnose` asked, or say how well a boundary or sensor is known; `undo` takes it back."""
     if size is not None:
