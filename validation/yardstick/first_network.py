@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
 FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
+UNDRIVEN = 0.6  # price of heat that follows no input: above that of a square, so that a constant current heats
 TRIALS = 2  # terms of each node at a time: those that the increments ask for most
 BETTER, WORSE = 0.97, 1.02  # times the error left out: what a term must buy, and what may be lost without it
 FEW_NODES = 4  # with more of them only the second way is gone: trying terms one by one would take minutes
@@ -255,8 +256,9 @@ class _TermTable:
 
     @property
     def price(self) -> Array:
-        """(n_term,): what follows one input is likelier than what follows two or a square."""
-        return np.array([1.0 + 0.25 * sum(p for _, p in of) for _, of in self.candidates])
+        """(n_term,): what follows one input is likelier than what follows two, or a square, or heat of nothing."""
+        heat = np.array([len(ends) == 1 and not of for ends, of in self.candidates])
+        return np.array([1.0 + 0.25 * sum(p for _, p in of) for _, of in self.candidates]) + UNDRIVEN * heat
 
     def shares(self, lessons: Sequence[int], theta: Array, C: Array) -> Array:
         """(n_term,): of what moves a node, root mean squares; of a link's two nodes the larger."""
