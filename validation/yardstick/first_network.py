@@ -228,7 +228,7 @@ class _TermTable:
             for (N, b, term), w, c in zip(parts, self.weight, C, strict=True):
                 AA[np.ix_(term, term)] += N * (w / c**2)
                 Ab[term] += b * (w / c)
-            a = nonnegative(AA, Ab)
+            a = nonnegative(AA, Ab, a)
             new = np.array([_capacity(N, b, a[term], c) for (N, b, term), c in zip(parts, C, strict=True)])
             new /= np.exp(np.mean(np.log(new)))
             if np.allclose(new, C, rtol=STILL):

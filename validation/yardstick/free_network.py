@@ -152,8 +152,10 @@ class NetworkLessons:
         return FreeNetwork(self.form, links, np.array(sources))
 
 
-def nonnegative(AA: Array, Ab: Array) -> Array:
+def nonnegative(AA: Array, Ab: Array, near: Array | None = None) -> Array:
     """The least squares of A x = b with x >= 0, from A'A and A'b; a column of zeros gets 0.
+
+    near : the answer to a similar question, where it is known: its positive terms are tried first
 
     Active sets on the normal equations of columns of length one (Bro and de Jong 1997). SciPy's solver of the same
     problem ends the process on some of these tables (1.17), so it is not used.
@@ -162,13 +164,23 @@ def nonnegative(AA: Array, Ab: Array) -> Array:
     alive = scale > 1e-12 * max(float(scale.max(initial=0.0)), 1e-300)
     x, size = np.zeros(len(scale)), scale[alive]
     unit = AA[np.ix_(alive, alive)] / np.outer(size, size)
-    x[alive] = _active_set(unit + RIDGE * np.eye(size.size), Ab[alive] / size) / size
+    begin = np.zeros(size.size, bool) if near is None else near[alive] > 0.0
+    x[alive] = _active_set(unit + RIDGE * np.eye(size.size), Ab[alive] / size, begin) / size
     return x
 
 
-def _active_set(G: Array, h: Array) -> Array:
-    """min x' G x / 2 - h' x over x >= 0: one term more at a time, and out with those that would fall below zero."""
-    x, free, least = np.zeros(h.size), np.zeros(h.size, bool), SMALL * float(np.abs(h).max(initial=0.0))
+def _active_set(G: Array, h: Array, begin: NDArray[np.bool_]) -> Array:
+    """min x' G x / 2 - h' x over x >= 0: one term more at a time, and out with those that would fall below zero.
+
+    begin : terms that are free from the start; those of them that would be below zero leave at once
+    """
+    x, free, least = np.zeros(h.size), begin.copy(), SMALL * float(np.abs(h).max(initial=0.0))
+    while free.any():
+        trial = np.linalg.solve(G[np.ix_(free, free)], h[free])
+        if trial.min() > 0.0:
+            x[free] = trial
+            break
+        free[np.flatnonzero(free)[trial <= 0.0]] = False
     for _ in range(3 * h.size):
         slope = np.where(free, -np.inf, h - G @ x)
         if not h.size or slope.max() <= least:
