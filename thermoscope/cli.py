@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import ast
 import io
 import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
+from inspect import cleandoc
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 import typer
@@ -83,12 +84,13 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
 def _help_alone(module: str, name: str) -> Callable[[], None]:
     """A stand-in that says what the command says of itself; the module is read, not loaded."""
     file = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
-    functions = (f for f in ast.parse(file.read_text(encoding="utf-8")).body if isinstance(f, ast.FunctionDef))
+    program = compile(file.read_text(encoding="utf-8"), str(file), "exec")
+    own = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
 
     def stand_in() -> None:
         """Nothing is run."""
 
-    stand_in.__doc__ = next(ast.get_docstring(f) for f in functions if f.name == name)
+    stand_in.__doc__ = cleandoc(own.co_consts[0])  # where a function keeps what it says of itself
     return stand_in
 
 

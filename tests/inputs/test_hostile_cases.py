@@ -190,7 +190,7 @@ def test_a_pipe_that_closes_and_no_stdout_at_all(tmp_path):
 
 
 def test_a_fault_nobody_foresaw_is_one_line(monkeypatch):
-    def fails(*_):
+    def fails(json=None):
         raise ZeroDivisionError("by\nzero")
 
     monkeypatch.setattr("thermoscope.commands.test.quantities.quantities", fails)

@@ -242,7 +242,9 @@ def _evidence(table: Table) -> dict[str, float | str]:
 
 
 def _answers(table: Table) -> dict[str, bool | float]:
-    return {k: table.flag(k) if isinstance(v, bool) else table.number(k, of="answers") for k, v in table.data.items()}
+    """yes or no; of a boundary or a sensor a number (K)."""
+    numbers = {k for k, v in table.data.items() if isinstance(v, int | float) and not isinstance(v, bool)}
+    return {k: table.number(k, of="answers") if k in numbers else table.flag(k) for k in table.data}
 
 
 def _pairs(table: Table) -> dict[str, Pair]:

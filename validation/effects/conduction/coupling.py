@@ -6,7 +6,7 @@ from lumped.model.network import Network
 from lumped.model.sites import near_pairs
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import conductance_scale, exchange
+from validation.effects.build import conductance_scale, exchange, place_pair
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Coupling(Effect):
         return [f"{a}|{b}" for a, b in near_pairs(scene.network)]
 
     def extend(self, network: Network) -> Network:
-        a, b = self.place.split("|")
+        a, b = place_pair(network, self.place)
         link = exchange(network, self.name, a, b, Fixed(1.0))
         return with_parameter(
             network.extended(links=[link]), self.parameter(link.name, scale=conductance_scale(network))

@@ -7,7 +7,7 @@ from lumped.model.network import Network
 from lumped.model.sites import across_air, faces, fluids, solids, turns
 from lumped.transfer.laws import InputPower
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import conductance_scale, exchange, films
+from validation.effects.build import conductance_scale, exchange, films, place_pair
 
 
 def gaps(network: Network) -> list[str]:
@@ -50,7 +50,7 @@ class GapConvection(Effect):
 
     def extend(self, network: Network) -> Network:
         if "|" in self.place:
-            a, b = self.place.split("|")
+            a, b = place_pair(network, self.place)
             link = exchange(network, self.name, a, b, speed_law(network))
             parameter = self.parameter(link.name, scale=conductance_scale(network) / 20.0, unit="W/K")
             return with_parameter(network.extended(links=[link]), parameter)
