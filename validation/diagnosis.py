@@ -68,6 +68,7 @@ from validation.planning.experiments import next_tests
 from validation.planning.rivals import CompetingModels
 from validation.planning.sensors import next_sensors
 from validation.threads import one_blas_thread
+from validation.yardstick.network_terms import network_terms
 
 Progress = Callable[[str], None]
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
@@ -123,6 +124,7 @@ def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = n
     selection = conditions(calm, case, scan, heat, kinds, progress)
     values = {**case.model.values, **evidence.fit.values}
     laws = law_errors(evidence, values) if kinds is None or KIND in kinds else {}
+    laws |= network_terms(case, evidence, kinds)
     first = len(evidence.causes)
     larger = joined(evidence, {**selection, **laws}, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))

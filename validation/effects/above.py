@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, Inputs
-from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.base import ReadingEffect, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
 
 KIND = "law"
@@ -32,12 +32,13 @@ class Ramp:
 
 
 @dataclass(frozen=True)
-class Above(Effect):
+class Above(ReadingEffect):
     """g = g0 (1 + a r(u)) of one declared loss or film, r from 0 to 1 around a level of an input u.
 
     Place: "LOSS OR LINK|INPUT>LEVEL", the level in the input's unit.
     """
 
+    kind = KIND
     title = "a declared law is off at high values of an input"
     unit = "1"
     source = "definition: a map measured on another machine, a constant where the law bends"
@@ -50,13 +51,7 @@ class Above(Effect):
     confused_with = ("loss.factor", "input.factor")
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "kind", KIND)  # not in the catalogue: levels come from the readings
         self.parts()
-
-    @classmethod
-    def candidate_places(cls, scene: Scene) -> Iterable[str]:
-        """Nowhere by itself: readings say at which level."""
-        return ()
 
     def parts(self) -> tuple[str, str, float]:
         """Loss or link, input, level."""
@@ -65,7 +60,11 @@ class Above(Effect):
             raise InputError(f"'{self.place}' is no law above a level", f"effect '{self.name}'", "LOSS|INPUT>LEVEL")
         return match[1], match[2], float(match[3])
 
-    def words(self, a: float) -> str:
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.parts()[1],)
+
+    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
         """ "the declared loss:stator is 40 % too high above current_A 150"."""
         target, name, level = self.parts()
         side = "too low" if a > 0 else "too high"

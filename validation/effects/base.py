@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
@@ -110,6 +110,24 @@ class Effect(ABC):
             sign=self.sign,
             source=self.source,
         )
+
+
+class ReadingEffect(Effect):
+    """An effect whose place only readings can tell, such as the level of an input: the catalogue has none of it."""
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> Iterable[str]:
+        """Nowhere by itself."""
+        return ()
+
+    @property
+    @abstractmethod
+    def inputs(self) -> tuple[str, ...]:
+        """What it follows."""
+
+    @abstractmethod
+    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
+        """What an amplitude means, beside what the network has there at the values of its parameters."""
 
 
 def with_parameter(network: Network, parameter: Parameter) -> Network:

@@ -65,6 +65,21 @@ def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:
     return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb, name)
 
 
+def links_between(network: Network, a: str, b: str) -> list[Link]:
+    """Links between two parts, boundaries or places of theirs."""
+    pair = {_part(network, a), _part(network, b)}
+    return [x for x in network.links if {_part(network, p) for p in x.places} == pair]
+
+
+def losses_at(network: Network, place: str) -> list[Source]:
+    """Losses of the part that a place belongs to."""
+    return [s for s in network.sources if _part(network, s.place) == _part(network, place)]
+
+
+def _part(network: Network, place: str) -> str:
+    return network.places[place].part if place in network.places else place
+
+
 def to_fluid(network: Network, name: str, part: str, fluid: str, law: Law) -> list[Link]:
     """Film links from every face of a part on a fluid (law in W/m2/K), or one from a bare node (law in W/K)."""
     wet = faces(network, part, fluid)

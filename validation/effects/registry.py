@@ -12,12 +12,14 @@ from typing import Any
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.model.network import Network
-from validation.effects.above import KIND, Above
-from validation.effects.base import Effect, Scene
+from validation.effects.above import Above
+from validation.effects.base import Effect, ReadingEffect, Scene
 from validation.effects.during import During
+from validation.effects.input_terms import InputConductance, InputLoss
 from validation.effects.time_window import IN, event
 
 HERE = Path(__file__).parent
+READ: dict[str, type[ReadingEffect]] = {c.kind: c for c in (Above, InputLoss, InputConductance)}
 
 
 def _concrete(base: type[Effect]) -> Iterable[type[Effect]]:
@@ -32,7 +34,8 @@ def kinds() -> dict[str, type[Effect]]:
     for module in walk_packages([str(HERE)], "validation.effects."):
         import_module(module.name)
     root: Any = Effect
-    classes = [c for c in _concrete(root) if hasattr(c, "kind")]  # one that holds for a while has that of another
+    every = (c for c in _concrete(root) if not issubclass(c, ReadingEffect))
+    classes = [c for c in every if hasattr(c, "kind")]  # one that holds for a while has that of another
     builtin = {c.kind: c for c in classes if c.__module__.startswith("validation.effects.")}
     return dict(sorted(builtin.items())) | {c.kind: c for c in plugins("effects").values()}
 
@@ -53,8 +56,11 @@ def _of(kind: str, classes: Mapping[str, type[Effect]], where: str) -> type[Effe
 def effect(name: str, scene: Scene | None = None) -> Effect:
     """The effect called 'kind@place'; with a scene, only if it can sit there."""
     kind, _, place = name.partition("@")
-    if kind == KIND:
-        return Above(place)
+    if kind in READ:
+        one = READ[kind](place)
+        if scene is not None and not set(one.inputs) <= scene.inputs:
+            raise InputError(f"unknown input in '{place}'", f"effect '{name}'", ", ".join(sorted(scene.inputs)))
+        return one
     cls = _of(kind, kinds(), f"effect '{name}'")
     base, separator, condition = place.rpartition(IN)
     if separator:

@@ -15,7 +15,7 @@ from measured.case import Case
 from measured.doubt import PRIOR
 from validation.calibration.calibrate import CachedSegments, Fit, minimise, no_progress, residual_noise
 from validation.comparison.linearisation import Segment, segments
-from validation.effects.above import Above
+from validation.effects.base import ReadingEffect
 from validation.effects.during import During
 from validation.inference.columns import exchange_columns
 from validation.inference.evidence import (
@@ -391,7 +391,7 @@ def with_one_more(case: Case, evidence: Evidence, best: Weighed, progress: Progr
     others = [k for k, e in enumerate(effects) if k not in best.members and not (isinstance(e, During) or e.whole)]
     if not others:
         return []
-    laws = {e.name: evidence.causes[k].log_prior for k in others if isinstance(e := effects[k], Above)}
+    laws = {e.name: evidence.causes[k].log_prior for k in others if isinstance(e := effects[k], ReadingEffect)}
     priors = {**catalogue_priors([e for k in others if (e := effects[k]).name not in laws]), **laws}
     now = scored(case, [effects[k] for k in others], best.fit, priors)
     ones = singles(now)

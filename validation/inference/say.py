@@ -15,7 +15,7 @@ from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
-from validation.effects.above import Above
+from validation.effects.base import ReadingEffect
 from validation.effects.during import During
 from validation.effects.time_window import Event
 from validation.inference.decide import Decision, Group, Posterior
@@ -366,8 +366,9 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
     best = by_name.get(e.names[group[0]])
     if len(group) == 1 and best:
         effect = e.effects[group[0]]
-        if isinstance(effect, Above):
-            return f"{effect.words(best.value)} ({percent(best.probability)})"
+        if isinstance(effect, ReadingEffect):
+            h = posterior.best if group[0] in posterior.best.members else posterior.single[group[0]]
+            return f"{effect.words(best.value, e.fit.network, (h.fit or e.fit).values)} ({percent(best.probability)})"
         place = effect.words if isinstance(effect, During) else f"at {effect.place}"
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}"

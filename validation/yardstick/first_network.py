@@ -183,12 +183,9 @@ class _TermTable:
         lessons = NetworkLessons.of(folds, columns, form)
         first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
         nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
-        links, losses = _link_powers(columns.inputs, form.powers), _loss_powers(columns.inputs)
-        first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
-        nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
-        links, losses = _link_powers(columns.inputs, form.powers), _loss_powers(columns.inputs)
-        stirs = [all(measures(i) not in ELECTRICAL for i, _ in of) for of in links]
-        heats = [_heats([measures(i) for i, _ in of]) for of in losses]
+        links, losses = link_powers(columns.inputs, form.powers), loss_powers(columns.inputs)
+        stirs = [may_stir([measures(i) for i, _ in of]) for of in links]
+        heats = [may_heat([measures(i) for i, _ in of]) for of in losses]
         bodies = [
             *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
             *columns.boundaries,
@@ -290,7 +287,12 @@ class _TermTable:
         return row
 
 
-def _heats(quantities: Sequence[str]) -> bool:
+def may_stir(quantities: Sequence[str]) -> bool:
+    """May a film follow these?"""
+    return not set(quantities) & set(ELECTRICAL)
+
+
+def may_heat(quantities: Sequence[str]) -> bool:
     """May a loss follow these together?  Two currents do not, a current and a speed, or a voltage, do."""
     electrical = [q for q in quantities if q in ELECTRICAL]
     return not set(quantities) & set(FLOWS) and (len(electrical) < 2 or set(electrical) == {"current", "voltage"})
@@ -312,12 +314,12 @@ def _residual(N: Array) -> float:
     return float(N[-1, -1] - 2.0 * a @ N[:-1, -1] + a @ N[:-1, :-1] @ a)
 
 
-def _link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
+def link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
     """What stands in the columns of `link_factors`."""
     return [(), *(((i, float(p)),) for p in range(1, powers + 1) for i in inputs)]
 
 
-def _loss_powers(inputs: Sequence[str]) -> list[Powers]:
+def loss_powers(inputs: Sequence[str]) -> list[Powers]:
     """What stands in the columns of `loss_factors`."""
     single: list[Powers] = [((i, p),) for p in (1.0, 2.0) for i in inputs]
     pairs: list[Powers] = [((a, p), (b, q)) for a, b in combinations(inputs, 2) for p in (1.0, 2.0) for q in (1.0, 2.0)]

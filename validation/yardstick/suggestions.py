@@ -12,6 +12,7 @@ from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Law
 from measured.case import Case, Test
 from validation.effects import catalogue
+from validation.effects.build import links_between, losses_at
 from validation.parameters.unknowns import scene_of
 from validation.yardstick.terms import Term
 
@@ -91,14 +92,8 @@ def _laws(network: Network, term: Term) -> list[Law]:
     return [x.law for x in _elements(network, term)]
 
 
-def _elements(network: Network, term: Term) -> list[Link | Source]:
-    def node(place: str) -> str:
-        return network.places[place].part if place in network.places else place
-
-    pair = {node(term.place), node(term.other)}
-    if term.kind == "loss":
-        return [s for s in network.sources if node(s.place) in pair]
-    return [x for x in network.links if {node(p) for p in x.places} == pair]
+def _elements(network: Network, term: Term) -> list[Link] | list[Source]:
+    return losses_at(network, term.place) if term.kind == "loss" else links_between(network, term.place, term.other)
 
 
 def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str, float]:

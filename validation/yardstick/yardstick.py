@@ -132,6 +132,16 @@ def folds_of(case: Case) -> tuple[list[list[Record]], Columns] | None:
     return _folds(records), columns
 
 
+@one_blas_thread
+def free_network_terms(case: Case) -> tuple[Term, ...]:
+    """What a free network needs; nothing where nothing can be learnt."""
+    prepared = folds_of(case)
+    if prepared is None:
+        return ()
+    folds, columns = prepared
+    return needed_terms(_best(_free_networks(folds, columns), folds)[0], folds, columns, case)
+
+
 def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
     """The window and powers with which a free network predicts best what was left out."""
     fit, _ = _best(_free_networks(folds, columns), folds)

@@ -1,5 +1,6 @@
 """Claims that every effect of the catalogue makes, tested for all."""
 
+import re
 from functools import partial
 from pkgutil import walk_packages
 
@@ -25,6 +26,7 @@ SHARED = {
     f"validation.effects.{name}"
     for name in (
         "above",
+        "input_terms",
         "base",
         "build",
         "during",
@@ -65,14 +67,25 @@ LASTING = [
 ]
 
 
+TERMS = (
+    "loss.input@housing|speed_rpm^2 at 3000",
+    "loss.input@rotor|speed_rpm at 3000 * current_A^2 at 200",
+    "conductance.input@ambient|flange.right|vehicle_speed_mps^0.8 at 10",
+    "conductance.input@housing|rotor|speed_rpm at 3000",
+)
+
+
 def every_effect():
-    """Name and maker of one of every kind, of one of every kind that holds for a while, and of laws above a level."""
+    """Name and maker of one of every kind, of one of every kind that holds for a while, of laws above a level, and of
+    what follows an input."""
     yield from ((kind, partial(first, kind)) for kind in KINDS)
     for kind in (k for k in KINDS if k not in LASTING):
         condition = "warm" if kind in WHOLE else WHILE
         yield f"{kind} in", lambda net, kind=kind, condition=condition: During.of(first(kind, net), condition)
     for target in ("loss:copper.winding.armature", "loss:iron.rotor", "film:housing", "film:poles:fan"):
         yield f"law {target}", lambda net, target=target: Above(f"{target}|current_A>150")
+    for name in TERMS:
+        yield name, lambda net, name=name: effect(name)
 
 
 EVERY = [pytest.param(make, id=name) for name, make in every_effect()]
@@ -209,6 +222,43 @@ def test_cooling_cools_and_heating_heats(kind, net):
     bigger, p = grown(first(kind, net), net)
     late = predict(bigger, warm_test(net), {}, [p]).J[-1, :, 0] * p.sign
     assert way(first(kind, net), net) * late[np.argmax(np.abs(late))] > 0
+
+
+@pytest.mark.parametrize("name", TERMS[:3])
+def test_a_loss_that_follows_an_input_heats_and_a_film_cools(name, net):
+    bigger, p = grown(effect(name), net)
+    late = predict(bigger, warm_test(net), {}, [p]).J[-1, :, 0]
+    assert late[np.argmax(np.abs(late))] * (1.0 if name.startswith("loss") else -1.0) > 0.0
+    (law,) = {one.law for one in added(bigger, net)}
+    assert float(law.factor({f: level for f, level, _ in effect(name).parts()[1]})) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "loss.input@housing",
+        "loss.input@housing|speed_rpm",
+        "loss.input@housing|speed_rpm at 0",
+        "loss.input@nowhere|speed_rpm at 3000",
+        "loss.input@ambient|speed_rpm at 3000",
+        "conductance.input@housing|speed_rpm at 3000",
+        "loss.input@housing|wind at 3000",
+    ],
+)
+def test_what_follows_an_input_says_what_is_wrong_with_its_place(name, net):
+    with pytest.raises(InputError, match=r"is not a place|no place|unknown input"):
+        effect(name, scene(net)).extend(net)
+
+
+def test_a_conductance_is_told_at_rest_and_at_the_largest_input(net):
+    """What is declared between the two at rest, and what comes on top of it."""
+    declared = [x for x in net.links if set(x.places) == {"housing", "coolant"}] or net.links
+    assert declared
+    one = effect("conductance.input@coolant|housing|speed_rpm at 3000")
+    words = one.words(5.0, net, {})
+    rest, most = (float(x) for x in re.findall(r"([0-9.]+)(?= W/K at rest|(?= at speed_rpm))", words))
+    assert most - rest == pytest.approx(5.0, abs=0.06)
+    assert rest > 0.0
 
 
 def test_a_warmer_winding_loses_more(net):
