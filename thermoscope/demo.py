@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-import viz
+import viz as viz  # so named in the wheel as well
 from geom.errors import InputError, MissingDependency
 from geom.table import Table
 from thermoscope.case_folder.folder import find_case

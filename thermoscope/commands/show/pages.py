@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import viz
+import viz as viz  # so named in the wheel as well
 from geom.description.names import file_stem
 from geom.errors import MissingDependency
 from measured.case import Case, Test

@@ -12,7 +12,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-import viz
+import viz as viz  # so named in the wheel as well
 from geom.description.names import file_stem
 from geom.errors import InputError
 from geom.plugins import plugins
