@@ -69,6 +69,8 @@ def _words(node: Mapping[str, Any]) -> str:
     if "anyOf" in node:
         return " or ".join(dict.fromkeys(_words(form) for form in node["anyOf"]))
     kind = node.get("type", "anything")
+    if isinstance(kind, list):
+        return " or ".join({"boolean": "true or false"}.get(one, f"a {one}") for one in kind)
     if kind in ("number", "integer"):
         whole = "whole number " if kind == "integer" else ""
         return f"{whole}{node['minimum']:g} to {node['maximum']:g}"
