@@ -23,8 +23,8 @@ from validation.inference.result import Check
 from validation.parameters.unknowns import standing
 from validation.yardstick.yardstick import persistence_error
 
-BEYOND = 5.0  # standard uncertainties of a sensor: what inputs and a good model leave is two or three
-APART = 10.0  # deviations between tests: beyond what tangents are wrong by
+MOST_UNCERTAINTIES = 5.0  # standard uncertainties of a sensor: what inputs and a good model leave is two or three
+MOST_DEVIATIONS = 10.0  # deviations between tests: beyond what tangents are wrong by
 SHOWS = 0.1  # of the readings' uncertainty: what a refit must lose in a test to be worse there
 
 
@@ -55,8 +55,8 @@ def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[s
         return tuple(refit_check(e.fit, fit, " + ".join(e.names[k] for k in lead)) for fit in fits[:1])
     if choice.verdict != "adequate":
         return ()
-    fits = [values for values in (case.model.values, {**case.model.values, **e.fit.values}) if values]
-    each = [record_errors(case, e.tests, values, budget) for values in fits]  # as it stands, and fitted anew
+    models = [values for values in (case.model.values, {**case.model.values, **e.fit.values}) if values]
+    each = [record_errors(case, e.tests, values, budget) for values in models]  # as it stands, and fitted anew
     records = min(each, key=lambda rows: pooled([r.error for r in rows]))
     every = (record_check(records, posterior.against), tests_check(posterior.against), persistence_check(case, records))
     return tuple(c for c in every if c is not None)
@@ -83,17 +83,17 @@ def record_check(records: Sequence[RecordError], against: Contradiction | None) 
     if not records:
         return None
     worst = records[0]
-    far = {(r.test, r.error.channel) for r in records if r.share > BEYOND}
+    far = {(r.test, r.error.channel) for r in records if r.share > MOST_UNCERTAINTIES}
     tests, channels = {r.test for r in records}, {r.error.channel for r in records}
-    apart = against is not None and against.test == worst.test and abs(against.differences[0].sd) > APART
-    alone = apart or any((t, worst.error.channel) not in far for t in tests)
+    stands_out = against is not None and against.test == worst.test and abs(against.differences[0].sd) > MOST_DEVIATIONS
+    alone = stands_out or any((t, worst.error.channel) not in far for t in tests)
     if not alone:
         differs = "the sensor, its place or the model there would have to differ"
     elif len(channels) > 1 and all((worst.test, c) in far for c in channels):
         differs = "in that test something differed that nothing here speaks of"
     else:
         differs = "in that test the sensor or its place differed"
-    where, limit = f"{worst.error.channel} in {worst.test}", BEYOND * worst.u_K
+    where, limit = f"{worst.error.channel} in {worst.test}", MOST_UNCERTAINTIES * worst.u_K
     off = f"{where} reads {worst.error.rmse_K:.1f} K from the model, {worst.share:.0f} times its uncertainty"
     words = f"{off}: nothing in the catalogue explains it; {differs}"
     return Check("record", where, worst.error.rmse_K, limit, "K", words)
@@ -104,7 +104,9 @@ def tests_check(against: Contradiction | None) -> Check | None:
     if against is None or not against.differences:
         return None
     first = against.differences[0]
-    return Check("tests", f"{first.parameter} in {first.test}", abs(first.sd), APART, "deviations", against.words)
+    return Check(
+        "tests", f"{first.parameter} in {first.test}", abs(first.sd), MOST_DEVIATIONS, "deviations", against.words
+    )
 
 
 def persistence_check(case: Case, records: Sequence[RecordError]) -> Check | None:

@@ -83,15 +83,15 @@ def _catalogue(scene: Scene, names: Sequence[str]) -> list[Effect]:
 
 def check_names(case: Case, names: Iterable[str], where: str) -> None:
     """Refuse what is no kind, no "kind@place" that can be here, and not SENSORS, with the nearest that are."""
-    scene, known = scene_of(case), (*kinds(), KIND, SENSORS)
+    scene, words = scene_of(case), (*kinds(), KIND, SENSORS)
     effects = {e.name: e.kind for e in (*catalogue(scene), *single_test_effects(scene))}
-    for word in names:
-        kind = next((k for k in known if word.startswith(f"{k}@")), "")
+    for text in names:
+        kind = next((k for k in words if text.startswith(f"{k}@")), "")
         if kind == KIND:
-            effect(word)  # its level comes from the readings: any that can be read may be found
-        elif word not in effects and word not in known:
+            effect(text)  # its level comes from the readings: any that can be read may be found
+        elif text not in effects and text not in words:
             here = [name for name, of in effects.items() if of == kind]
-            raise InputError(f"no effect '{word}' here", where, suggestion(word, here or known))
+            raise InputError(f"no effect '{text}' here", where, suggestion(text, here or words))
 
 
 def conditions(
