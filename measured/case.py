@@ -15,7 +15,7 @@ from lumped.integration.record import instants
 from lumped.integration.signals import Signals
 from lumped.model.network import Network, Parameter, Row
 from lumped.transfer.laws import CLOCK, RUNNING
-from measured.doubt import USUAL, Doubt
+from measured.doubt import USUAL, Doubt, Odds
 
 Array = NDArray[np.float64]
 Role = Literal["calibrate", "validate", "hold-out"]
@@ -218,6 +218,7 @@ class Case:
     doubt : what models of this kind get wrong, the usual table or with lines that the case widens
     answers : what the user said about a test, an event or a fault: was it so?
     low : a smaller network of the same machine, where there is one
+    odds : kind, "kind@place" or "sensors" -> what the odds of these effects are multiplied by here, and why
     """
 
     name: str
@@ -227,6 +228,7 @@ class Case:
     doubt: Doubt = field(default_factory=lambda: USUAL)
     answers: Mapping[str, bool] = field(default_factory=dict)
     low: LowFidelity | None = None
+    odds: Mapping[str, Odds] = field(default_factory=dict)
 
     @property
     def small(self) -> Case:

@@ -8,15 +8,25 @@ from types import MappingProxyType
 
 import numpy as np
 
+from geom.errors import InputError
 from measured.case import Case
 from measured.sensors.faults import PlainFaults, broken_channels, without
 from validation.bases.which_base import BaseDeviance, base_hypotheses, wrong_bases
 from validation.calibration.calibrate import no_progress
 from validation.comparison.linearisation import rmse
+from validation.consistency import checks
 from validation.effects.above import KIND
-from validation.inference.conditions import conditions, end_reach, law_errors
+from validation.effects.base import Effect
+from validation.inference.conditions import check_names, conditions, end_reach, law_errors
 from validation.inference.contradiction import contradiction
-from validation.inference.decide import Decision, Posterior, clear_decision, decide, steady_decision
+from validation.inference.decide import (
+    Decision,
+    Posterior,
+    clear_decision,
+    consistent_decision,
+    decide,
+    steady_decision,
+)
 from validation.inference.events import retimed
 from validation.inference.evidence import (
     Evidence,
@@ -34,7 +44,7 @@ from validation.inference.evidence import (
     singles,
     thresholds,
 )
-from validation.inference.hypotheses import Members, Weighed, relative_evidence
+from validation.inference.hypotheses import Members, Weighed, catalogue_priors, relative_evidence
 from validation.inference.low_fidelity import fidelity_error, low_fidelity_case
 from validation.inference.missing_heat import MissingHeat, Scan, scan_heat
 from validation.inference.question import best_question, with_answers
@@ -67,12 +77,14 @@ from validation.noise import Noise
 from validation.planning.experiments import next_tests
 from validation.planning.rivals import CompetingModels
 from validation.planning.sensors import next_sensors
+from validation.scope import Scope, odds_factor
 from validation.threads import one_blas_thread
 from validation.yardstick.network_terms import network_terms
 
 Progress = Callable[[str], None]
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
+EVERYTHING = Scope()
 CONFUSIONS = 12  # candidates whose traces are compared
 
 
@@ -83,6 +95,7 @@ def diagnose(
     progress: Progress = no_progress,
     plan: bool = True,
     budget: Mapping[str, float] = NO_BUDGET,
+    scope: Scope = EVERYTHING,
 ) -> Diagnosis:
     """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
 
@@ -91,42 +104,58 @@ def diagnose(
 
     Parameters: `kinds` restricts the catalogue; `progress` is told what is being done; `plan`: also rank the next tests
     and sensors; `budget` channel -> error (K) of the model's own numbers there, what moves no reading by more is not
-    named. Returns: the verdict with its odds and tables.
+    named; `scope` what is asked about. Returns: the verdict with its odds and tables.
     """
+    check_names(case, [*scope.without, *scope.only], "what to leave out")
+    check_names(case, case.odds, "[odds] of case.toml")
     broken = broken_channels(case.training().tests)
     whole, case = case, low_fidelity_case(case, progress)
     training = case.training()
     training = replace(training, tests=without(training.tests, broken))
     bases = base_hypotheses(training, progress)
-    posterior = infer(training, kinds, progress)
+    posterior = infer(training, kinds, progress, scope)
     wrong, small = wrong_bases(bases), fidelity_error(whole, case, posterior)
     budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
     choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), budget))
+    choice = consistent_decision(choice, checks(case, posterior, choice, budget))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     progress("writing the tables")
-    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), bases, plan)
+    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), bases, plan, scope)
 
 
-def infer(case: Case, kinds: Sequence[str] | None = None, progress: Progress = no_progress) -> Posterior:
+def infer(
+    case: Case, kinds: Sequence[str] | None = None, progress: Progress = no_progress, scope: Scope = EVERYTHING
+) -> Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight.
 
     Parameters: as of `diagnose`. Returns: every hypothesis with its log evidence over that of nothing.
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
-    evidence = sharpened(scored(case, candidates(case, kinds), fit))
+    effects = [e for e in candidates(case, kinds) if scope.holds(e)]
+    if not effects:
+        right = "fewer of --without, others of --only"
+        raise InputError("every effect that can be here is left out", f"case '{case.name}'", right)
+    usual = catalogue_priors(effects)
+    priors = {e.name: usual[e.name] + odds_factor(e, case.odds) for e in effects}
+    evidence = sharpened(scored(case, effects, fit, priors))
     calm = quiet(evidence)
     against = contradiction(calm.fit, evidence.tests)
     progress("looking for where heat is missing")
     scan = scan_heat(evidence.fit, evidence.tests)
     heat = scan.read(evidence.fit.parts, evidence.fit.noise, evidence.fit.theta, evidence.fit.error)
-    selection = conditions(calm, case, scan, heat, kinds, progress)
+
+    def is_wanted(effect: Effect) -> bool:
+        return (kinds is None or effect.kind in kinds) and scope.holds(effect)
+
+    selection = conditions(calm, case, scan, heat, is_wanted, progress)
     values = {**case.model.values, **evidence.fit.values}
     laws = law_errors(evidence, values) if kinds is None or KIND in kinds else {}
     laws |= network_terms(case, evidence, kinds)
     first = len(evidence.causes)
-    larger = joined(evidence, {**selection, **laws}, values)
+    more = {e: p + odds_factor(e, case.odds) for e, p in {**selection, **laws}.items() if scope.holds(e)}
+    larger = joined(evidence, more, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
@@ -164,7 +193,13 @@ def weigh(
 
 
 def tabulate(
-    case: Case, posterior: Posterior, choice: Decision, broken: PlainFaults, bases: Sequence[BaseDeviance], plan: bool
+    case: Case,
+    posterior: Posterior,
+    choice: Decision,
+    broken: PlainFaults,
+    bases: Sequence[BaseDeviance],
+    plan: bool,
+    scope: Scope,
 ) -> Diagnosis:
     """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
     e, members = posterior.evidence, [k for g in choice.groups for k in g][:ROWS]
@@ -175,9 +210,10 @@ def tabulate(
     rivals = competing_models(e, choice, single) if plan and verdict in ("group", "several") else None
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
+    words = sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady_words(posterior, choice)
     return Diagnosis(
         verdict=verdict,
-        words=sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady_words(posterior, choice),
+        words="; ".join(filter(None, [scope.words(case.odds), words])),
         named=tuple(g[0] for g in groups),
         groups=groups,
         candidates=rows,
@@ -197,6 +233,10 @@ def tabulate(
         remainder=remainder(posterior, choice, single),
         contradiction=posterior.against,
         question=best_question(posterior),
+        checks=choice.checks,
+        without=scope.without,
+        only=scope.only,
+        stated_odds=tuple((name, o.share, o.reason) for name, o in case.odds.items()),
     )
 
 

@@ -104,6 +104,6 @@ def test_command_answers(elsewhere):
 
 
 def test_shipped_case_runs_without_the_checkout(elsewhere):
-    done = run(elsewhere, "compare", "tclab", "--no-bands", "--json", "-")
+    done = run(elsewhere, "test", "compare", "tclab", "--no-bands", "--json", "-")
     assert done.returncode in (0, 1), done.stderr
     assert json.loads(done.stdout)["case"] == "tclab"

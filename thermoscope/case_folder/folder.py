@@ -153,6 +153,7 @@ def load_case(
         _free(network, settings),
         *split_answers(settings.doubt, history.last.answers),
         low,
+        settings.odds,
     )
     steps = {r.test.name: r.step for r in read}
     notes = (*notes, *_assumed_reference(case, settings))

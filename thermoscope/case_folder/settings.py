@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -11,10 +12,11 @@ from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.reader import Table, excerpt, suggestion
 from measured.case import Role
-from measured.doubt import USUAL, Doubt, widened
+from measured.doubt import USUAL, Doubt, Odds, widened
 from measured.recordings.formats import stem_of
 
 ROLES = ("calibrate", "validate", "hold-out")
+MOST_ODDS = 100.0  # to one: nobody is surer of an effect that was not measured; to leave one out is another question
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Settings:
     axial_m : thickest layer of the mesh along the axis (m), for long stacks; None: the usual one
     kinds : of effects that a diagnosis looks for, None for all;  starts, seed : of a calibration, see Search
     doubt : the table of doubt with the lines that the case widens
+    odds : kind, "kind@place" or "sensors" -> what the odds of these effects are multiplied by, and why
     """
 
     path: Path
@@ -53,6 +56,7 @@ class Settings:
     starts: int = 1
     seed: int = 0
     doubt: Doubt = field(default_factory=lambda: USUAL)
+    odds: Mapping[str, Odds] = field(default_factory=dict)
 
     @property
     def out(self) -> Path:
@@ -71,6 +75,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     top = Table(read_toml(file, "a case folder with a case.toml"), str(file))
     head, tests, calibration = top.table("case"), top.tables("tests"), top.table("calibration")
     diagnosis, doubt = top.table("diagnosis"), top.table("doubt").constants("doubt")
+    odds = {effect: _odds(table) for effect, table in top.tables("odds").items()}
     top.close()
     name, description = _title(head, path.name), head.word("description", "")
     machine, network = (path / head.word(key) if key in head else None for key in ("machine", "network"))
@@ -105,6 +110,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
         starts,
         seed,
         widened(doubt, f"{file} [doubt]"),
+        odds,
     )
 
 
@@ -119,6 +125,15 @@ def _title(head: Table, usual: str) -> str:
 def _all_or(table: Table, key: str) -> tuple[str, ...]:
     """Globs; () where the file has none, which means all."""
     return table.members(key) if key in table else ()
+
+
+def _odds(table: Table) -> Odds:
+    """What the odds of an effect are multiplied by in this case, and why."""
+    odds = Odds(table.number("factor", low=1.0 / MOST_ODDS, high=MOST_ODDS), table.word("reason").strip())
+    if not odds.reason:
+        raise table.error("reason is empty", 'reason = "the flange is inside a box"')
+    table.close()
+    return odds
 
 
 def _kinds(table: Table) -> tuple[str, ...] | None:

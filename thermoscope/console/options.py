@@ -19,6 +19,14 @@ Json = Annotated[
     str | None,
     typer.Option("--json", metavar="FILE|-", callback=checked_target, help="Write the JSON document; - is stdout."),
 ]
+Without = Annotated[
+    list[str] | None,
+    typer.Option("--without", metavar="EFFECT|sensors", help="Leave out a kind, KIND@PLACE, or all sensors; several."),
+]
+Only = Annotated[
+    list[str] | None,
+    typer.Option("--only", metavar="EFFECT|sensors", help="Ask about these alone, and unknown heat; several."),
+]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 Accuracy = Annotated[

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -92,14 +92,16 @@ class Case:
         """
         return self.folder.compared
 
-    def diagnose(self) -> Diagnosis:
+    def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = ()) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
+
+        without, only : kinds of effects, "kind@place" or "sensors" to leave out, or to ask about alone
 
         Source: Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773 (probabilities from evidence).
         """
         from thermoscope.commands.explain.diagnose import diagnosed
 
-        return diagnosed(self.folder, self.progress)[0]
+        return diagnosed(self.folder, self.progress, without, only)[0]
 
     def add(self, effect: str) -> Case:
         """With the effect "kind@place", calibrated on all tests but the held-out ones.

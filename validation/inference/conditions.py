@@ -7,21 +7,23 @@ which test, and when. What can hold for a while: films, flows, inputs, boundarie
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.errors import InputError
 from lumped.model.sites import ambient, neighbours
+from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
 from measured.doubt import FORM
 from validation.calibration.calibrate import no_progress
-from validation.effects.above import Above
+from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import During
-from validation.effects.registry import kinds
+from validation.effects.registry import catalogue, effect, kinds
 from validation.effects.time_window import Event, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, timed_event
@@ -32,6 +34,7 @@ from validation.inference.score import Score, fit_score
 from validation.inference.stretches import ALIKE, Interval, distinct, hat_scores, stretches, worth
 from validation.parameters.model_form import EXACT_LOSSES, is_film
 from validation.parameters.unknowns import scene_of
+from validation.scope import SENSORS
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
@@ -78,25 +81,39 @@ def _catalogue(scene: Scene, names: Sequence[str]) -> list[Effect]:
     return [table[k](place) for k in names for place in table[k].places(scene)]
 
 
+def check_names(case: Case, names: Iterable[str], where: str) -> None:
+    """Refuse what is no kind, no "kind@place" that can be here, and not SENSORS, with the nearest that are."""
+    scene, words = scene_of(case), (*kinds(), KIND, SENSORS)
+    effects = {e.name: e.kind for e in (*catalogue(scene), *single_test_effects(scene))}
+    for text in names:
+        kind = next((k for k in words if text.startswith(f"{k}@")), "")
+        if kind == KIND:
+            effect(text)  # its level comes from the readings: any that can be read may be found
+        elif text not in effects and text not in words:
+            here = [name for name, of in effects.items() if of == kind]
+            raise InputError(f"no effect '{text}' here", where, suggestion(text, here or words))
+
+
 def conditions(
     evidence: Evidence,
     case: Case,
     scan: Scan,
     heat: Sequence[MissingHeat],
-    only: Sequence[str] | None = None,
+    holds: Callable[[Effect], bool] = lambda effect: True,
     progress: Progress = no_progress,
 ) -> dict[Effect, float]:
     """The conditions that could carry weight, most probable first, each with its log prior.
 
-    Parameters: `evidence` under the noise of a good model; `scan`, `heat` where and when heat is missing; `only` kinds.
+    Parameters: `evidence` under the noise of a good model; `scan`, `heat` where and when heat is missing; `holds`
+    whether an effect is asked about.
     """
     values = {**case.model.values, **evidence.fit.values}
     scene = replace(scene_of(case), network=evidence.fit.network)
-    bases = [e for e in temporary_effects(scene) if only is None or e.kind in only]
+    bases = [e for e in temporary_effects(scene) if holds(e)]
     if not bases:
         return {}
     progress("looking for what held in one test or for a while")
-    whole = [e for e in single_test_effects(scene) if only is None or e.kind in only]
+    whole = [e for e in single_test_effects(scene) if holds(e)]
     selection, events = best(single_test_conditions(evidence, whole, values), TESTS), []
     intervals = likely_intervals(evidence, scan, heat, values, len(bases))
     for occurrence, rows in side_by_side(lambda s: explanations(evidence, bases, s, scan, values), intervals):

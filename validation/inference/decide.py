@@ -19,7 +19,7 @@ from validation.inference.contradiction import Contradiction
 from validation.inference.evidence import Evidence, continued, log_bayes
 from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
 from validation.inference.missing_heat import MissingHeat
-from validation.inference.result import Verdict
+from validation.inference.result import Check, Verdict
 
 Array = NDArray[np.float64]
 Group = tuple[int, ...]
@@ -55,12 +55,14 @@ class Decision:
     """groups : per thing that is missing the causes that may be it, most probable first;  sure : P(something)
 
     others : what halves of the instants would decide, where that is something else
+    checks : what it was held against
     """
 
     verdict: Verdict
     groups: tuple[Group, ...]
     sure: float
     others: tuple[Decision, ...] = ()
+    checks: tuple[Check, ...] = ()
 
 
 def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
@@ -205,6 +207,14 @@ def united_groups(groups: tuple[Group, ...], more: tuple[Group, ...]) -> tuple[G
         out.append((*g, *dict.fromkeys(k for m in alike for k in m if k not in members)))
         members |= set(out[-1])
     return tuple(out)
+
+
+def consistent_decision(choice: Decision, checks: tuple[Check, ...]) -> Decision:
+    """The decision, unless what it claims is contradicted by its own numbers: then nothing in the catalogue explains
+    them, and the checks say what would have to differ."""
+    if any(c.contradicts for c in checks):
+        return replace(choice, verdict="outside", groups=(), checks=checks)
+    return replace(choice, checks=checks)
 
 
 def half_posterior(posterior: Posterior, first: int) -> Posterior:

@@ -167,6 +167,30 @@ class PossibleEvent(TableRow):
 
 
 @dataclass(frozen=True)
+class Check(TableRow):
+    """Something that a verdict claims, held against its own numbers.
+
+    kind : "record" (far from the model), "tests" (contradict each other), "persistence" (predicts better), "refit" (is
+    worse in most tests);  where : of the worst;  number, limit : in `unit`;  words : what would have to differ
+    """
+
+    kind: str
+    where: str
+    number: float
+    limit: float
+    unit: str
+    words: str
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the verdict cannot stand beside it."""
+        return self.number > self.limit
+
+    def document(self) -> dict:
+        return {**super().document(), "contradicts": self.contradicts}
+
+
+@dataclass(frozen=True)
 class Remainder:
     """A record that stays off with what is named in the model.
 
@@ -210,6 +234,9 @@ class Diagnosis:
     remainder : what is still off with what is named in the model
     contradiction : what would have to differ between the tests
     question : what to ask the user, where an answer would tell more than a guess
+    checks : what the verdict was held against; what contradicts one has changed it
+    without, only : what the user left out of the question, see Scope
+    stated_odds : effect, factor and reason of odds that differ in this case
     """
 
     verdict: Verdict
@@ -233,6 +260,10 @@ class Diagnosis:
     remainder: tuple[Remainder, ...] = ()
     contradiction: Contradiction | None = None
     question: Question | None = None
+    checks: tuple[Check, ...] = ()
+    without: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
+    stated_odds: tuple[tuple[str, float, str], ...] = ()
 
     def __repr__(self) -> str:
         likely = [o for o in self.odds if o.probability > LEAST_PROBABILITY] or self.odds[:1]
@@ -267,6 +298,10 @@ class Diagnosis:
             "remainder": [r.document() for r in self.remainder],
             "question": None if self.question is None else self.question.document(),
             "contradiction": None if self.contradiction is None else self.contradiction.document(),
+            "checks": [c.document() for c in self.checks],
+            "without": list(self.without),
+            "only": list(self.only),
+            "stated_odds": [dict(zip(("effect", "factor", "reason"), o, strict=True)) for o in self.stated_odds],
             "rmse_K": self.rmse_K,
             "floor_K": self.floor_K,
             "threshold": self.threshold,

@@ -353,6 +353,8 @@ def sentence(
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
     if verdict == "absorbed":
         return f"{rows[0].effect} would do what calibration of {rows[0].twin} has done: {hides}"
+    if verdict == "outside" and (contradictions := [c.words for c in choice.checks if c.contradicts]):
+        return "; ".join(contradictions)
     if verdict == "outside":
         place = f" at {posterior.heat[0].place}" if posterior.heat and posterior.best.heat else ""
         return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"

@@ -142,6 +142,16 @@ def free_network_terms(case: Case) -> tuple[Term, ...]:
     return needed_terms(_best(_free_networks(folds, columns), folds)[0], folds, columns, case)
 
 
+def persistence_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
+    """What no model at all leaves (K rms) on tests that are left out in turn, and of which sensors; None where nothing
+    can be learnt from the tests."""
+    prepared = folds_of(case)
+    if prepared is None:
+        return None
+    folds, columns = prepared
+    return rms(_best(_persistences(folds, columns), folds)[1]), columns.sensors
+
+
 def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
     """The window and powers with which a free network predicts best what was left out."""
     fit, _ = _best(_free_networks(folds, columns), folds)

@@ -1,6 +1,7 @@
 """Events on the command line: found, added as a column beside the test, undone; a question answered, taken back."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -63,6 +64,16 @@ def test_an_event_is_added_as_a_column_and_undone(opened_lid, capsys):
     assert not file.exists()
     assert load_history(case / "model.toml").last.effects == ()
     capsys.readouterr()
+
+
+def test_events_are_added_from_a_diagnosis_that_left_something_out(opened_lid, tmp_path):
+    case = shutil.copytree(opened_lid[0], tmp_path / "three")
+    assert diagnose(str(case), str(tmp_path / "found.json"), ["sensors", "time.offset"]) == 0
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["without"] == ["sensors", "time.offset"]
+    kinds = {name.partition("@")[0] for row in found["odds"] for name in row["effects"]}
+    assert not any(kind.startswith("sensor.") or kind == "time.offset" for kind in kinds)
+    assert revise.meant(open_case(str(case), lambda message: None), "event@1") == found["events"][0]["effect"]
 
 
 @pytest.mark.parametrize(

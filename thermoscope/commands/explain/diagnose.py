@@ -12,7 +12,7 @@ from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
-from thermoscope.console.options import Case, Json
+from thermoscope.console.options import Case, Json, Only, Without
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
 from validation import tables
@@ -25,24 +25,34 @@ RIVALS = 3  # named in a sentence
 ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
 
 
-def diagnose(case: Case, target: Json = None) -> int:
+def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None) -> int:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     with progress() as tell:
-        diagnosis, document = diagnosed(open_case(case, tell), tell)
+        diagnosis, document = diagnosed(open_case(case, tell), tell, without or (), only or ())
     give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
 
-def diagnosed(folder: Folder, tell: Progress) -> tuple[Diagnosis, dict[str, Any]]:
-    """What is missing in an open case, and the document of it, which is kept in the case's out/."""
+def diagnosed(
+    folder: Folder, tell: Progress, without: Sequence[str] = (), only: Sequence[str] = ()
+) -> tuple[Diagnosis, dict[str, Any]]:
+    """What is missing in an open case, and the document of it, which is kept in the case's out/.
+
+    without, only : what is left out of the question, see Scope
+    """
     from lumped.condensation.error_budget import ErrorBudget
     from validation import diagnose as search
     from validation.comparison.error_budget import documents
+    from validation.inference.conditions import check_names
     from validation.parameters.unknowns import strain_words
+    from validation.scope import Scope
 
     checked_diagnosis(folder)
+    scope = Scope(tuple(without), tuple(only))
+    check_names(folder.case, [*without, *only], "what to leave out")
     budgets = folder.budgets
-    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=ErrorBudget.worst(budgets.values()).total_K)
+    worst = ErrorBudget.worst(budgets.values()).total_K
+    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=worst, scope=scope)
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     document["strained"] = strain_words(folder.case)

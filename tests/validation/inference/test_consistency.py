@@ -1,0 +1,101 @@
+"""A verdict that its own numbers contradict is withheld, and the sentence names what would have to differ."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from two_bodies import bench
+
+from validation import diagnose
+from validation.comparison.linearisation import Segment
+from validation.consistency import persistence_check, record_errors, refit_check
+from validation.inference.decide import Decision, consistent_decision
+from validation.inference.result import Check
+
+
+def moved_probe(share):
+    """Nothing is missing, but in one test the core's probe sat between core and air.  share : of the way to the air"""
+    case = bench(())
+
+    def elsewhere(test):
+        if test.name != "dusk":
+            return test
+        probe = next(c for c in test.channels if c.name == "core")
+        moved = replace(probe, y=probe.y + share * (20.0 - probe.y))
+        return replace(test, channels=tuple(moved if c is probe else c for c in test.channels))
+
+    return replace(case, tests=tuple(map(elsewhere, case.tests)))
+
+
+@pytest.fixture(scope="module")
+def found():
+    return diagnose(moved_probe(0.5), plan=False)
+
+
+def test_a_record_far_beyond_its_uncertainty_is_not_adequate(found):
+    """Half of a rise of 14 K at a sensor of 0.3 K, which no effect explains."""
+    assert found.verdict == "outside"
+    assert found.words.startswith("core in dusk reads ")
+    assert "times its uncertainty: nothing in the catalogue explains it" in found.words
+    assert "in that test the sensor or its place differed" in found.words
+    assert found.named == ()
+
+
+def test_the_document_lists_what_was_checked(found):
+    rows = {row["kind"]: row for row in found.document()["checks"]}
+    assert set(rows) == {"record", "tests", "persistence"}
+    assert rows["record"]["where"] == "core in dusk"
+    assert rows["record"]["limit"] == pytest.approx(5 * 0.3)
+    assert rows["tests"]["limit"] == 10.0
+    assert [rows[kind]["contradicts"] for kind in ("record", "tests", "persistence")] == [True, True, False]
+    assert all(row["contradicts"] == (row["number"] > row["limit"]) for row in rows.values())
+
+
+def test_a_sound_bench_stays_adequate():
+    found = diagnose(bench(()), plan=False)
+    assert found.verdict == "adequate"
+    assert {c.kind for c in found.checks} >= {"record", "persistence"}
+    assert not any(c.contradicts for c in found.checks)
+
+
+def test_a_model_that_a_guess_of_no_change_beats_is_told():
+    """Bodies that stay as they began, and a model that heats them by 40 K."""
+    case = bench(())
+    still = [replace(t, channels=tuple(replace(c, y=np.full_like(c.y, 20.0)) for c in t.channels)) for t in case.tests]
+    case = replace(case, tests=tuple(still))
+    check = persistence_check(case, record_errors(case, case.tests, {}, {}))
+    assert check.contradicts
+    assert check.limit == pytest.approx(0.0, abs=1e-9)
+    assert "a guess of no change predicts" in check.words
+
+
+def fit(**errors):
+    """What a fit leaves in each test (K), at one sensor of 0.5 K."""
+    t = np.arange(10.0)
+    return SimpleNamespace(
+        parts=[Segment(n, "core", t, np.full_like(t, K), np.zeros((10, 0)), 0.5) for n, K in errors.items()]
+    )
+
+
+@pytest.mark.parametrize(
+    ("after", "contradicts"),
+    [
+        ({"a": 1.2, "b": 1.3, "c": 0.1}, True),
+        ({"a": 1.2, "b": 0.5, "c": 0.1}, False),
+        ({"a": 1.01, "b": 1.01, "c": 0.1}, False),
+    ],
+)
+def test_a_name_whose_refit_is_worse_in_most_tests_is_withheld(after, contradicts):
+    """Worse is what a reading of 0.5 K could show: 0.01 K is not."""
+    check = refit_check(fit(a=1.0, b=1.0, c=3.0), fit(**after), "convection@core")
+    assert check.contradicts == contradicts
+    named = Decision("named", ((0,),), 0.99)
+    decision = consistent_decision(named, (check,))
+    assert (decision.verdict, decision.groups) == (("outside", ()) if contradicts else ("named", ((0,),)))
+    assert decision.checks == (check,)
+
+
+def test_what_is_within_its_limit_changes_nothing():
+    choice = Decision("adequate", (), 0.3)
+    assert consistent_decision(choice, (Check("record", "core in dusk", 1.5, 1.5, "K", ""),)).verdict == "adequate"

@@ -1,0 +1,153 @@
+"""What a verdict claims, held against its own numbers: a verdict that they contradict is withheld.
+
+"Nothing is missing" is contradicted by a record far beyond its uncertainty, by tests that would need different
+parameters, and by a guess of no change that predicts better. A name is contradicted by a refit that is worse in most
+tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from measured.case import Case, Test
+from validation.calibration.calibrate import Fit, calibrated
+from validation.comparison.compare import ChannelError, physical, pooled, test_error
+from validation.comparison.linearisation import rmse
+from validation.comparison.uncertainty import COVERAGE
+from validation.inference.contradiction import Contradiction
+from validation.inference.decide import Decision, Posterior
+from validation.inference.result import Check
+from validation.parameters.unknowns import standing, working
+from validation.yardstick.yardstick import persistence_error
+
+MOST_UNCERTAINTIES = 5.0  # standard uncertainties of a sensor: what inputs and a good model leave is two or three
+MOST_DEVIATIONS = 10.0  # deviations between tests: beyond what tangents are wrong by
+SHOWS = 0.1  # of the readings' uncertainty: what a refit must lose in a test to be worse there
+
+
+@dataclass(frozen=True)
+class RecordError:
+    """A sensor in one test, as it reads.  u_K : its standard uncertainty, with the misfit that the case allows"""
+
+    test: str
+    error: ChannelError
+    u_K: float
+
+    @property
+    def share(self) -> float:
+        """How many uncertainties it is off."""
+        return self.error.rmse_K / self.u_K
+
+
+def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> tuple[Check, ...]:
+    """What a decision claims, held against the tests that a fit may use; none where it claims neither a name nor that
+    nothing is missing.
+
+    budget : channel -> error (K) of the model's own numbers there
+    """
+    e = posterior.evidence
+    if choice.verdict in ("named", "several"):
+        lead = [g[0] for g in choice.groups]
+        fits = [h.fit for h in posterior.hypotheses if h.fit and h.members and set(h.members) == set(lead)]
+        return tuple(refit_check(e.fit, fit, " + ".join(e.names[k] for k in lead)) for fit in fits[:1])
+    if choice.verdict != "adequate":
+        return ()
+    records = least_errors(case, posterior, budget)
+    every = (record_check(records, posterior.against), tests_check(posterior.against), persistence_check(case, records))
+    return tuple(c for c in every if c is not None)
+
+
+def least_errors(case: Case, posterior: Posterior, budget: Mapping[str, float]) -> list[RecordError]:
+    """Of the model as it stands, of the diagnosis's fit and of a plain one, what leaves least; the plain one, without a
+    model error that takes some of the misfit, only where the others leave a record far off.
+
+    budget : as of `checks`
+    """
+    e, tests = posterior.evidence, posterior.evidence.tests
+    models = [values for values in (case.model.values, {**case.model.values, **e.fit.values}) if values]
+    each = [record_errors(case, tests, values, budget) for values in models]
+    if all(rows and rows[0].share > MOST_UNCERTAINTIES for rows in each):
+        network, unknowns = working(replace(case, tests=tests))
+        plain = calibrated(network, tests, unknowns, case.model.values, 1, rough=True)
+        rows = record_errors(case, tests, {**case.model.values, **plain.values}, budget)
+        each = [rows] if rows and rows[0].share <= MOST_UNCERTAINTIES else each  # else it spreads what one record has
+    return min(each, key=lambda rows: rows[0].share if rows else 0.0)
+
+
+def record_errors(
+    case: Case, tests: Sequence[Test], values: Mapping[str, float], budget: Mapping[str, float]
+) -> list[RecordError]:
+    """Every sensor in every test without what the fit put right at the sensors, the surest off first.
+
+    values : of a fit;  budget : as of `checks`
+    """
+    network, thermal, out = standing(case), physical(case, values), []
+    for test in tests:
+        channels = {c.name: c for c in test.channels}
+        for row in test_error(network, test, thermal).channels:
+            parts = (row.sigma_K, channels[row.channel].model_K, budget.get(row.channel, 0.0) / COVERAGE)
+            out.append(RecordError(test.name, row, float(np.linalg.norm(parts))))
+    return sorted(out, key=lambda r: -r.share)
+
+
+def record_check(records: Sequence[RecordError], against: Contradiction | None) -> Check | None:
+    """Of the record that is furthest from the model.  against : what would have to differ between the tests"""
+    if not records:
+        return None
+    worst = records[0]
+    far = {(r.test, r.error.channel) for r in records if r.share > MOST_UNCERTAINTIES}
+    tests, channels = {r.test for r in records}, {r.error.channel for r in records}
+    stands_out = against is not None and against.test == worst.test and abs(against.differences[0].sd) > MOST_DEVIATIONS
+    alone = stands_out or any((t, worst.error.channel) not in far for t in tests)
+    if not alone:
+        differs = "the sensor, its place or the model there would have to differ"
+    elif len(channels) > 1 and all((worst.test, c) in far for c in channels):
+        differs = "in that test something differed that nothing here speaks of"
+    else:
+        differs = "in that test the sensor or its place differed"
+    where, limit = f"{worst.error.channel} in {worst.test}", MOST_UNCERTAINTIES * worst.u_K
+    off = f"{where} reads {worst.error.rmse_K:.1f} K from the model, {worst.share:.0f} times its uncertainty"
+    words = f"{off}: nothing in the catalogue explains it; {differs}"
+    return Check("record", where, worst.error.rmse_K, limit, "K", words)
+
+
+def tests_check(against: Contradiction | None) -> Check | None:
+    """Of the parameter that would have to differ most between tests."""
+    if against is None or not against.differences:
+        return None
+    first = against.differences[0]
+    return Check(
+        "tests", f"{first.parameter} in {first.test}", abs(first.sd), MOST_DEVIATIONS, "deviations", against.words
+    )
+
+
+def persistence_check(case: Case, records: Sequence[RecordError]) -> Check | None:
+    """Of a guess of no change."""
+    no_model = persistence_error(case.training())
+    rows = [r for r in records if no_model and r.error.channel in no_model[1]]
+    if no_model is None or not rows:
+        return None
+    worst, error = max(rows, key=lambda r: r.error.rmse_K), pooled([r.error for r in rows])
+    where = f"{worst.error.channel} in {worst.test}"
+    words = (
+        f"a guess of no change predicts tests left out within {no_model[0]:.1f} K, and the model leaves {error:.1f} K "
+        f"of those it was fitted to, most at {where}: what heats or cools there would have to differ"
+    )
+    return Check("persistence", where, error, no_model[0], "K", words)
+
+
+def refit_check(before: Fit, after: Fit, name: str) -> Check:
+    """Of the tests in which the model with what is named is worse than without."""
+    tests = list(dict.fromkeys(s.test for s in before.parts))
+    worse = []
+    for test in tests:
+        old, new = ([s for s in fit.parts if s.test == test] for fit in (before, after))
+        u = float(np.sqrt(np.mean([s.sigma_K**2 for s in old])))
+        if rmse(new) > rmse(old) + SHOWS * u:
+            worse.append(f"{test} {rmse(old):.2f} -> {rmse(new):.2f} K")
+    many = f"with {name} {len(worse)} of {len(tests)} tests are worse ({', '.join(worse)})"
+    words = f"{many}: in these it would have to differ"
+    return Check("refit", name, len(worse), 0.5 * len(tests), "tests", words)
