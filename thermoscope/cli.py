@@ -85,12 +85,12 @@ def _help_alone(module: str, name: str) -> Callable[[], None]:
     """A stand-in that says what the command says of itself; the module is read, not loaded."""
     file = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
     program = compile(file.read_text(encoding="utf-8"), str(file), "exec")
-    own = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
+    function = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
 
     def stand_in() -> None:
         """Nothing is run."""
 
-    stand_in.__doc__ = cleandoc(own.co_consts[0])  # where a function keeps what it says of itself
+    stand_in.__doc__ = cleandoc(function.co_consts[0])  # where a function keeps what it says of itself
     return stand_in
 
 

@@ -49,9 +49,9 @@ def row_of(network: Network, name: str) -> Row:
 
 def place_pair(network: Network, place: str) -> tuple[str, str]:
     """A and B of the place "A|B" of an effect; a name may have the sign in it, too."""
-    known = {*network.places, *network.states, *network.boundaries}
+    places = {*network.places, *network.states, *network.boundaries}
     cuts = [(place[:i], place[i + 1 :]) for i, letter in enumerate(place) if letter == "|"]
-    return next((pair for pair in cuts if known.issuperset(pair)), cuts[0])
+    return next((pair for pair in cuts if places.issuperset(pair)), cuts[0])
 
 
 def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:

@@ -63,15 +63,16 @@ class FoldPrediction:
 
 
 def folds(tests: Sequence[Test], telling: Sequence[str]) -> list[Fold]:
-    """Each test, or of many each share of them, left out in turn; of the only one that tells of a step its second half.
+    """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its second half.
 
     telling : names of the tests in which the step acts
     """
     halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
-    whole = [t for t in tests if t.name != halved]
-    count = min(len(whole), MOST_FOLDS)
-    shares = [whole[i::count] for i in range(count)] if len(tests) > 1 else []
-    out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
+    out = []
+    if not halved:  # else the other tests say nothing of the step, only of what it costs to fit one number more
+        count = min(len(tests), MOST_FOLDS)
+        shares = [tests[i::count] for i in range(count)]
+        out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
     for test in (t for t in tests if t.name == halved):
         first, second = halves(test)
         out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
