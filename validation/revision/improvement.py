@@ -139,9 +139,10 @@ def _added(
     case: Case, supervisor: Supervisor, diagnosis: Diagnosis, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
     """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
-    why = []
+    why, present = [], {e.name for e in case.model.effects}
     for i in range(max(len(diagnosis.groups), 1)):
         choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
+        choice = tuple(c for c in choice if c.effect not in present)  # larger than it is: nothing to add
         if not choice:
             break
         name = supervisor.choose(diagnosis, choice)
@@ -149,7 +150,7 @@ def _added(
             why.append(f"{' or '.join(c.effect for c in choice)}: not added")
             break
         for names in ((name,), needed_together(diagnosis, name)):
-            if names:
+            if names and present.isdisjoint(names):
                 step = add(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
@@ -170,7 +171,7 @@ def free_network_step(
         return None, {}, []
     refusals = list[str]()
     for suggestion in suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case)))):
-        for name in list(suggestion.starts)[:1]:
+        for name in [n for n in suggestion.starts if n not in {e.name for e in case.model.effects}][:1]:
             step = add(case, name, progress)
             if step.accepted:
                 return step, {"free network": suggestion.words, "share": suggestion.share}, refusals
