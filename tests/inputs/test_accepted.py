@@ -4,7 +4,7 @@ import gzip
 
 import numpy as np
 import pytest
-from recordings import case_of, changed, edited
+from input_cases import case_of, changed, edited
 
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare

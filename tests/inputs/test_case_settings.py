@@ -4,7 +4,7 @@ import os
 
 import pytest
 from command_line import answered, refusal
-from recordings import case_of, edited
+from input_cases import case_of, edited
 
 from thermoscope.commands.stored_diagnosis import fingerprint
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from command_line import answered
-from recordings import case_of, changed, edited
+from input_cases import case_of, changed, edited
 
 
 def asked(case):

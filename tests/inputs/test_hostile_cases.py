@@ -17,7 +17,7 @@ import pytest
 import tomlkit
 from command_line import RUN, answered
 from hostile import CANARY, hostile_names
-from recordings import case_of
+from input_cases import case_of
 
 from extras.export.compilers import has_zig, here
 from geom.description.names import DEVICES, FORBIDDEN, is_plain

@@ -1,7 +1,7 @@
 """Wrong but accepted is worse than refused: each of these is a message, or a note that every command prints."""
 
 import pytest
-from recordings import case_of, changed, edited
+from input_cases import case_of, changed, edited
 
 from geom.errors import InputError
 from thermoscope.commands.open_case import open_case

@@ -7,7 +7,7 @@ import pytest
 import tomlkit
 from command_line import refusal
 from documents import ROOT, documented, key_of, numbers, put, shipped
-from recordings import case_of
+from input_cases import case_of
 
 from geom.errors import InputError
 from geom.machine_file import machine_from

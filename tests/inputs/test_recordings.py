@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from command_line import answered, refusal
-from recordings import case_of, changed, edited
+from input_cases import case_of, changed, edited
 
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare

@@ -7,7 +7,7 @@ import tarfile
 
 import pytest
 from command_line import answered, contents
-from recordings import case_of, changed, edited
+from input_cases import case_of, changed, edited
 
 STAND = "tests/stand.toml"
 

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 import tomlkit
 from documents import documented, put, shipped
-from recordings import case_of, original
+from input_cases import case_of, original
 from test_numbers import SHEET
 
 from extras.bench.commands.protocol import read_record
