@@ -93,7 +93,7 @@ def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArr
     def grown() -> tuple[float, NDArray[np.bool_]]:
         needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
         least = left_out(needed)
-        while trials := [_with(needed, k, True) for k in table.steepest_terms(every, needed)]:
+        while trials := [_with(needed, k) for k in table.steepest_terms(every, needed)]:
             errors = [left_out(trial) for trial in trials]
             if min(errors) > BETTER * least:
                 break
@@ -124,9 +124,10 @@ def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArr
     return by_many if many < MANY * few else by_few
 
 
-def _with(selection: NDArray[np.bool_], k: int, value: bool) -> NDArray[np.bool_]:
+def _with(selection: NDArray[np.bool_], k: int) -> NDArray[np.bool_]:
+    """The selection and one term more."""
     out = selection.copy()
-    out[k] = value
+    out[k] = True
     return out
 
 

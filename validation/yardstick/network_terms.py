@@ -7,14 +7,14 @@ from math import comb, log
 
 import numpy as np
 
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from measured.case import Case
 from measured.doubt import PRIOR
 from validation.effects.base import Effect
-from validation.effects.build import links_between, losses_at
 from validation.effects.input_terms import InputConductance, InputLoss, InputTerm, factor_words
 from validation.inference.evidence import Evidence
 from validation.yardstick.first_network import Powers, link_powers, loss_powers, may_heat, may_stir
+from validation.yardstick.suggestions import term_elements
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import POWERS, free_network_terms
 
@@ -69,10 +69,7 @@ def _largest(case: Case) -> dict[str, float]:
 
 def _is_there(evidence: Evidence, term: Term, inputs: set[str]) -> bool:
     """Does what is declared there follow the inputs, or an effect of the catalogue just these?"""
-
-    def there(network: Network) -> Sequence[Link] | Sequence[Source]:
-        at = losses_at(network, term.place)
-        return at if term.kind == "loss" else links_between(network, term.place, term.other)
-
-    reads, more = ([set(x.law.reads) for x in there(network)] for network in (evidence.fit.network, evidence.network))
+    reads, more = (
+        [set(x.law.reads) for x in term_elements(network, term)] for network in (evidence.fit.network, evidence.network)
+    )
     return any(inputs <= law for law in reads) or inputs in more

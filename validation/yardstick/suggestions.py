@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Link, Network, Source
-from lumped.transfer.laws import Law
 from measured.case import Case, Test
 from validation.effects import catalogue
 from validation.effects.build import links_between, losses_at
@@ -63,7 +62,7 @@ def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ..
 def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
     """Of the terms between two places, or at one; None where what is declared can do the same."""
     first, network = group[0], case.model.network
-    laws = [set(law.reads) for law in _laws(network, first)]
+    laws = [set(x.law.reads) for x in term_elements(network, first)]
     lacking = [t for t in group if not any(inputs_of(t) <= reads for reads in laws)]
     if not lacking:
         return None
@@ -87,12 +86,8 @@ def inputs_of(term: Term) -> set[str]:
     return {re.sub(r"\^[0-9]+$", "", word) for word in term.input.split()}
 
 
-def _laws(network: Network, term: Term) -> list[Law]:
-    """Of the links between the two places of a term, or of the losses at its place."""
-    return [x.law for x in _elements(network, term)]
-
-
-def _elements(network: Network, term: Term) -> list[Link] | list[Source]:
+def term_elements(network: Network, term: Term) -> list[Link] | list[Source]:
+    """The links between the two places of a term, or the losses at its place."""
     return losses_at(network, term.place) if term.kind == "loss" else links_between(network, term.place, term.other)
 
 
@@ -104,7 +99,7 @@ def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str,
             continue
         larger = one.extend(network)
         old = {*(x.name for x in network.links), *(x.name for x in network.sources)}
-        new = [x for x in _elements(larger, term) if x.name not in old and set(x.law.reads) == inputs]
+        new = [x for x in term_elements(larger, term) if x.name not in old and set(x.law.reads) == inputs]
         size = sum(_largest(x, tests) for x in new)
         if size > 0.0:
             out[one.name] = value / size
