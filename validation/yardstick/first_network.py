@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +21,20 @@ from numpy.typing import NDArray
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
 from validation.threads import one_blas_thread
-from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, loss_factors, nonnegative
+from validation.yardstick.free_network import (
+    Form,
+    FreeNetwork,
+    NetworkLessons,
+    Powers,
+    link_powers,
+    loss_factors,
+    loss_powers,
+    nonnegative,
+)
 from validation.yardstick.records import Columns, Record
 from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
 
 Array = NDArray[np.float64]
-Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
 FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
 UNDRIVEN = 0.6  # price of heat that follows no input: above that of a square, so that a constant current heats
@@ -313,15 +320,3 @@ def _residual(N: Array) -> float:
     """Sum of squares that a node's own free fit leaves (K2)."""
     a = nonnegative(N[:-1, :-1], N[:-1, -1])
     return float(N[-1, -1] - 2.0 * a @ N[:-1, -1] + a @ N[:-1, :-1] @ a)
-
-
-def link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
-    """What stands in the columns of `link_factors`."""
-    return [(), *(((i, float(p)),) for p in range(1, powers + 1) for i in inputs)]
-
-
-def loss_powers(inputs: Sequence[str]) -> list[Powers]:
-    """What stands in the columns of `loss_factors`."""
-    single: list[Powers] = [((i, p),) for p in (1.0, 2.0) for i in inputs]
-    pairs: list[Powers] = [((a, p), (b, q)) for a, b in combinations(inputs, 2) for p in (1.0, 2.0) for q in (1.0, 2.0)]
-    return [(), *single, *pairs]

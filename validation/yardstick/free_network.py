@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from validation.yardstick.records import Columns, Record
 
 Array = NDArray[np.float64]
+Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
 RIDGE = 1e-12  # on normal equations of unit columns: two inputs that are one another's copy share their work
 SMALL = 1e-10  # of the largest: rounding of sums over thousands of rows
 
@@ -52,14 +53,21 @@ def loss_factors(u: Array) -> Array:
     return np.column_stack([np.ones(len(u)), *single, *pairs])
 
 
-def loss_names(inputs: Sequence[str]) -> list[str]:
+def link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
+    """What stands in the columns of `link_factors`."""
+    return [(), *(((i, float(p)),) for p in range(1, powers + 1) for i in inputs)]
+
+
+def loss_powers(inputs: Sequence[str]) -> list[Powers]:
     """What stands in the columns of `loss_factors`."""
+    single: list[Powers] = [((i, p),) for p in (1.0, 2.0) for i in inputs]
+    pairs: list[Powers] = [((a, p), (b, q)) for a, b in combinations(inputs, 2) for p in (1.0, 2.0) for q in (1.0, 2.0)]
+    return [(), *single, *pairs]
 
-    def power(name: str, p: int) -> str:
-        return name if p == 1 else f"{name}^{p}"
 
-    pairs = [f"{power(a, p)} {power(b, q)}" for a, b in combinations(inputs, 2) for p in (1, 2) for q in (1, 2)]
-    return ["1", *inputs, *(power(i, 2) for i in inputs), *pairs]
+def power_words(powers: Powers) -> str:
+    """ "id_A^2 speed_rpm", "" where nothing is followed."""
+    return " ".join(name if p == 1.0 else f"{name}^{p:g}" for name, p in powers)
 
 
 def integral(time: Array, y: Array) -> Array:

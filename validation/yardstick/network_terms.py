@@ -13,7 +13,8 @@ from measured.doubt import PRIOR
 from validation.effects.base import Effect
 from validation.effects.input_terms import InputConductance, InputLoss, InputTerm, factor_words
 from validation.inference.evidence import Evidence
-from validation.yardstick.first_network import Powers, link_powers, loss_powers, may_heat, may_stir
+from validation.yardstick.first_network import may_heat, may_stir
+from validation.yardstick.free_network import Powers, link_powers, loss_powers, power_words
 from validation.yardstick.suggestions import term_elements
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import POWERS, free_network_terms
@@ -38,7 +39,7 @@ def network_terms(case: Case, evidence: Evidence, kinds: Sequence[str] | None = 
     forms = {element: possible_forms(network, list(sizes), element) for element in classes}
     out: dict[Effect, float] = {}
     for term in free_network_terms(case):
-        form = next((f for f in forms.get(term.kind, ()) if _words(f) == term.input), None)
+        form = next((f for f in forms.get(term.kind, ()) if power_words(f) == term.input), None)
         if form is None or term.place not in places or _is_there(evidence, term, {name for name, _ in form}):
             continue
         factors = factor_words((name, sizes[name], p) for name, p in form)
@@ -52,11 +53,6 @@ def possible_forms(network: Network, inputs: Sequence[str], element: str) -> lis
     """What a loss or a link may follow, as the free network has it.  element : "loss" | "link" """
     every, may = (loss_powers(inputs), may_heat) if element == "loss" else (link_powers(inputs, max(POWERS)), may_stir)
     return [form for form in every if form and may([network.measures(name) for name, _ in form])]
-
-
-def _words(form: Powers) -> str:
-    """ "id_A^2 speed_rpm", as a term has it."""
-    return " ".join(name if p == 1.0 else f"{name}^{p:g}" for name, p in form)
 
 
 def _largest(case: Case) -> dict[str, float]:

@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from measured.case import Case
-from validation.yardstick.free_network import FreeNetwork, link_factors, loss_factors, loss_names
+from validation.yardstick.free_network import (
+    FreeNetwork,
+    link_factors,
+    link_powers,
+    loss_factors,
+    loss_powers,
+    power_words,
+)
 from validation.yardstick.records import Columns, Record
 
 if TYPE_CHECKING:
@@ -86,9 +93,9 @@ def _vector(network: FreeNetwork) -> Array:
 
 def _term_names(network: FreeNetwork, columns: Columns) -> list[tuple[str, str, str]]:
     """Kind, other end and input of every term, as `_vector` orders them."""
-    powers = ["", *(i if p == 1 else f"{i}^{p}" for p in range(1, network.form.powers + 1) for i in columns.inputs)]
-    links = [("link", body, power) for body in (*columns.sensors, *columns.boundaries) for power in powers]
-    return [*links, *(("loss", "", "" if name == "1" else name) for name in loss_names(columns.inputs))]
+    powers = [power_words(of) for of in link_powers(columns.inputs, network.form.powers)]
+    links = [("link", body, of) for body in (*columns.sensors, *columns.boundaries) for of in powers]
+    return [*links, *(("loss", "", power_words(of)) for of in loss_powers(columns.inputs))]
 
 
 def _shares(network: FreeNetwork, records: Sequence[Record]) -> Array:
