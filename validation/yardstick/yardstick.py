@@ -7,7 +7,7 @@ powers, ridge) are made by leaving out each test in turn, or each third of the o
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise, product
 from typing import Protocol
@@ -135,6 +135,7 @@ def folds_of(case: Case) -> tuple[list[list[Record]], Columns] | None:
 @one_blas_thread
 def free_network_terms(case: Case) -> tuple[Term, ...]:
     """What a free network needs; nothing where nothing can be learnt."""
+    case = replace(case, tests=case.usable)  # a held-out test that lacks an input must not take it from the others
     prepared = folds_of(case)
     if prepared is None:
         return ()

@@ -8,6 +8,7 @@ from two_bodies import bench
 
 from measured.importing.starter import FirstNetwork
 from validation.yardstick.first_network import learn_network
+from validation.yardstick.yardstick import free_network_terms
 
 HEAT = 80.0  # W at full load, as `two_bodies` declares it
 
@@ -53,6 +54,13 @@ def test_held_out_readings_change_nothing(case, learnt):
     held = case.tests[2]
     bent = replace(held, channels=tuple(replace(c, y=c.y + 50.0) for c in held.channels))
     assert learn_network(replace(case, tests=(*case.tests[:2], bent)), first_of(case)).terms == learnt.terms
+
+
+def test_a_held_out_test_without_the_input_takes_it_from_no_other(case, learnt):
+    held = replace(case.tests[2], inputs={}, channels=case.tests[2].channels[:1])
+    lacking = replace(case, tests=(*case.tests[:2], held))
+    assert learn_network(lacking, first_of(case)).terms == learnt.terms
+    assert free_network_terms(lacking) == free_network_terms(case)
 
 
 def test_the_order_of_tests_and_sensors_changes_nothing(case, learnt):
