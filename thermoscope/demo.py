@@ -162,10 +162,10 @@ def _picture(png: Path, draw: Callable[[Path], Any]) -> Path | None:
 
 
 def odds(diagnosis: Mapping[str, Any], out: Path) -> Path | None:
-    """The probability of every hypothesis."""
+    """The probability of every explanation."""
     if not diagnosis:
         return None
-    viz.posterior(diagnosis["odds"], png=out / "3-odds.png")
+    viz.posterior(diagnosis["explanations"], png=out / "3-odds.png")
     return out / "3-odds.png"
 
 

@@ -148,6 +148,8 @@ def refit_check(before: Fit, after: Fit, name: str) -> Check:
         u = float(np.sqrt(np.mean([s.sigma_K**2 for s in old])))
         if rmse(new) > rmse(old) + SHOWS * u:
             worse.append(f"{test} {rmse(old):.2f} -> {rmse(new):.2f} K")
-    many = f"with {name} {len(worse)} of {len(tests)} tests are worse ({', '.join(worse)})"
-    words = f"{many}: in these it would have to differ"
+    words = f"with {name} no test is worse"
+    if worse:
+        many = f"with {name} {len(worse)} of {len(tests)} tests are worse"
+        words = f"{many} ({', '.join(worse)}): in these it would have to differ"
     return Check("refit", name, len(worse), 0.5 * len(tests), "tests", words)

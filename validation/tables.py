@@ -13,6 +13,7 @@ from geom.table import Table, cell, with_interval
 Document = Mapping[str, Any]
 LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in the document alone
 MOST_DIFFERENCES = 12  # between tests: further ones are less certain
+MOST_PARTNERS = 3  # of a cause, as a cell shows them
 MOST_OFFERS = 3  # tests, and as many sensors, that a table proposes
 SENSORS = (
     "sensor=channel | *test | place | n | *rms (K)=rmse_K | fitted (K)=fitted_rmse_K | *bias (K)=bias_K | "
@@ -58,14 +59,14 @@ def roles_table(roles: Iterable[Document]) -> Table:
 
 
 def diagnosis_tables(document: Document) -> tuple[Table, ...]:
-    """Bases, hypotheses, candidates, events, contradictions, what would decide, and what cannot be seen."""
+    """Bases, explanations, candidates, events, contradictions, what would decide, and what cannot be seen."""
     candidates, events = (
         candidates_table(weighty_candidates(document["candidates"])),
         events_table(document.get("events", [])),
     )
     every = (
         bases_table(document.get("bases", [])),
-        odds_table(document["odds"]),
+        explanations_table(document.get("explanations", [])),
         candidates,
         events,
         contradiction_table(document.get("contradiction") or {}),
@@ -75,10 +76,17 @@ def diagnosis_tables(document: Document) -> tuple[Table, ...]:
     return tuple(table for table in every if table.rows)
 
 
-def odds_table(odds: Iterable[Document]) -> Table:
-    """Every hypothesis that carries weight, with its probability."""
-    likely = [o for o in odds if o["probability"] > LEAST_PROBABILITY]
-    return Table.of("What the readings say", likely, "hypothesis | probability (%)=probability", probability=_percent)
+def explanations_table(explanations: Iterable[Document], partners: bool = True) -> Table:
+    """Each leading cause with its probability, and what may be there beside it.  partners : as a column of their own"""
+    likely = [x for x in explanations if x["probability"] > LEAST_PROBABILITY]
+    columns = f"*%=probability | *explanation=words{' | beside it=partners' * partners}"
+    return Table.of("What the readings say", likely, columns, probability=_percent, partners=partner_words)
+
+
+def partner_words(explanation: Document) -> str:
+    """The likeliest partners of a cause."""
+    likely = [p for p in explanation["partners"] if p["probability"] > LEAST_PROBABILITY][:MOST_PARTNERS]
+    return "; ".join(f"{p['words']} ({_percent(p)} %)" for p in likely)
 
 
 def weighty_candidates(candidates: Sequence[Document]) -> Sequence[Document]:

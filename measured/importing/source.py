@@ -85,8 +85,10 @@ def as_numbers(cells: Sequence[Any]) -> Array:
 
 def read_source(file: Path) -> Source:
     """Any file a recorder writes. InputError where it is no record, MissingDependency where a package is not there."""
+    if file.is_dir():
+        raise InputError("is a folder", str(file), f"the recordings in it, such as {file}/*.csv")
     if not file.is_file():
-        raise InputError("no such file" if not file.exists() else "is no file", str(file), "a recording")
+        raise InputError("no such file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
         rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))

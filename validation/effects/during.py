@@ -135,3 +135,8 @@ class During(Effect):
 def gated(law: Law) -> bool:
     """Does a law hold for a while only?"""
     return isinstance(law, Shaped) and isinstance(law.shape, TimeWindow)
+
+
+def effect_words(effect: Effect) -> str:
+    """An effect in plain words: what it is, where, and when it held."""
+    return f"{effect.title} {effect.words}" if isinstance(effect, During) else f"{effect.title} at {effect.place}"

@@ -19,7 +19,7 @@ Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed"
 Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
-MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # hypotheses of a diagnosis that is printed, and from which probability
+MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # explanations of a diagnosis that is printed, and from which probability
 
 
 class TableRow:
@@ -40,7 +40,7 @@ class Candidate:
     rmse_K, holdout_rmse_K : (before, after) on the tests used and on the held-out ones, where it was refitted
     tests : (name, before, after, held out) of each test, error (K) without and with it, where it was refitted
     absorbed : share of its trace that the calibration takes;  twin : the calibrated parameter that does the same
-    note : the record that speaks against it
+    words : what it is, where and when;  note : the record that speaks against it
     """
 
     effect: str
@@ -58,6 +58,7 @@ class Candidate:
     smallest_detectable: float = float("inf")
     twin: str | None = None
     title: str = ""
+    words: str = ""
     isolating_test: str = ""
     note: str = ""
     probability: float = 0.0
@@ -134,6 +135,27 @@ class Odds(TableRow):
     tests: tuple[str, ...] = ()
     begin_s: float | None = None
     end_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """All hypotheses with one leading cause. Those of a diagnosis hold every hypothesis once, and sum to one.
+
+    cause : an effect, "heat@place", "nothing" or "others";  words : the same in plain words
+    probability : of them all;  alone : of the cause by itself;  partners : (cause, words, probability) of what is
+        there as well, most probable first
+    """
+
+    cause: str
+    words: str
+    probability: float
+    alone: float = 0.0
+    partners: tuple[tuple[str, str, float], ...] = ()
+
+    def document(self) -> dict:
+        """JSON of the explanation."""
+        partners = [dict(zip(("cause", "words", "probability"), p, strict=True)) for p in self.partners]
+        return {**vars(self), "partners": partners}
 
 
 @dataclass(frozen=True)
@@ -230,6 +252,7 @@ class Diagnosis:
 
     bases : every base that a test may have stood on, where the network knows several
     odds : every hypothesis that carries weight, most probable first, summing to one;  p_nothing : of nothing missing
+    explanations : the same by leading cause, as it is shown
     events : when something may have been different for a while, most probable first
     remainder : what is still off with what is named in the model
     contradiction : what would have to differ between the tests
@@ -255,6 +278,7 @@ class Diagnosis:
     next_sensors: tuple[Experiment, ...] = ()
     bases: tuple[BaseDeviance, ...] = ()
     odds: tuple[Odds, ...] = ()
+    explanations: tuple[Explanation, ...] = ()
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()
     remainder: tuple[Remainder, ...] = ()
@@ -266,9 +290,9 @@ class Diagnosis:
     stated_odds: tuple[tuple[str, float, str], ...] = ()
 
     def __repr__(self) -> str:
-        likely = [o for o in self.odds if o.probability > LEAST_PROBABILITY] or self.odds[:1]
-        rows = [[o.hypothesis, f"{100 * o.probability:.1f} %"] for o in likely[:MOST_ODDS]]
-        return f"{self.verdict}: {self.words}\n{table(['hypothesis', 'probability'], rows)}"
+        likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]
+        rows = [[x.words, f"{100 * x.probability:.1f} %"] for x in likely[:MOST_ODDS]]
+        return f"{self.verdict}: {self.words}\n{table(['explanation', 'probability'], rows)}"
 
     def tables(self) -> tuple[Table, ...]:
         """Hypotheses, candidates, events, contradictions, what would decide, and what cannot be seen."""
@@ -293,6 +317,7 @@ class Diagnosis:
             "next_tests": [t.document() for t in self.next_tests],
             "next_sensors": [t.document() for t in self.next_sensors],
             "odds": [o.document() for o in self.odds],
+            "explanations": [x.document() for x in self.explanations],
             "p_nothing": self.p_nothing,
             "events": [e.document() for e in self.events],
             "remainder": [r.document() for r in self.remainder],

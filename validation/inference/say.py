@@ -16,7 +16,7 @@ from measured.sensors.faults import PlainFaults
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.base import ReadingEffect
-from validation.effects.during import During
+from validation.effects.during import During, effect_words
 from validation.effects.time_window import Event
 from validation.inference.decide import Decision, Group, Posterior
 from validation.inference.evidence import Evidence, smallest_visible, thresholds
@@ -29,7 +29,16 @@ from validation.inference.hypotheses import (
     inclusion,
     probabilities,
 )
-from validation.inference.result import Candidate, Decided, DetectionLimit, Odds, PossibleEvent, Remainder, Verdict
+from validation.inference.result import (
+    Candidate,
+    Decided,
+    DetectionLimit,
+    Explanation,
+    Odds,
+    PossibleEvent,
+    Remainder,
+    Verdict,
+)
 from validation.inference.stretches import ALIKE
 
 Array = NDArray[np.float64]
@@ -104,6 +113,33 @@ def _odds(e: Evidence, h: Weighed, p: float, sure: tuple[str, ...]) -> Odds:
     spans = [s for x in conditions if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
     return Odds(name, (*sure, *names), p, h.nats, tests, begin, end)
+
+
+def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
+    """The hypotheses by leading cause: those with the cause that most of the probability holds, then of the rest.
+
+    A cause that leads has the probability of its row among the candidates. Plain faults are no part of it.
+    """
+    e, words = posterior.evidence, {"nothing": "nothing is missing"}
+    words |= {name: effect_words(effect) for name, effect in zip(e.names, e.effects, strict=True)}
+    words |= {f"heat@{h.heat}": f"heat of unknown cause at {h.heat}" for h in posterior.hypotheses if h.heat}
+    causes = [tuple(e.names[k] for k in h.members) or (e.name(h),) for h in posterior.hypotheses]
+    left = list(zip(causes, map(float, probabilities(posterior.hypotheses)), strict=True))
+    rows: list[Explanation] = []
+    while left and sum(p for _, p in left) > LEAST_ODDS:
+        share: dict[str, float] = {}
+        for each, p in left:
+            share |= {name: share.get(name, 0.0) + p for name in each}
+        lead = max(share, key=lambda name: share[name])
+        partners: dict[str, float] = {}
+        for each, p in left:
+            if lead in each:
+                partners |= {name: partners.get(name, 0.0) + p for name in each if name != lead}
+        likely = sorted(((n, words[n], p) for n, p in partners.items() if p > LEAST_ODDS), key=lambda row: -row[2])
+        alone = sum(p for each, p in left if each == (lead,))
+        rows.append(Explanation(lead, words[lead], share[lead], alone, tuple(likely)))
+        left = [(each, p) for each, p in left if lead not in each]
+    return (*rows, Explanation("others", "anything else", max(1.0 - sum(r.probability for r in rows), 0.0)))
 
 
 def candidate_rows(
@@ -183,6 +219,7 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
         absorbed=float(s.absorbed[k]),
         twin=e.twins[k],
         title=effect.title,
+        words=effect_words(effect),
         isolating_test=effect.isolating_test,
     )
     if h.fit is None:
@@ -371,14 +408,14 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         if isinstance(effect, ReadingEffect):
             h = posterior.best if group[0] in posterior.best.members else posterior.single[group[0]]
             return f"{effect.words(best.value, e.fit.network, (h.fit or e.fit).values)} ({percent(best.probability)})"
-        place = effect.words if isinstance(effect, During) else f"at {effect.place}"
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}"
-        return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
+        return f"{'fault' if effect.fault else 'missing'}: {effect_words(effect)}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
-    likely = [f"{e.names[k]} {percent(p)}" for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    others = f" or {len(group) - len(likely)} less likely ones" if len(group) > len(likely) else ""
-    return f"one of {', '.join(likely)}{others}; these tests and sensors cannot tell them apart"
+    told = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
+    likely = [f"{effect_words(e.effects[k])} ({percent(p)})" for k, p in told]
+    likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
+    return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 
 
 def unsteady_words(posterior: Posterior, choice: Decision) -> str:

@@ -301,12 +301,15 @@ def large_nuisances(case: Case) -> list[tuple[str, float, str, float]]:
 def strain_words(case: Case) -> str:
     """That, as the first thing to say of a model; "" where nothing is strained."""
     rows = large_nuisances(case)
-    each = [
-        f"{name} {value:.3g} {unit.removesuffix('1')}".strip() + f" ({abs(z):.1f} deviations)"
-        for name, value, unit, z in rows
-    ]
+    each = [f"{_value_words(name, value, unit)} ({abs(z):.1f} deviations)" for name, value, unit, z in rows]
     more = f" and {len(each) - NAMES} more" if len(each) > NAMES else ""
     return f"The fit leans on what should be small: {', '.join(each[:NAMES])}{more}." if each else ""
+
+
+def _value_words(name: str, value: float, unit: str) -> str:
+    """A parameter with its value; an exponent as the law that it makes."""
+    law, of, quantity = name.partition("^")
+    return f"{law} follows {quantity}^{value:.3g}" if of else f"{name} {value:.3g} {unit.removesuffix('1')}".strip()
 
 
 def with_model(case: Case, model: Model) -> Case:

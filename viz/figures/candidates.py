@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are not drawn
+LABEL = 34  # letters of a label's line
 DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LIGHT.faint}
 
 
@@ -38,14 +40,32 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
 
 
 @paper.styled
-def posterior(odds: Sequence[Mapping[str, Any]], *, most: int = 10, png: str | Path | None = None) -> Figure:
-    """The probability of every hypothesis that carries weight as bars, most probable first.  odds : of a diagnosis"""
-    best = [o for o in odds if o["probability"] >= LEAST_PROBABILITY][:most][::-1]
-    colours = [BLUE if o["hypothesis"] == "nothing" else VERMILION if o["effects"] else PURPLE for o in best]
-    figure, ax = _bars([o["hypothesis"] for o in best], [100.0 * o["probability"] for o in best], colours)
-    for y, o in enumerate(best):
-        ax.text(100.0 * o["probability"], y, f"\u00a0{100.0 * o['probability']:.0f} %", va="center", fontsize=8.5)
-    ax.set(xlabel="probability (%)", xlim=(0.0, 112.0))
+def posterior(
+    explanations: Sequence[Mapping[str, Any]],
+    *,
+    title: str = "What the readings say",
+    most: int = 8,
+    png: str | Path | None = None,
+) -> Figure:
+    """Each leading cause as a bar, most probable first; the pale part is with a partner, which is named.
+
+    explanations : of a diagnosis;  most : bars
+    """
+    best = [x for x in explanations if x["probability"] >= LEAST_PROBABILITY][:most][::-1]
+    shade = {"nothing": BLUE, "others": LIGHT.faint}
+    colours = [shade.get(x["cause"], PURPLE if x["cause"].startswith("heat@") else VERMILION) for x in best]
+    percent = [100.0 * x["probability"] for x in best]
+    figure, ax = _bars([textwrap.fill(x["words"], LABEL) for x in best], percent, colours, height=0.5)
+    alone = [100.0 * x["alone"] if x["partners"] else p for x, p in zip(best, percent, strict=True)]
+    ax.barh(range(len(best)), np.subtract(percent, alone), left=alone, height=0.62, color="white", alpha=0.55)
+    for y, (x, p) in enumerate(zip(best, percent, strict=True)):
+        ax.text(p, y, f"\u00a0{p:.0f} %" if p < 99.5 else "\u00a0> 99 %", va="center", fontsize=8.5)
+        if likely := [n for n in x["partners"] if n["probability"] >= LEAST_PROBABILITY]:
+            more = f" and {len(likely) - 1} more" if len(likely) > 1 else ""
+            note = f"\u00a0with {likely[0]['words']} {100.0 * likely[0]['probability']:.0f} %{more}"
+            ax.text(0.0, y - 0.36, note, va="top", fontsize=8, color=LIGHT.ink, alpha=0.75)
+    ax.set(xlabel="probability (%); pale: with something else", xlim=(0.0, 112.0), ylim=(-0.9, len(best) - 0.5))
+    ax.set_title(title, loc="left", fontweight="bold")
     return paper.save(figure, png)
 
 
@@ -69,9 +89,11 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
     return paper.save(figure, png)
 
 
-def _bars(names: Sequence[str], values: Sequence[float], colours: Sequence[str]) -> tuple[Figure, Axes]:
-    """Named bars, one below the other, the first at the bottom."""
-    figure, (ax,) = paper.subplots(8.4, 0.3 * len(names) + 1.2)
+def _bars(
+    names: Sequence[str], values: Sequence[float], colours: Sequence[str], height: float = 0.3
+) -> tuple[Figure, Axes]:
+    """Named bars, one below the other, the first at the bottom.  height : of each with its gap (inch)"""
+    figure, (ax,) = paper.subplots(8.4, height * len(names) + 1.2)
     ax.barh(range(len(names)), values, height=0.62, color=colours)
     ax.set_yticks(range(len(names)), names)
     ax.grid(False, axis="y")

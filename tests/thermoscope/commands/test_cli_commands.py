@@ -11,7 +11,8 @@ from command_line import RUN
 from small_case import small_case
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.model.revise import CHANGE_K, _unmeasured_words, unmeasured
+from thermoscope.commands.model.revise import CHANGE_K, _unmeasured_words, revision_summary, unmeasured
+from thermoscope.console.summary import lay_out
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
 
@@ -211,3 +212,23 @@ def test_what_is_exact_is_not_said_to_be_good_to_nothing(total, says):
     from thermoscope.commands.model.error_budget import in_short
 
     assert says in in_short({"day": [{"place": "T", "total_K": total}]}, {})
+
+
+def test_a_machine_file_is_copied_once(thermoscope, tmp_path):
+    """The file of the library, byte for byte; what lies there stays."""
+    from geom import library
+
+    assert thermoscope("machines", "--copy", "pmsm-m1", "--out", tmp_path).code == 0
+    assert (tmp_path / "pmsm-m1.toml").read_bytes() == library()["pmsm-m1"].read_bytes()
+    again = thermoscope("machines", "--copy", "pmsm-m1", "--out", tmp_path)
+    assert again.code == 2
+    assert "is there already" in again.err
+
+
+def test_a_step_that_was_accepted_begins_with_what_was_found(story):
+    case, done = story
+    document = done["add"].document
+    first = lay_out(revision_summary(document, load_case(case), "CASE"), 200, None)[0][0]
+    assert first.startswith(f"Found: {document['words']}. Accepted: ")
+    assert "convection" in document["words"]
+    assert f"Left: at most {document['worst']['rmse_K']:.1f} K" in first

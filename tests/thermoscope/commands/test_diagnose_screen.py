@@ -46,11 +46,12 @@ def test_why_the_rivals_lost():
     """A refitted rival by the sensor it fits worse, the others by their evidence beside the leader's."""
     lead = {**candidate("convection@flange", "W/K"), "note": "", "score": 37.54}
     close = {**candidate("radiation@flange", "1", 0.2, "no"), "note": "fits T_flange in road worse by 5.1 nats"}
+    close |= {"words": "thermal radiation at flange"}
     far = {**candidate("mass@yoke", "kg", 0.001, "no"), "note": "", "score": -0.16}
     said = _lost([lead, {**close, "score": 20.0}, far], ["convection@flange"])
     assert said == [
-        "Against radiation@flange: it fits T_flange in road worse by 5.1 nats than convection@flange.",
-        "Rivals alone have less evidence: mass@yoke -0.2; convection@flange 37.5 nats.",
+        "Against thermal radiation at flange: it fits T_flange in road worse by 5.1 nats.",
+        "Evidence of it 37.5 nats (3 are odds of twenty to one); of rivals alone: mass@yoke -0.2.",
     ]
     assert _lost([far], []) == []
 

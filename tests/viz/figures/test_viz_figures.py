@@ -33,11 +33,18 @@ EFFECTS = {
     ],
 }
 RANKED = [{"factor": "base", "measure": 0.44, "conf95": 0.16}, {"factor": "speed", "measure": 0.01, "conf95": 0.01}]
-ODDS = [
-    {"hypothesis": "convection@flange.right", "effects": ["convection@flange.right"], "probability": 0.93},
-    {"hypothesis": "nothing", "effects": [], "probability": 0.05},
-    {"hypothesis": "heat@yoke", "effects": [], "probability": 0.015},
-    {"hypothesis": "others", "effects": [], "probability": 0.004},
+DRIFT = {"cause": "sensor.drift@T_base", "words": "sensor drifts during the test at T_base", "probability": 0.06}
+EXPLANATIONS = [
+    {"cause": "wind@flange", "words": "wind at flange.right", "probability": 0.93, "alone": 0.8, "partners": [DRIFT]},
+    {"cause": "nothing", "words": "nothing is missing", "probability": 0.05, "alone": 0.05, "partners": []},
+    {
+        "cause": "heat@yoke",
+        "words": "heat of unknown cause at yoke",
+        "probability": 0.016,
+        "alone": 0.016,
+        "partners": [],
+    },
+    {"cause": "others", "words": "anything else", "probability": 0.004, "alone": 0.0, "partners": []},
 ]
 HOUR = np.linspace(0.0, 3600.0, 61)
 WARM = 20.0 + 60.0 * (1.0 - np.exp(-HOUR / 1200.0))
@@ -52,7 +59,7 @@ DRAW = {
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
     "scores": lambda png: scores.scores(candidates(), png=png),
-    "posterior": lambda png: scores.posterior(ODDS, png=png),
+    "posterior": lambda png: scores.posterior(EXPLANATIONS, png=png),
     "screened": lambda png: screening.screened(EFFECTS, title="magnets", png=png),
     "ranking": lambda png: screening.ranking(RANKED, measure="Sobol ST", png=png),
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
@@ -64,7 +71,7 @@ SHOWS = {
     "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
     "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
-    "posterior": ["convection@flange.right", "93 %", "nothing", "probability (%)"],
+    "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
     "ranking": ["base", "speed", "Sobol ST"],
     "confusion": ["a@x", "b@y", ".83"],

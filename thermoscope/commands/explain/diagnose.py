@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from shlex import join, quote
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from validation.inference.result import Diagnosis
 
 RIVALS = 3  # named in a sentence
-ODDS, ROWS = 5, 10  # shown of hypotheses and of candidates
+EXPLANATIONS, ROWS = 5, 10  # shown of them and of candidates
 
 
 def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None) -> int:
@@ -77,13 +77,12 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
     hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
-    events, odds, candidate_rows = (
-        document.get("events", []),
-        tables.odds_table(document["odds"]),
-        tables.candidates_table(tables.weighty_candidates(candidates)),
-    )
+    events, explained = document.get("events", []), document.get("explanations", [])
+    explanations = tables.explanations_table(explained, partners=False)
+    candidate_rows = tables.candidates_table(tables.weighty_candidates(candidates))
     parts = [
-        replace(odds, rows=odds.rows[:ODDS]),
+        replace(explanations, rows=explanations.rows[:EXPLANATIONS]),
+        *(f"Beside it: {beside}." for x in explained[:1] if (beside := tables.partner_words(x))),
         replace(candidate_rows, rows=candidate_rows.rows[:ROWS]),
         *_leader(candidates),
         *_lost(candidates, effects),
@@ -105,16 +104,22 @@ def question(document: Mapping[str, Any], case: str) -> str:
     return f"One question: {best['words']} Then: thermoscope explain answer {case} yes|no" if best else ""
 
 
+def _words(candidates: Iterable[Mapping[str, Any]]) -> dict[str, str]:
+    """Candidate -> what it is in plain words."""
+    return {c["effect"]: c.get("words") or c["effect"] for c in candidates}
+
+
 def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
     if not candidates or candidates[0]["probability"] <= tables.LEAST_PROBABILITY:
         return []
-    first = candidates[0]
-    lines = [f"Detection limit: these tests show {first['effect']} from {limit(first)} on."]
+    first, words = candidates[0], _words(candidates)
+    lines = [f"Detection limit: these tests show it from {limit(first)} on."]
     lines += [bought(first)] if first.get("tests") and first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
-        lines.append(f"{first['effect']} looks like {', '.join(first['confused_with'])} to these tests and sensors.")
+        alike = ", ".join(words.get(name, name) for name in first["confused_with"])
+        lines.append(f"To these tests and sensors it looks like {alike}.")
     return lines
 
 
@@ -122,15 +127,17 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
     """Why the rivals lost: where a refit is worse, or how little evidence there is for the next ones alone."""
     if not effects:
         return []
+    words = _words(candidates)
     refitted = [
-        f"Against {c['effect']}: it {c['note']} than {candidates[0]['effect']}."
+        f"Against {words[c['effect']]}: it {c['note']}."
         for c in candidates[1:ROWS]
         if c["note"] and c["probability"] > tables.LEAST_PROBABILITY and c["effect"] not in effects
     ]
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
-    each = ", ".join(f"{c['effect']} {c['score']:.1f}" for c in rivals[:RIVALS])
+    each = ", ".join(f"{words[c['effect']]} {c['score']:.1f}" for c in rivals[:RIVALS])
     lead = next(c["score"] for c in candidates if c["effect"] == effects[0])
-    return [*refitted, f"Rivals alone have less evidence: {each}; {effects[0]} {lead:.1f} nats."] if each else refitted
+    evidence = f"Evidence of it {lead:.1f} nats (3 are odds of twenty to one); of rivals alone: {each}."
+    return [*refitted, evidence] if each else refitted
 
 
 def limit(candidate: Mapping[str, Any]) -> str:
@@ -143,4 +150,4 @@ def bought(candidate: Mapping[str, Any]) -> str:
     tests = candidate["tests"]
     each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
     star = " (* never used)" if any(t["held_out"] for t in tests) else ""
-    return f"Refitted without -> with {candidate['effect']}, error (K): {', '.join(each)}{star}."
+    return f"Refitted without -> with it, error (K): {', '.join(each)}{star}."

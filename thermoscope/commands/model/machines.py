@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from dataclasses import asdict
+from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
+
+from geom.errors import InputError
 from geom.table import Table
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
@@ -16,14 +22,46 @@ if TYPE_CHECKING:
     from geom.drawings.gallery import Entry
 
 
-def machines(out: Out = None, target: Json = None) -> int:
-    """The machines that come along; with --out also a page with a thumbnail of each."""
+def machines(
+    copied: Annotated[
+        str | None, typer.Option("--copy", metavar="NAME", help="Write NAME.toml here, to change it.")
+    ] = None,
+    out: Out = None,
+    target: Json = None,
+) -> int:
+    """The machines that come along; with --out also a page with a thumbnail of each. --copy takes the file of one."""
     from geom import catalogue, write_library
 
+    if copied is not None:
+        file = copy_machine(copied, out or Path())
+        give(
+            {"machine": copied, "file": file}, target, lambda: Summary(f"{file}: yours to change.", [], next_step(file))
+        )
+        return 0
     entries = catalogue()
     page = write_library(out) if out is not None else None
     give({"machines": [described(entry, page) for entry in entries]}, target, lambda: machines_summary(entries, page))
     return 0
+
+
+def copy_machine(name: str, folder: Path) -> Path:
+    """Copy the library's file of that name into a folder. InputError where there is none, or a file is in the way."""
+    from geom import library
+
+    if name not in library():
+        near = ", ".join(get_close_matches(name, library(), cutoff=0.0))
+        raise InputError(f"no machine {name!r} comes along", "--copy", f"for example {near}")
+    target = folder / f"{name}.toml"
+    if target.exists():
+        raise InputError("is there already: it stays", str(target), "another folder: --out DIR")
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(library()[name], target)
+    return target
+
+
+def next_step(file: Path) -> str:
+    """What to do with a machine file."""
+    return f"Next: thermoscope model build {quote(str(file))}"
 
 
 def described(entry: Entry, page: Path | None) -> dict[str, Any]:
@@ -43,4 +81,8 @@ def machines_summary(entries: Sequence[Entry], page: Path | None) -> Summary:
         envelope=lambda e: " x ".join(f"{1e3 * size:.0f}" for size in e.envelope),
     )
     where = f"thumbnails: {page}" if page is not None else "--out DIR for thumbnails"
-    return Summary(f"{len(table.rows)} machines come along.", [table], f"{where}; thermoscope model build MACHINE")
+    return Summary(
+        f"{len(table.rows)} machines come along.",
+        [table],
+        f"{where}; --copy NAME for the file of one; thermoscope model build MACHINE",
+    )

@@ -23,7 +23,8 @@ from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
-from validation.parameters.unknowns import strain_words
+from validation.effects.during import effect_words
+from validation.parameters.unknowns import scene_of, strain_words
 from validation.tables import parameters_table, revision_tables
 
 if TYPE_CHECKING:
@@ -108,9 +109,26 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     places = unmeasured(folder, result)
     nuisance_words = strain_words(replace(folder.case, model=result.model))
     more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
+    more |= {"words": words(folder, result), "worst": worst_record(result)}
     document = {**result.document(), **more}
     give(document, target, lambda: revision_summary(document, folder, case))
     return 0 if result.accepted or anyway else 1
+
+
+def words(folder: Folder, result: revise.Revision) -> str:
+    """What was added, in plain words; "" of another step."""
+    from validation.effects import effect
+    from validation.revision.revise import TOGETHER
+
+    names = result.effect.split(TOGETHER) if result.action == "add" and result.effect else []
+    return " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
+
+
+def worst_record(result: revise.Revision) -> dict[str, Any]:
+    """The record with the largest error after the step."""
+    records = [(c, t.name) for t in result.after.tests for c in t.channels]
+    worst, test = max(records, key=lambda row: row[0].rmse_K)
+    return {"channel": worst.channel, "test": test, "rmse_K": worst.rmse_K}
 
 
 def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
@@ -166,10 +184,8 @@ def named(p: Mapping[str, Any]) -> str:
 
 def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -> Summary:
     """Whether it stands, the error before and after, and the values that the data fixed."""
-    name = f"{document['action']} {document['effect'] or ''}".strip()
-    verdict = "accepted" if document["accepted"] else "not accepted"
-    where = f"written to {folder.settings.model_file} as revision {document['revision']}"
-    outcome = where if document["written"] else "nothing written (--anyway writes it)"
+    where = f"Written to {folder.settings.model_file} as revision {document['revision']}."
+    outcome = where if document["written"] else "Nothing written (--anyway writes it)."
     errors = revision_tables(document)[0]
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
@@ -184,10 +200,20 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
         _blind(document["parameters"]),
     ]
     return Summary(
-        " ".join(filter(None, [document["strained"], f"{name}: {verdict}; {document['why']}; {outcome}."])),
+        " ".join(filter(None, [*_outcome_words(document), outcome])),
         parts,
         f"Next: thermoscope {step} {quote(called)}; --json FILE",
     )
+
+
+def _outcome_words(document: Mapping[str, Any]) -> list[str]:
+    """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
+    why, worst, strained = document["why"], document["worst"], document["strained"]
+    if document["accepted"] and document["words"]:
+        left = f"Left: at most {worst['rmse_K']:.1f} K, {worst['channel']} in {worst['test']}."
+        return [f"Found: {document['words']}. Accepted: {why}.", left, strained]
+    name = f"{document['action']} {document['effect'] or ''}".strip()
+    return [strained, f"{name}: {'accepted' if document['accepted'] else 'not accepted'}; {why}."]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
