@@ -1,4 +1,4 @@
-"""A verdict that hangs on which instants were looked at is withheld, and says so."""
+"""A verdict that hangs on which instants were looked at is withheld, and says so; what is shown of the odds."""
 
 from dataclasses import replace
 from functools import cache
@@ -10,9 +10,9 @@ from playground import Truth, wind
 from validation.effects import effect
 from validation.inference.decide import Decision, Posterior, decide, half_posterior, steady_decision, united_groups
 from validation.inference.evidence import calibrated_case, scored, singles
-from validation.inference.hypotheses import Weighed, probabilities
+from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.refit import laplace
-from validation.inference.say import unsteady_words
+from validation.inference.say import explanations, unsteady_words
 
 NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
 
@@ -97,3 +97,18 @@ def test_nothing_is_claimed_because_half_of_the_instants_would_claim_it():
     choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert choice == replace(whole, others=(half, half))
     assert "convection@flange.right" in unsteady_words(posterior(), choice)
+
+
+def test_the_leading_cause_has_the_probability_of_its_row_among_the_candidates():
+    p = posterior()
+    first = explanations(p)[0]
+    assert first.cause == "convection@flange.right"
+    assert first.words == "forced convection by vehicle wind at flange.right"
+    assert first.probability == inclusion(p.hypotheses, len(p.evidence.effects)).max()
+    assert first.alone <= first.probability
+
+
+def test_every_hypothesis_is_told_once():
+    rows = explanations(posterior())
+    assert abs(sum(row.probability for row in rows) - 1.0) < 1e-12
+    assert len({row.cause for row in rows}) == len(rows)

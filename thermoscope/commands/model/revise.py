@@ -208,12 +208,12 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
 
 def _outcome_words(document: Mapping[str, Any]) -> list[str]:
     """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
-    why, worst, strained = document["why"], document["worst"], document["strained"]
+    why, worst, nuisances = document["why"], document["worst"], document["strained"]
     if document["accepted"] and document["words"]:
         left = f"Left: at most {worst['rmse_K']:.1f} K, {worst['channel']} in {worst['test']}."
-        return [f"Found: {document['words']}. Accepted: {why}.", left, strained]
+        return [f"Found: {document['words']}. Accepted: {why}.", left, nuisances]
     name = f"{document['action']} {document['effect'] or ''}".strip()
-    return [strained, f"{name}: {'accepted' if document['accepted'] else 'not accepted'}; {why}."]
+    return [nuisances, f"{name}: {'accepted' if document['accepted'] else 'not accepted'}; {why}."]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
