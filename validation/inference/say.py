@@ -412,8 +412,8 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         size = "" if effect.whole else f", {best.value:.3g}{unit}"
         return f"{'fault' if effect.fault else 'missing'}: {effect_words(effect)}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
-    shown = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    likely = [f"{effect_words(e.effects[k])} ({percent(p)})" for k, p in shown]
+    members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
+    likely = [f"{effect_words(e.effects[k])} ({percent(p)})" for k, p in members]
     likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 
