@@ -3,13 +3,17 @@
 python scripts/walk.py                     # the imports alone: longest chain of every room, circles
 python scripts/walk.py --machine pmsm-m1   # and the files from a machine file to its network
 python scripts/walk.py --case tclab        # and the files from a case to its verdict
+python scripts/walk.py --page              # both walks, as docs/architecture.md shows them
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import os
 import sys
+import tempfile
+import time
 from collections.abc import Callable, Iterator
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
@@ -20,6 +24,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")  # from the ground up
 Graph = dict[str, set[str]]
+PAGE, MACHINE, CASE = ROOT / "docs" / "architecture.md", "pmsm-m1-no-base", "tclab"
+LEAST_SHARE = 0.02  # of the time, from which a file is a station on the page
 
 
 def import_graph(types: bool) -> Graph:
@@ -99,6 +105,75 @@ def visits(work: Callable[[], Any]) -> list[str]:
     return out
 
 
+def stations(work: Callable[[], Any]) -> list[tuple[str, float]]:
+    """Modules in order of the first visit, with the share of the time between a visit and its return."""
+    inside: dict[str, float] = {}  # module -> seconds, all that it calls included
+    names: dict[str, str] = {}
+    depth: dict[str, int] = {}  # module -> how often it waits for a call of its own
+    since: dict[str, float] = {}
+
+    def look(frame: FrameType, event: str, argument: Any) -> None:
+        file = frame.f_code.co_filename
+        if file not in names:
+            path = Path(file)
+            ours = path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ROOMS
+            names[file] = name_of(path) if ours and path.stem != "__init__" else ""
+        name = names[file]
+        if not name or event not in ("call", "return") or frame.f_code.co_name == "<module>":
+            return
+        if event == "call":
+            depth[name] = depth.get(name, 0) + 1
+            if depth[name] == 1:
+                since[name] = time.perf_counter()
+                inside.setdefault(name, 0.0)
+        elif depth.get(name):
+            depth[name] -= 1
+            if not depth[name]:
+                inside[name] += time.perf_counter() - since[name]
+
+    begin = time.perf_counter()
+    sys.setprofile(look)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    whole = time.perf_counter() - begin
+    return [(name, t / whole) for name, t in inside.items()]
+
+
+def walk_table(work: Callable[[], Any]) -> str:
+    """The files in which a fiftieth of the time and more passes, in order of the first visit, in Markdown."""
+    path = stations(work)
+    rows = [f"| `{file_of(n)}` | {purpose(n)} | {100 * p:.0f} % |" for n, p in path if p >= LEAST_SHARE]
+    others = f"{len(path) - len(rows)} further files on the way are left for less than a fiftieth of the time."
+    return "\n".join(["| file | what it holds | time |", "|---|---|---|", *rows, "", others])
+
+
+def file_of(name: str) -> str:
+    return f"{name.replace('.', '/')}.py"
+
+
+def purpose(name: str) -> str:
+    """The first sentence of a module's docstring."""
+    text = ast.get_docstring(ast.parse((ROOT / file_of(name)).read_text(encoding="utf-8"))) or ""
+    return " ".join(text.split("\n\n")[0].split()).replace("|", "\\|")
+
+
+def write_page() -> None:
+    """Both walks between their marks on the page of the architecture, on a computer that has kept nothing."""
+    import thermoscope as ts
+
+    with tempfile.TemporaryDirectory() as empty:
+        os.environ["THERMOSCOPE_CACHE"] = empty
+        works = {"machine": lambda: ts.build(MACHINE), "case": lambda: ts.open(CASE).diagnose()}
+        page = PAGE.read_text(encoding="utf-8")
+        for name, work in works.items():
+            begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+            before, rest = page.split(begin)
+            page = f"{before}{begin}\n{walk_table(work)}\n{end}{rest.split(end)[1]}"
+    PAGE.write_text(page, encoding="utf-8")
+
+
 def print_walk(title: str, path: list[str]) -> None:
     """Every file once, in order of the first visit, and how often the walk goes from one to another and upwards."""
     rooms = [ROOMS.index(name.partition(".")[0]) for name in path]
@@ -124,7 +199,10 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--machine", help="a machine file, or a name that comes along")
     options.add_argument("--case", help="a case folder, or the name of a case that comes along")
+    options.add_argument("--page", action="store_true", help="write both walks to docs/architecture.md")
     wish = options.parse_args()
+    if wish.page:
+        return write_page()
     print_chains()
     import thermoscope as ts
 

@@ -7,6 +7,8 @@ from graphlib import CycleError, TopologicalSorter
 
 import pytest
 
+from scripts import walk
+
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope", "extras")
 BESIDE = ("simulated", "benchmarks", "scripts", "docs", "tests")  # examples/ is a gallery, side by side
 MOST = 15  # files of a folder beside its __init__: more do not fit on a screen
@@ -38,12 +40,24 @@ def test_no_folder_is_long(root):
     assert {name: n for name, n in files.items() if n > MOST} == {}
 
 
-def test_the_architecture_is_one_picture_and_six_sentences(root):
-    title, picture, text = re.split("```text|```\n", (root / "docs/architecture.md").read_text(encoding="utf-8"))
+def test_the_architecture_is_one_picture_six_sentences_two_walks_and_where_a_new_one_goes(root):
+    page, *sections = re.split("^## ", (root / "docs/architecture.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    title, picture, text = re.split("```text|```\n", page)
     assert title.strip() == "# Architecture"
     assert [line for line in picture.splitlines() if line.strip().startswith(ROOMS)] != []
     assert not re.search(r"^[#|-]", text, re.MULTILINE), "no table, no list and no further heading"
     assert len(re.findall(r"\.(?:\s|$)", text)) == SENTENCES
+    assert len(sections) == 3
+    named = re.findall(r"`((?:\w+/)+(?:\w+\.py)?)`", "".join(sections))
+    assert len(named) > 20, "two walks"
+    assert [path for path in named if not (root / path).exists()] == []
+
+
+def test_no_circle_by_types_either(uses):
+    """What a module names for a type checker alone counts, too: a reader follows it all the same."""
+    graph = walk.import_graph(types=True)
+    assert len(graph) >= len([name for name in uses if name.partition(".")[0] in ROOMS])
+    assert walk.circle(graph) == []
 
 
 def rows_of(root):

@@ -8,21 +8,29 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geom.plugins import plugins
 from lumped.condensation.recovery import Shapes
+from thermoscope.case_folder.settings import Settings
+from validation.comparison.error_budget import OpenCase
 
 if TYPE_CHECKING:
     from measured.case import Test
-    from thermoscope.case_folder.folder import Folder
 
 Array = NDArray[np.float64]
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "thermoscope")  # packages that decide what a model tells
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to
+
+
+class CaseWithFiles(OpenCase, Protocol):
+    """An open case and where it lies."""
+
+    @property
+    def settings(self) -> Settings: ...
 
 
 def digest(*pieces: object) -> str:
@@ -36,7 +44,7 @@ def digest(*pieces: object) -> str:
     return content.hexdigest()[:20]
 
 
-def case_key(folder: Folder) -> str:
+def case_key(folder: CaseWithFiles) -> str:
     """Of everything that decides: the case's files, its recordings, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
     files = [settings.path / "case.toml", settings.network, *(f for e in settings.tests for f in (e.file, e.sheet))]
@@ -53,7 +61,7 @@ def recorded_arrays(tests: Iterable[Test]) -> Iterator[Array]:
         yield from (np.asarray(array) for array in arrays)
 
 
-def result_key(folder: Folder, *rooms: str) -> str:
+def result_key(folder: CaseWithFiles, *rooms: str) -> str:
     """The same with the shapes of the network, what was answered, and the text of the code.
 
     rooms : packages that decide it besides ROOMS

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +14,22 @@ from numpy.typing import NDArray
 from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
-from thermoscope.case_folder.content import result_key
+from thermoscope.case_folder.content import CaseWithFiles, result_key
 from validation.comparison.compare import ChannelError, Comparison, TestError, compare, physical
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty
 from validation.parameters.unknowns import standing
 
-if TYPE_CHECKING:
-    from thermoscope.case_folder.folder import Folder
-
 Array = NDArray[np.float64]
+
+
+class BudgetedCase(CaseWithFiles, Protocol):
+    """An open case with what mesh, condensation and time steps may put wrong.  numeric_K : test -> channel -> sum"""
+
+    @property
+    def budgets(self) -> Mapping[str, ErrorBudget]: ...
+    @property
+    def numeric_K(self) -> Mapping[str, Mapping[str, float]]: ...
 
 
 @dataclass(frozen=True)
@@ -35,12 +41,12 @@ class StoredComparison:
     readings: Mapping[str, Array]
 
 
-def stored_comparison(folder: Folder) -> StoredComparison | None:
+def stored_comparison(folder: CaseWithFiles) -> StoredComparison | None:
     """From the cache; None where this very model was not compared before, and for a network declared by hand."""
     return None if folder.built is None else recalled(_file(folder), lambda path: _read(folder, path))
 
 
-def new_comparison(folder: Folder) -> Comparison:
+def new_comparison(folder: BudgetedCase) -> Comparison:
     """Run the model on every test, and keep what comes of it. Networks declared by hand are quick and are not kept."""
     result = compare(folder.case, budgets=folder.numeric_K)
     if folder.built is not None:
@@ -53,11 +59,11 @@ def new_comparison(folder: Folder) -> Comparison:
     return result
 
 
-def _file(folder: Folder) -> Path:
+def _file(folder: CaseWithFiles) -> Path:
     return cache_folder() / f"comparison-{result_key(folder)}.npz"
 
 
-def _read(folder: Folder, file: Path) -> StoredComparison:
+def _read(folder: CaseWithFiles, file: Path) -> StoredComparison:
     with np.load(file) as archive:
         document = json.loads(str(archive["arr_0"]))
         readings = {test.name: archive[f"arr_{i}"] for i, test in enumerate(folder.case.tests, 1)}

@@ -18,9 +18,9 @@ from lumped.model.network import Network, Parameter
 from measured.case import Test
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
-from validation.inference.result import TableRow
 from validation.inference.score import fit_score
 from validation.parameters.unknowns import to_value
+from validation.tables import TableRow
 
 Array = NDArray[np.float64]
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from geom.errors import InputError
 from geom.table import Table
 from geom.text import table
-from validation.tables import diagnosis_tables
+from validation.tables import TableRow, diagnosis_tables
 
 if TYPE_CHECKING:
     from validation.bases.which_base import BaseDeviance
@@ -20,14 +20,6 @@ Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
 MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # explanations of a diagnosis that is printed, and from which probability
-
-
-class TableRow:
-    """A row of a table; its document has every field, tuples as lists."""
-
-    def document(self) -> dict:
-        """JSON of the row."""
-        return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +18,6 @@ from validation.yardstick.free_network import (
     power_words,
 )
 from validation.yardstick.records import Columns, Record
-
-if TYPE_CHECKING:
-    from validation.yardstick.yardstick import Fitter
 
 Array = NDArray[np.float64]
 SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not worth a name
@@ -53,7 +49,9 @@ class Term:
         return dict(vars(self))
 
 
-def needed_terms(fit: Fitter, folds: Sequence[Sequence[Record]], columns: Columns, case: Case) -> tuple[Term, ...]:
+def needed_terms(
+    fit: Callable[[Sequence[int]], object], folds: Sequence[Sequence[Record]], columns: Columns, case: Case
+) -> tuple[Term, ...]:
     """The terms of a free network that no choice of tests does without, those that carry most first."""
     every = range(len(folds))
     whole = fit(every)
