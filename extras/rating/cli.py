@@ -64,3 +64,17 @@ def optimise(
 
     options = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
     raise typer.Exit(run(name, *options, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+
+
+@use_commands.command("compare-designs")
+def compare_designs(
+    names: Annotated[list[str], typer.Argument(metavar="MACHINE...", help="Two to six machine files, names or cases.")],
+    limit: HotLimit = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="For all of them.")] = None,
+    bands: Sure = None,
+    json: Json = None,
+) -> None:
+    """Designs side by side: dimensions that differ, hottest points, continuous ratings, masses, pump and fan power."""
+    from extras.rating.commands.compare_designs import compare_designs as run
+
+    raise typer.Exit(run(names, tuple(limit or ()), tuple(at or ()), bands, json))

@@ -1,0 +1,59 @@
+"""Designs side by side: what differs in their files, what they weigh, and which is better at the same surroundings."""
+
+import pytest
+
+from extras.rating.commands.compare_designs import designs_summary, dimensions, masses
+from geom import load_machine, part_table
+
+PLATE, FREE = "pmsm-m1-plate", "pmsm-m1-no-base"
+
+
+def test_what_differs_is_the_base_and_what_the_files_say_of_it():
+    rows = dimensions([load_machine(PLATE), load_machine(FREE)])
+    assert rows
+    assert {row["parameter"].rpartition(".")[0] for row in rows} == {"geometry.base"}
+    assert dimensions([load_machine(PLATE)] * 2) == []
+
+
+def test_masses_by_material_are_those_of_the_parts():
+    machine = load_machine(FREE)
+    rows = {row.name: row for row in part_table(machine)}
+    assert sum(masses(machine).values()) == pytest.approx(sum(rows[p.name].mass for p in machine.parts), rel=1e-9)
+
+
+def described(name, value, hottest):
+    rating = {"form": "S1", "input": "current_A", "value": value, "ci95": None, "at": "winding"}
+    spots = [{"place": "winding", "degC": hottest}]
+    figures = {"masses_kg": {"steel": 10.0}, "pump_and_fan_W": 5.0, "inputs": {"current_A": 20.0}, "settles": True}
+    return {"name": name, "hottest": spots, "rating": rating, **figures}
+
+
+def test_the_better_one_is_named_first():
+    document = {"dimensions": [], "boundaries": {"ambient": 40.0}}
+    document["designs"] = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
+    assert designs_summary(document).sentence.startswith("b carries most: current_A = 22, limited by winding.")
+    for one in document["designs"]:
+        one["rating"] = None
+    assert designs_summary(document).sentence.startswith("b stays coolest: 120.0 degC")
+    document["designs"][0]["settles"] = False
+    assert designs_summary(document).sentence.startswith("a does not settle")
+
+
+@pytest.mark.parametrize("names", [[FREE], [FREE] * 7])
+def test_one_design_is_nothing_to_compare(thermoscope, names):
+    refused = thermoscope("use", "compare-designs", *names)
+    assert refused.code == 2
+    assert "two to 6" in refused.err
+
+
+@pytest.mark.nightly
+def test_two_motors_side_by_side(thermoscope):
+    """The longer stack loses less heat per volume; what surrounds them is the same."""
+    found = thermoscope(
+        *("use", "compare-designs", FREE, "pmsm-m2-no-base", "--limit", "winding=130", "--no-bands", "--json", "-")
+    )
+    assert found.code == 0, found.err
+    long, short = found.document["designs"]
+    assert sum(long["masses_kg"].values()) > sum(short["masses_kg"].values())
+    assert found.document["boundaries"]["ambient"] == 40.0
+    assert all(d["rating"]["value"] > 0.0 for d in (long, short))
