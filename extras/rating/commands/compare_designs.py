@@ -62,8 +62,8 @@ def compare_designs(
         designs: list[Design] = []
         for name in names:
             folder = case_or_machine(name, tell)
-            shared = {**(designs[0].it.op.boundaries if designs else {}), **around}
-            designs.append(design(folder, limited, shared))
+            conditions = {**(designs[0].it.op.boundaries if designs else {}), **around}
+            designs.append(design(folder, limited, conditions))
         tell("ratings")
         document = {
             "designs": [_described(one, limited, sure, tell) for one in designs],
@@ -179,12 +179,12 @@ def _verdict(designs: Sequence[Mapping[str, Any]]) -> str:
 
 def _rating_rows(ratings: Sequence[Mapping[str, Any] | None]) -> list[tuple[str, ...]]:
     """The continuous rating and what limits it; none without limits."""
-    given = [r for r in ratings if r is not None]
-    if not given:
+    present = [r for r in ratings if r is not None]
+    if not present:
         return []
     return [
-        (f"continuous {given[0]['input']}", *map(_rating_words, given)),
-        ("limited by", *(r["at"] or "nothing" for r in given)),
+        (f"continuous {present[0]['input']}", *map(_rating_words, present)),
+        ("limited by", *(r["at"] or "nothing" for r in present)),
     ]
 
 

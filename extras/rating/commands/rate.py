@@ -236,8 +236,8 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
     sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}{_change(first)}."
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
-    elif np.isfinite(hand := 100.0 * (first["value"] / reference["value"] - 1.0)):
-        more = f"{hand:.3g} % in hand" if hand >= 0.0 else f"{-hand:.3g} % too much"
+    elif np.isfinite(margin := 100.0 * (first["value"] / reference["value"] - 1.0)):
+        more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"{-margin:.3g} % too much"
         sentence += f" At {reference['value']:.4g} there is {more}."
     rows = [
         [r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
