@@ -1,7 +1,7 @@
 # The face for extras and plugins: what each name is, room by room from below.
 from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
 from geom.description.geometry import Group as Group
-from geom.description.identity import Identity as Identity
+from geom.description.roles import Identity as Identity
 from geom.description.machine import Machine as MachineDescription
 from geom.description.materials import winding_conductivity as winding_conductivity
 from geom.description.names import cut_short as cut_short, file_stem as file_stem
@@ -12,7 +12,7 @@ from geom.description.roles import Role as Role
 from geom.description.toml_file import read_toml as read_toml
 from geom.disk_cache import recalled as recalled, store as store
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
-from geom.families import families as families
+from geom.machine_file import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table

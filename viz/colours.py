@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.identity import Identity
+from geom.description.roles import Identity
 from geom.description.roles import Role
 
 if TYPE_CHECKING:

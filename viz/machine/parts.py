@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.identity import Identity
+from geom.description.roles import Identity
 from geom.description.roles import Role
 from viz.colours import LIGHT, Theme, heat, part_colours, rgb
 from viz.rendering import scene
