@@ -210,11 +210,9 @@ from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as The
 from viz.data import Comparison as Comparison, Sensor as Sensor, sensors as data_sensors, short as short
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
-from viz.live.candidates import confusion as confusion
-from viz.live.curves import sensor as sensor
+from viz.live.curves import confusion as confusion, sensor as sensor
 from viz.live.style import as_text as as_text, figure as figure
-from viz.machine.animation import WRITERS as WRITERS
-from viz.machine.pulses import Pulses as Pulses
+from viz.machine.animation import WRITERS as WRITERS, Pulses as Pulses
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed

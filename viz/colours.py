@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.roles import Identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap

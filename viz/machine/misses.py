@@ -57,8 +57,7 @@ def misses(
     renderer.ResetCameraClippingRange()
     scene.headline(p, title, theme)
     marks.draw(p, surface, view, theme, CAPTION)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def _hatch(p: pyvista.Plotter, surface: Surface, guess: NDArray[np.bool_], theme: Theme) -> None:

@@ -91,8 +91,7 @@ def network_in_machine(
     callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()  # the camera stood before lines and nodes were there
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def places(mesh: NamedMesh, nodes: SplitMesh) -> dict[str, Array]:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.roles import Identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 

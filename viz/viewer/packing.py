@@ -36,14 +36,3 @@ def packed_numbers(values: Array, step: Array | float | None = None) -> dict[str
     steps = np.broadcast_to(fine if step is None else step, low.shape)
     whole = np.where(finite, np.round(above / steps), UNKNOWN).astype(np.int64)
     return {**packed_integers(whole), "low": low.tolist(), "step": steps.tolist()}
-
-
-def unpacked(packed: dict[str, Any]) -> Array:
-    """What the page reads: (n, k)."""
-    columns = packed["columns"]
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), np.uint8).reshape(4, -1)
-    unsigned = np.ascontiguousarray(planes.T).view("<u4").reshape(columns, -1).T.astype(np.int64)
-    whole = np.cumsum(np.where(unsigned % 2, -(unsigned + 1) // 2, unsigned // 2), axis=0)
-    if "step" not in packed:
-        return whole
-    return np.where(whole == UNKNOWN, np.nan, whole * np.array(packed["step"]) + np.array(packed["low"]))

@@ -18,14 +18,13 @@ from geom.meshing.mesh import NamedMesh
 from geom.plugins import plugins
 from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
 from viz.data import Comparison, short
+from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
-from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import ERROR_K
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
-from viz.viewer.part_shapes import packed_fields
+from viz.viewer.part_shapes import ERROR_K, packed_fields
 
 Array = NDArray[np.float64]
 FRAMES = 21  # instants of a test that the range of its errors is looked up at
