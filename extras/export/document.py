@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from extras.export.heading import heading
+from extras.export.c_code import heading
 from extras.export.model import Model, Output
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum, Tabulated
 from thermoscope.plugin import COLD, END, FILM, FILMS, FIRST_C, HOT, LAST, PLACE, POINT, ROW, STEP_K, STREAM, Terms
