@@ -27,8 +27,8 @@ def screening_document(machine: str, design: str) -> dict[str, Any]:
     if Role.MAGNET not in roles or Role.HOUSING in roles:
         right = "a machine with magnets in open laminations, e.g. pmsm-m1"
         raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
-    found = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
-    return {"machine": design_machine.name, "design": design, **found}
+    effects = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
+    return {"machine": design_machine.name, "design": design, **effects}
 
 
 def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
@@ -128,5 +128,5 @@ def show_transfer(document: Mapping[str, Any]) -> Summary:
         f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
         "sensors are over."
     )
-    taken = f"Taken over: {', '.join(parameters) or 'nothing'}."
-    return Summary(sentence, [Table.of("", rows, columns, ["over"]), taken])
+    note = f"Taken over: {', '.join(parameters) or 'nothing'}."
+    return Summary(sentence, [Table.of("", rows, columns, ["over"]), note])

@@ -82,6 +82,4 @@ def begun(
     S = np.zeros((n + m, n + m))
     S[:n, :n] = np.diag([sd.get(int(column), usual_sd) for column in process.slow])
     S[n:, n:] = noise.root
-    along = np.zeros((len(process.network.states), n))
-    along[process.slow, np.arange(n)] = 1.0
-    return Filter(process, noise, x, np.zeros(m), S, np.zeros((n + m, heats.shape[1])), heats, along)
+    return Filter(process, noise, x, np.zeros(m), S, np.zeros((n + m, heats.shape[1])), heats, process.slow_only)

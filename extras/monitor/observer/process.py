@@ -139,10 +139,16 @@ class Process:
 
     def balance(self, G: Array) -> Array:
         """(n, n_slow) all states that follow the slow ones at once."""
-        out = np.zeros((len(G), self.slow.size))
-        out[self.slow, np.arange(self.slow.size)] = 1.0
+        out = self.slow_only
         if self.fast.size:
             out[self.fast] = -np.linalg.solve(G[np.ix_(self.fast, self.fast)], G[np.ix_(self.fast, self.slow)])
+        return out
+
+    @property
+    def slow_only(self) -> Array:
+        """(n, n_slow) the slow states alone: where nothing follows them yet."""
+        out = np.zeros((len(self.network.states), self.slow.size))
+        out[self.slow, np.arange(self.slow.size)] = 1.0
         return out
 
     def sensed(self, row: Row, along: Array) -> Array:

@@ -203,8 +203,8 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
     ends: dict[str, Any] = {"low": lambda r: (r["ci95"] or [None])[0], "high": lambda r: (r["ci95"] or [None])[-1]}
-    shown = main.replace("|", "/").replace("=", "/")  # signs that end the name of a column
-    band = f"*{shown}=value | *95 % from=low | *to=high | limited by=at | before"
+    heading = main.replace("|", "/").replace("=", "/")  # signs that end the name of a column
+    band = f"*{heading}=value | *95 % from=low | *to=high | limited by=at | before"
     table = Table.of("", document["ratings"], f"form | {band} | *change (%)=change_percent", **ends)
     parts: list[Table | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
