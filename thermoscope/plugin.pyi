@@ -1,4 +1,5 @@
 # The face for extras and plugins: what each name is, room by room from below.
+from geom.arrays import Array as Array, Ints as Ints
 from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
 from geom.description.geometry import Group as Group
 from geom.description.roles import Identity as Identity

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from viz.colours import LIGHT, Theme
 from viz.data import Comparison, Curve, short
@@ -96,7 +96,7 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     return out
 
 
-def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, theme: Theme = LIGHT) -> go.Figure:
+def confusion(names: Sequence[str], cosine: Array, *, theme: Theme = LIGHT) -> go.Figure:
     """|cosine| between the traces of candidates, (n, n): 1 cannot be told apart with these sensors and tests."""
     c = np.abs(np.asarray(cosine, float))
     out = figure(theme, title={"text": "Traces in common (1: cannot be told apart)", "x": 0.02, "font": {"size": 13}})

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, MissingDependency
 from viz.colours import LIGHT, VERDICT, Theme, rgb
 from viz.data import Sensor
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     import pyvista
     from PIL import Image
 
-Array = NDArray[np.float64]
 PALETTE = 24  # pictures that a GIF's colours are taken from
 BITS, ROUNDS = 5, 3  # of a channel by which colours are counted; of k-means after the median cut
 DOT = 17.0  # pixels of a dot in a picture 960 wide

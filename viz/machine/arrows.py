@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme
 from viz.machine.field import UNIT, paint
 from viz.rendering import scene
@@ -21,7 +21,6 @@ from viz.rendering.scene import TITLE, Room, View
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SPACING = 0.045  # of the machine's length, between arrows
 LONGEST = 0.075  # of the machine's length
 SHORTEST = 0.02  # of the largest flux: smaller ones are left out

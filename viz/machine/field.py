@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
 from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     import pyvista
     from matplotlib.colors import Colormap
 
-Array = NDArray[np.float64]
 UNIT = "°C"
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.roles import Identity, Role
 from viz.colours import LIGHT, Theme, heat, part_colours, rgb
 from viz.rendering import scene
@@ -22,7 +22,6 @@ from viz.rendering.visibility import anchors
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 LETTERS = 13  # size of the names
 GAP = 0.25  # between assemblies pulled apart, share of the machine's length
 LONG = 1.5  # of the machine's length: with a longer base the machine would be small

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, VERDICT, heat
 from viz.data import Comparison, Curve, Sensor, short
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
     from measured.case import Channel
 
-Array = NDArray[np.float64]
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
 TIME, REVISION = "test_time", "revision"
 

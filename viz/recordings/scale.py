@@ -6,8 +6,8 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, heat
 from viz.data import Comparison
 from viz.rendering.scale import decimals, marks
@@ -15,7 +15,6 @@ from viz.rendering.scale import decimals, marks
 if TYPE_CHECKING:
     import rerun as rr
 
-Array = NDArray[np.float64]
 WIDE, HIGH = 24, 256  # pixels of the bar
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 GAP = 14  # pixels from the bar to its numbers

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, on_nodes
-
-Array = NDArray[np.float64]
 
 
 class HasTensor(Protocol):

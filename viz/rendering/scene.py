@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme
 from viz.labels import minus
 from viz.rendering.cut import Surface
@@ -18,7 +18,6 @@ from viz.rendering.scale import decimals, marks
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SIZE = (1280, 800)  # pixels
 MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
 HEADLINE, LETTER = 14, 1.06  # size of a headline; pixels that one of its letters is wide, of that size

@@ -7,14 +7,14 @@ import zlib
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array, Ints
+
 UNKNOWN = -1  # whole numbers of a column begin at zero: this one stands for what is not finite
 LEVEL = 8  # of deflate: 9 makes a page half a percent shorter and takes two and a half times as long
 
 
-def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
+def packed_integers(values: Ints) -> dict[str, Any]:
     """Rows of whole numbers (n, k), each as the difference from the row before it: meshes are regular.
 
     A difference n is 2 n, and -n is 2 n - 1: the upper bytes of small ones are then zero, whatever their sign.

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.rendering.nodes import SplitMesh
 from viz.viewer.packing import packed_numbers
 
-Array = NDArray[np.float64]
 BLOCK = 1024  # nodes looked at together: with a thousand fields of each they stay in a processor's cache
 ERROR_K = 0.1  # largest error of any node at any instant: a fifth of what a thermocouple tells
 

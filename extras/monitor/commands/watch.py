@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
@@ -19,6 +18,7 @@ from thermoscope import Record
 from thermoscope.plugin import (
     NORMAL_95,
     PACKAGE,
+    Array,
     Channel,
     Folder,
     Summary,
@@ -31,7 +31,6 @@ from thermoscope.plugin import (
     stem_of,
 )
 
-Array = NDArray[np.float64]
 MINUTE = 60.0
 
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network, Parameter
 from thermoscope.plugin import (
     AIR,
     LIQUID,
+    Array,
     Channel,
     Doubt,
     Fixed,
@@ -31,7 +31,6 @@ from thermoscope.plugin import (
     to_value,
 )
 
-Array = NDArray[np.float64]
 MOVING = ("speed", "vehicle_speed", AIR, LIQUID)
 FARTHEST = 1.5  # of a logarithm: beyond, a tangent says nothing
 LEARNED = "learned:"

@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer.constants import Constants, row_temperature
 from extras.monitor.observer.process import Process
@@ -20,6 +19,7 @@ from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Record
 from thermoscope.plugin import (
     CONSTANT,
+    Array,
     Channel,
     Row,
     Signals,
@@ -38,7 +38,6 @@ from thermoscope.plugin import (
 )
 from thermoscope.plugin import USUAL_DOUBT as USUAL
 
-Array = NDArray[np.float64]
 LASTS_S = 600.0  # an error of a whole recording is that of a place or of its rig: it lasts as long as the heat does
 CLOSE = 1e-3  # deviations of a constant that change no heat worth the work
 STEP_K = 0.01  # of the difference that says how a law turns with temperature

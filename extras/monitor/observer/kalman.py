@@ -10,12 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
-
-Array = NDArray[np.float64]
+from thermoscope.plugin import Array
 
 
 @dataclass
