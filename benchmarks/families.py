@@ -34,10 +34,9 @@ from geom import InputError, Machine
 from geom.description.parameters import UNITS, Parameter
 from geom.description.profile import ArcGrid
 from geom.description.reading import read_geometry
-from geom.families import families
 from geom.families.family import Family
 from geom.families.random_geometry import random_geometry
-from geom.machine_file import machine_from
+from geom.machine_file import families, machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
 

@@ -21,8 +21,8 @@ from families import WITHIN, machine_of
 from geom import InputError, check_cad
 from geom.description.machine import Machine
 from geom.description.part import Helix
-from geom.families import families
 from geom.families.family import Family
+from geom.machine_file import families
 
 TOLERANCE_MM = 0.2  # at 2 mm the triangles of ports of a few mm fold
 

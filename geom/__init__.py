@@ -14,7 +14,7 @@ _HOME = {
     "load_machine": "machine_file",
     "library": "machine_file",
     "Machine": "description.machine",
-    "import_step": "solids.step",
+    "import_step": "machine_file",
     "Part": "description.part",
     "Material": "description.materials",
     "material": "description.materials",

@@ -1,9 +1,10 @@
-"""Machine files: the library, and from a file's tables to a machine."""
+"""Machine files: the library, the families, and from a file's tables, or a STEP file, to a machine."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ from geom.description.part import Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from geom.families import Family, families
+from geom.families import radial_flux, series_dc
+from geom.families.family import Family
 from geom.families.proportions import remedy
-from geom.solids.step import import_step
+from geom.plugins import plugins
+from geom.solids.step import machine_in_step
 
 LARGEST_MM = 1e6  # as all lengths of a machine file
 
@@ -28,6 +31,12 @@ _HEADER = ("name", "family", "description", "source", "assumed")
 def library() -> dict[str, Path]:
     """The machines that come with the tool, by name."""
     return {path.stem: path for path in sorted(LIBRARY.glob("*.toml"))}
+
+
+def families() -> dict[str, Family]:
+    """All families by name, those of other packages too (entry points "thermoscope.families")."""
+    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)
+    return {family.name: family for family in (*builtin, *plugins("families").values())}
 
 
 def load_machine(source: str | Path) -> Machine:
@@ -42,6 +51,19 @@ def load_machine(source: str | Path) -> Machine:
     if path.suffix != ".toml" or not path.is_file():
         raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
     return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
+
+
+def import_step(path: str | Path) -> Machine:
+    """The machine in a STEP file and the TOML file beside it, see geom.solids.step."""
+    return machine_in_step(Path(path), _usual_materials)
+
+
+@cache
+def _usual_materials() -> Mapping[str, str]:
+    """Part name -> material, where all families agree on it."""
+    default = [family.build(read_geometry(family.parameters, {}, name)) for name, family in families().items()]
+    parts = [part for built in default for part in built if part.solid]
+    return {a.name: a.material for a in parts if all(b.material == a.material for b in parts if b.name == a.name)}
 
 
 def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:

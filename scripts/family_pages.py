@@ -10,9 +10,8 @@ from pathlib import Path
 from geom.description.geometry import Geometry
 from geom.description.parameters import Parameter
 from geom.description.reading import usual_geometry
-from geom.families import families
 from geom.families.family import Family
-from geom.machine_file import library, load_machine, machine_from
+from geom.machine_file import families, library, load_machine, machine_from
 from scripts.drawing import drawing_of
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "families"

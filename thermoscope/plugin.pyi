@@ -1,7 +1,8 @@
 # The face for extras and plugins: what each name is, room by room from below.
+from geom.arrays import Array as Array, Ints as Ints
 from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
 from geom.description.geometry import Group as Group
-from geom.description.identity import Identity as Identity
+from geom.description.roles import Identity as Identity
 from geom.description.machine import Machine as MachineDescription
 from geom.description.materials import winding_conductivity as winding_conductivity
 from geom.description.names import cut_short as cut_short, file_stem as file_stem
@@ -12,7 +13,7 @@ from geom.description.roles import Role as Role
 from geom.description.toml_file import read_toml as read_toml
 from geom.disk_cache import recalled as recalled, store as store
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
-from geom.families import families as families
+from geom.machine_file import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
@@ -210,11 +211,9 @@ from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as The
 from viz.data import Comparison as Comparison, Sensor as Sensor, sensors as data_sensors, short as short
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
-from viz.live.candidates import confusion as confusion
-from viz.live.curves import sensor as sensor
+from viz.live.curves import confusion as confusion, sensor as sensor
 from viz.live.style import as_text as as_text, figure as figure
-from viz.machine.animation import WRITERS as WRITERS
-from viz.machine.pulses import Pulses as Pulses
+from viz.machine.animation import WRITERS as WRITERS, Pulses as Pulses
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed

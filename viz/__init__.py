@@ -11,9 +11,9 @@ _MODULES = {
     "rendering.cut": "Wedge,HALF,QUARTER",
     "machine.field": "cutaway,pair,difference,uncertainty",
     "machine.parts": "regions,exploded",
-    "figures.heat": "missing_heat",
     "machine.missing": "missing_in_machine",
-    "machine.arrows": "flux_arrows,heat_flux",
+    "machine.arrows": "flux_arrows",
+    "rendering.flux": "heat_flux",
     "figures.flows": "heat_flows",
     "figures.sankey": "sankey_of_losses",
     "machine.network": "network_in_machine",
@@ -25,7 +25,7 @@ _MODULES = {
     "pages.report": "Report,write_report",
     "pages.pdf": "write_pdf",
     "machine.misses": "misses",
-    "figures.bands": "predicted,Predicted",
+    "figures.bands": "predicted,Predicted,missing_heat",
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names.split(",")}
 __all__ = sorted(_HOME)

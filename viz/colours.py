@@ -8,10 +8,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.arrays import Array
+from geom.description.roles import Identity, Role
 
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap
@@ -79,7 +78,7 @@ def missing() -> LinearSegmentedColormap:
     return LinearSegmentedColormap.from_list("thermoscope.missing", [BLUE, "#E4E8EC", VERMILION], N=255)
 
 
-def _oklab_to_srgb(L: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+def _oklab_to_srgb(L: Array, a: Array, b: Array) -> Array:
     """OKLab to sRGB in 0..1, clipped to the gamut (Ottosson 2020)."""
     lms = (
         np.stack(

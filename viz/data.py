@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from measured.case import Channel, Test
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 
-Array = NDArray[np.float64]
 LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours
 LATE = "labels: measured minus model, mean of the last fifth"  # of `sensors`
 POINTS = 700  # a line of a page is some 700 pixels wide

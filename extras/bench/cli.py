@@ -1,4 +1,4 @@
-"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+"""The commands of this extra; nothing heavy is loaded until one runs."""
 
 from __future__ import annotations
 
@@ -18,11 +18,22 @@ commands = typer.Typer(name="bench", help="The published test procedure, from re
 def protocol(
     record: Annotated[Path | None, typer.Argument(metavar="RECORD.toml", help="A test's record so far.")] = None,
     json: Json = None,
-) -> None:
+) -> int:
     """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
-    from extras.bench.commands.protocol import protocol as run
+    from extras.bench.commands.protocol import protocol_summary, read_record
+    from extras.bench.measuring import protocol as procedure
+    from thermoscope import InputError
+    from thermoscope.plugin import give, progress
 
-    raise typer.Exit(run(record, json))
+    with progress() as tell:
+        tell("checking the record")
+        result = procedure.protocol(procedure.Record(1.0) if record is None else read_record(record))
+    give(result.document(), json, lambda: protocol_summary(result))
+    if result.refused:
+        first = result.refused[0]
+        more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
+        raise InputError(first.words.split(";")[0], f"{record} [{first.name}]", first.words.partition("; ")[2] + more)
+    return 0 if record is None or result.complete else 1
 
 
 @commands.command()
@@ -30,19 +41,39 @@ def curves(
     case: Case,
     resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
     json: Json = None,
-) -> None:
+) -> int:
     """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
-    from extras.bench.commands.curves import curves as run
+    from extras.bench.commands.curves import curves_summary
+    from extras.bench.measuring.curves import curves as found_in
+    from thermoscope.plugin import give, open_case, progress
 
-    raise typer.Exit(run(case, resolution, json))
+    with progress() as tell:
+        folder = open_case(case, tell)
+        tell("fitting the warming curves")
+        result = found_in(folder.case, resolution)
+    document = result.document()
+    give(document, json, lambda: curves_summary(document))
+    return 0 if result.agrees else 1
 
 
 @commands.command()
-def bases(case: Case, json: Json = None) -> None:
+def bases(case: Case, json: Json = None) -> int:
     """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
-    from extras.bench.commands.bases import bases as run
+    from extras.bench.commands.bases import bases_summary
+    from thermoscope.plugin import give, open_case, progress, which_base
 
-    raise typer.Exit(run(case, json))
+    with progress() as tell:
+        folder = open_case(case, tell)
+        hypotheses = which_base(folder.case, progress=tell)
+    wrong = [h for h in hypotheses if h.declared and h.excluded]
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "wrong": [h.test for h in wrong],
+        "hypotheses": [h.document() for h in hypotheses],
+    }
+    give(document, json, lambda: bases_summary(document))
+    return 1 if wrong else 0
 
 
 @commands.command()
@@ -51,11 +82,18 @@ def screen(
     design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
     out: Out = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
-    from extras.bench.commands.screen import screen as run
+    from extras.bench.commands.screen import plots, screening_document, screening_summary
+    from thermoscope.plugin import give, notes, progress
 
-    raise typer.Exit(run(machine, design, json, out))
+    with progress() as tell:
+        tell(f"screening {machine}")
+        document = screening_document(machine, design)
+    give(document, json, lambda: screening_summary(document))
+    if out is not None:
+        notes(f"written: {path}" for path in plots(document, out))
+    return 0
 
 
 @commands.command("two-paths")
@@ -64,11 +102,20 @@ def two_paths(
     winding: Annotated[str, typer.Option(help="Place of the winding's mean.")] = "winding.copper",
     machine: Annotated[str, typer.Option(help="Place of the machine's inside.")] = "magnets",
     json: Json = None,
-) -> None:
+) -> int:
     """The network of a case as two resistances: machine to ambient, winding to machine."""
-    from extras.bench.commands.screen import two_paths as run
+    from extras.bench.commands.screen import paths
+    from extras.bench.reduction.two_paths import of_test
+    from thermoscope import InputError
+    from thermoscope.plugin import give, open_case, progress
 
-    raise typer.Exit(run(case, winding, machine, json))
+    if winding == machine:
+        raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
+    with progress() as tell:
+        folder = open_case(case, tell)
+        by_test = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
+    give({"case": folder.case.name, "tests": by_test}, json, lambda: paths(by_test))
+    return 0
 
 
 @commands.command()
@@ -76,8 +123,19 @@ def carry(
     source: Case,
     targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
     json: Json = None,
-) -> None:
+) -> int:
     """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
-    from extras.bench.commands.screen import carry as run
+    from extras.bench.commands.screen import show_transfer
+    from extras.bench.reduction.transfer import transferred
+    from thermoscope.plugin import give, open_case, progress
 
-    raise typer.Exit(run(source, targets, json))
+    with progress() as tell:
+        calibrated = open_case(source, tell)
+        transfers = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
+    document = {
+        "source": calibrated.case.name,
+        "revision": calibrated.case.model.revision,
+        "targets": [one.document() for one in transfers],
+    }
+    give(document, json, lambda: show_transfer(document))
+    return 0 if all(one.agrees for one in transfers) else 1

@@ -1,16 +1,15 @@
-"""C99 from a model: fixed code (runtime/), the model's numbers, and a header that says what they are good for."""
+"""C99 from a model: fixed code (runtime/), the numbers, and the heading of every export: what the model is good for."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from extras.export.flat import Flat, flat
-from extras.export.heading import heading
-from extras.export.model import Model
+from extras.export.model import Model, Output, Signal
 from thermoscope.plugin import (
     COLD,
     CONVERGED_K,
@@ -31,6 +30,7 @@ from thermoscope.plugin import (
 
 RUNTIME = Path(__file__).resolve().parent / "runtime"
 SOURCES = ("thermal_network.h", "thermal_network.c")
+REAL = 8  # bytes
 WIDE = 8  # numbers on a line
 EMPTY = ["0"] * 32  # C99 has no empty arrays, and compilers look ahead
 
@@ -148,3 +148,47 @@ def _matrix(name: str, values: np.ndarray, of: str = "thermal_real") -> str:
     table = values if values.size else np.zeros((1, values.shape[1]), values.dtype)
     rows = ",\n".join("{" + _broken([f"{v:.17g}" for v in row]) + "}" for row in table)
     return f"static const {of} {name}[][{table.shape[1]}] = {{{rows}}};"
+
+
+def heading(model: Model) -> list[str]:
+    """Inputs, outputs, units, limits, validity range, proven error and cost, in lines of text."""
+    effects = ", ".join(model.effects) or "none"
+    return [
+        f"Thermal network '{model.name}', revision {model.revision}, effects added: {effects}.",
+        "",
+        "Inputs u, in this order (range: what the tests of the case covered; beyond it nothing is proven):",
+        *(f"  {i}: {_input(s)}" for i, s in enumerate(model.signals)),
+        "",
+        "Outputs y (degC), in this order:",
+        *(f"  {i}: {_output(o)}" for i, o in enumerate(model.outputs)),
+        "",
+        *_cost(model),
+    ]
+
+
+def _input(s: Signal) -> str:
+    limits = "range not known" if s.low is None or s.high is None else f"{s.low:.5g} to {s.high:.5g}"
+    return f"{s.name} ({s.unit}), {limits}"
+
+
+def _output(o: Output) -> str:
+    limit = "" if o.limit is None else f", limit {o.limit:g} degC"
+    error = "" if o.error_K is None else f", against measurements {o.error_K:.2f} K rms ({o.role} tests)"
+    return f"{o.name}{limit}{error}"
+
+
+def state_bytes(model: Model) -> int:
+    """Of thermal_state: what has to live from step to step."""
+    return REAL * (len(model.states) + len(model.signals) + 2)
+
+
+def step_operations(model: Model) -> int:
+    """Multiplications of one step: an LU, four solves, three right-hand sides."""
+    n = len(model.states)
+    return n**3 // 3 + 7 * n * (n + len(model.boundaries)) + 6 * model.terms.at.size
+
+
+def _cost(model: Model) -> Iterator[str]:
+    yield f"State: {state_bytes(model)} bytes. One inner step: about {step_operations(model)} multiplications;"
+    yield "a call takes one, more where inputs or temperatures turn fast (error of a step: "
+    yield f"{model.tolerance[0]:g} K and {model.tolerance[1]:g} of the range of temperatures)."

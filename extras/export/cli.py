@@ -1,4 +1,4 @@
-"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+"""The command of this extra; nothing heavy is loaded until it runs."""
 
 from __future__ import annotations
 
@@ -23,8 +23,15 @@ def export(
     fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
-    from extras.export.commands.export import export as run
+    from extras.export.commands.export import MODELS, WORKBOOKS, check_form, export_model, export_workbook
+    from thermoscope.plugin import plugins, read_limits
 
-    raise typer.Exit(run(case, out, form, tuple(limit or ()), fmi, json, tuple(sensor or ())))
+    further = {} if form in (*WORKBOOKS, *MODELS) else plugins("exports")
+    check_form(form, fmi, sensor or (), further)
+    if form in further:
+        return int(further[form](case, out, read_limits(limit or ()), tuple(sensor or ()), json))
+    if form in MODELS:
+        return export_model(case, out, form, read_limits(limit or ()), fmi, json)
+    return export_workbook(case, out, form, json)

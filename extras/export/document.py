@@ -7,12 +7,26 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from extras.export.heading import heading
+from extras.export.c_code import heading
 from extras.export.model import Model, Output
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum, Tabulated
-from thermoscope.plugin import COLD, END, FILM, FILMS, FIRST_C, HOT, LAST, PLACE, POINT, ROW, STEP_K, STREAM, Terms
+from thermoscope.plugin import (
+    COLD,
+    END,
+    FILM,
+    FILMS,
+    FIRST_C,
+    HOT,
+    LAST,
+    PLACE,
+    POINT,
+    ROW,
+    STEP_K,
+    STREAM,
+    Array,
+    Terms,
+)
 
 KINDS: dict[type, str] = {
     Powered: "power",
@@ -87,12 +101,12 @@ def _law(model: Model, e: int) -> dict[str, Any]:
     return {**out, **_stream(model, e, points)} if code == STREAM else out
 
 
-def _films(points: NDArray[np.float64]) -> dict[str, Any]:
+def _films(points: Array) -> dict[str, Any]:
     films = FIRST_C + STEP_K * np.arange(FILMS)
     return {"x": points[: len(points) // FILMS, 0], "films": films, "y": points[:, 1].reshape(FILMS, -1)}
 
 
-def _stream(model: Model, e: int, points: NDArray[np.float64]) -> dict[str, Any]:
+def _stream(model: Model, e: int, points: Array) -> dict[str, Any]:
     """u = |input|, or `size` without one: at ln(u) - shift over hot + cold; b: see StreamTable; or still air."""
     T = model.terms
     of, size = model.sizes[T.part[e, PLACE] - len(model.factors)]

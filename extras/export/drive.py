@@ -9,15 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.export.c_code import RUNTIME, c_files
 from extras.export.compilers import here, library
 from extras.export.model import Model
 from thermoscope import Network, Record, ThermoscopeError, simulate
-from thermoscope.plugin import initial_state
+from thermoscope.plugin import Array, initial_state
 
-Array = NDArray[np.float64]
 AGREES_K = 0.05  # largest difference to the simulation
 
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum
+from thermoscope.plugin import Array, Ints
 
 POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED = range(5)
 
@@ -21,13 +21,13 @@ class Flat:
     parameters (nf, 2) : (at, exponent), (offset, slope) or (way, 0);  x, y : of all tables
     """
 
-    product_start: NDArray[np.int64]
-    coefficient: NDArray[np.float64]
-    function_start: NDArray[np.int64]
-    function: NDArray[np.int64]
-    parameters: NDArray[np.float64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    product_start: Ints
+    coefficient: Array
+    function_start: Ints
+    function: Ints
+    parameters: Array
+    x: Array
+    y: Array
 
 
 def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
@@ -49,7 +49,7 @@ def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
     )
 
 
-def _starts(parts: Sequence[Sequence]) -> NDArray[np.int64]:
+def _starts(parts: Sequence[Sequence]) -> Ints:
     return np.concatenate([[0], np.cumsum([len(p) for p in parts])]).astype(np.int64)
 
 

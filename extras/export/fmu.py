@@ -13,9 +13,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
-from extras.export.c_code import RUNTIME, c_files
+from extras.export.c_code import RUNTIME, c_files, heading
 from extras.export.compilers import PLATFORMS, Platform, here, library
-from extras.export.heading import heading
 from extras.export.model import Model, Signal
 from thermoscope import MissingDependency
 from thermoscope.plugin import visible, xml_text

@@ -15,8 +15,10 @@ from thermoscope.plugin import LAW_RUNNING as RUNNING
 from thermoscope.plugin import (
     QUANTITIES,
     RUN,
+    Array,
     Assembly,
     Folder,
+    Ints,
     Reference,
     Row,
     Terms,
@@ -32,7 +34,6 @@ from thermoscope.plugin import (
     suggestion,
 )
 
-Array = NDArray[np.float64]
 USUAL_C = 20.0  # where a run starts unless it is told
 WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded
 
@@ -85,7 +86,7 @@ class Model:
     boundaries: tuple[Signal, ...]
     outputs: tuple[Output, ...]
     unit: Array
-    node: NDArray[np.int64]
+    node: Ints
     sizes: tuple[tuple[str | None, float], ...] = ()
     tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
     initial_degC: float = USUAL_C

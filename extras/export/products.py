@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from thermoscope.plugin import Array, Ints
 
 
 @dataclass(frozen=True)
@@ -109,7 +108,7 @@ def _value(f: Function, inputs: Mapping[str, Array]) -> Array:
     return np.asarray((1 - a) * low + a * high)
 
 
-def _cell(u: Array, x: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
+def _cell(u: Array, x: tuple[float, ...]) -> tuple[Ints, Array]:
     grid = np.asarray(x)
     k = np.clip(np.searchsorted(grid, u, side="right") - 1, 0, grid.size - 2)
     return k, np.clip((u - grid[k]) / (grid[k + 1] - grid[k]), 0.0, 1.0)

@@ -9,14 +9,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.export.expansion import Unknown, expanded
 from extras.export.products import Mapped, Product, Sum, Tabulated
 from thermoscope import InputError
-from thermoscope.plugin import FARTHEST, ExponentError, Inputs, Law, within_silence
+from thermoscope.plugin import FARTHEST, Array, ExponentError, Inputs, Law, within_silence
 
-Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]
 TOLERANCE = 2e-4  # of the largest factor: a table adds as little as the parabolas of a simulation miss
 FIRST, FINEST = 17, 4097  # points of a table

@@ -1,4 +1,4 @@
-"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+"""The commands of this extra; nothing heavy is loaded until one runs."""
 
 from __future__ import annotations
 
@@ -22,11 +22,42 @@ def watch(
     like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
     out: Out = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
-    from extras.monitor.commands.watch import watch as run
+    from contextlib import suppress
 
-    raise typer.Exit(run(case, follow, tuple(sensor or ()), like, out, json))
+    from extras.monitor.commands.watch import Session, watch_summary, watched_file
+    from extras.monitor.rows.live_rows import PIPE, TOGETHER, open_stream, table_of, together
+    from extras.monitor.rows.observing import chosen, designed
+    from thermoscope import InputError
+    from thermoscope.plugin import STDOUT, give, load_sheet, open_case, progress, write_whole
+
+    with open_stream(follow) as stream:
+        with progress() as tell:
+            folder = open_case(case, tell)
+            sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
+            name, table, lines = table_of(stream, follow, sheets, folder.case.model.network, like)
+            channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+            here = [c for n, c in channels.items() if n in table.sensors()]
+            sensors = chosen(here, sensor or (), follow)
+            withheld = [c for c in here if c not in sensors]
+            session = Session(folder, designed(folder, tell), sensors, withheld, json != STDOUT)
+        with suppress(KeyboardInterrupt):
+            for part in together(lines, 1 if follow == PIPE else TOGETHER):
+                session.take(table.rows(part))
+    if session.one is None:
+        raise InputError("holds no row", follow, "rows of numbers under the header")
+    file = write_whole(watched_file(folder, follow, out), session.csv())
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "source": follow,
+        "like": name,
+        **session.document(),
+        "file": str(file),
+    }
+    give(document, json, lambda: watch_summary(document))
+    return 0
 
 
 @use_commands.command()
@@ -36,8 +67,12 @@ def fleet(
     like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
-    from extras.monitor.commands.fleet import fleet as run
+    from extras.monitor.commands.fleet import fleet_document, fleet_summary
+    from thermoscope.plugin import give, progress
 
-    raise typer.Exit(run(case, recordings, like, cluster, json))
+    with progress() as tell:
+        document = fleet_document(case, recordings, like, cluster, tell)
+    give(document, json, lambda: fleet_summary(document))
+    return 0

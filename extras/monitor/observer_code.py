@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer import hypotheses as tests_of
 from extras.monitor.observer import sensor_faults as faults
@@ -17,11 +16,10 @@ from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import LONGEST_S, Process
 from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import InputError, MissingDependency, Network
-from thermoscope.plugin import COLDEST, HOTTEST, TEMPER, Channel, MeasuredLoss, Reference, c_comment, plugins
+from thermoscope.plugin import COLDEST, HOTTEST, TEMPER, Array, Channel, MeasuredLoss, Reference, c_comment, plugins
 from thermoscope.plugin import USUAL_DOUBT as USUAL
 from thermoscope.plugin import heat_source as heat
 
-Array = NDArray[np.float64]
 MOST_BYTES = 10_000  # of what has to live from step to step on a controller
 FILES = ("thermal_observer.h", "thermal_observer.c")
 HERE = Path(__file__).resolve().parent / "runtime"

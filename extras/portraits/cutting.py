@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.portraits.body import Body
-from thermoscope.plugin import Wedge
+from thermoscope.plugin import Array, Wedge
 
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SMOOTH = 32.0  # degrees between facets up to which a surface is shaded as a round one
 Plane = tuple[Array, Array]  # a point (m) and the normal of the side that stays
 

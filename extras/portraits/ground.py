@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, maximum_filter
 
 from extras.portraits.shape import Shape
-from thermoscope.plugin import Theme
+from thermoscope.plugin import Array, Theme
 
-Array = NDArray[np.float64]
 PIXELS = 256  # along the longer side of the shadow
 DARK = 0.55  # of the middle of the shadow
 MARGIN = 0.25  # of the machine's size, around the shadow

@@ -12,21 +12,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.portraits.body import Body
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.portrait import framed
 from extras.portraits.shape import Shape
-from thermoscope.plugin import QUARTER, SplitMesh, Wedge, packed_integers, packed_numbers, recalled, store
+from thermoscope.plugin import QUARTER, Array, Ints, SplitMesh, Wedge, packed_integers, packed_numbers, recalled, store
 from thermoscope.plugin import MachineDescription as Machine
 
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 STEP_M = 1e-4  # of places: a fifth of a pixel where a machine of half a metre fills a screen of a thousand
 SHARES = 16  # steps of the mix of two nodes: a fourth of a colour where they differ by five
 STAY = (0.2, 0.35, 0.5, 0.7)  # shares of a body's triangles that may do
@@ -117,7 +114,7 @@ def coarse(body: Body) -> Body:
     return body
 
 
-def _mix(nodes: SplitMesh, part: int, points: Array) -> Index:
+def _mix(nodes: SplitMesh, part: int, points: Array) -> Ints:
     """(n, 3) the two nearest nodes of a part, and the second one's share in SHARES, by the inverse of the distance."""
     from scipy.spatial import cKDTree
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.portraits.shape import Shape, joined
+from thermoscope.plugin import Array, Ints
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 SECTIONS = 120  # of a full turn: a silhouette of 0.2 m then shows no corners at 1280 pixels
 CORNER = 4  # pieces of a rounded corner
 AXIS = 1e-7  # m; nearer to the axis than this is on it
@@ -107,7 +105,7 @@ def _stacked(layers: list[list[Array]], heights: list[float], end: Polygon) -> S
     return Shape(points, np.concatenate([*sides, lid[:, ::-1], lid + total * (len(heights) - 1)]))
 
 
-def filled(outline: Polygon) -> Index:
+def filled(outline: Polygon) -> Ints:
     """Triangles that fill an outline, by the numbers of its corners: outer ring, then holes; anticlockwise."""
     import shapely
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.portraits.portrait import CAPTION, VIEW, Warm, staged
 from thermoscope.plugin import (
@@ -15,6 +14,7 @@ from thermoscope.plugin import (
     QUARTER,
     TITLE,
     WRITERS,
+    Array,
     Pulses,
     Room,
     Sensor,
@@ -25,7 +25,6 @@ from thermoscope.plugin import (
 )
 from thermoscope.plugin import MachineDescription as Machine
 
-Array = NDArray[np.float64]
 RENDER_SIZE = (1080, 720)  # pixels; the film is a smaller copy, which smooths its letters
 
 

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope.plugin import ArcGrid, Part, Prism, Role
 from thermoscope.plugin import MachineDescription as Machine
@@ -16,7 +15,6 @@ from thermoscope.plugin import MachineDescription as Machine
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
 SEGMENTS = 120  # of a full turn
 RAYS = 40  # around the axis along which a part is looked at
 ROUND = 0.02  # share of its volume by which a part may miss a body of revolution: bores, not fins

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, vstack
 
 from extras.portraits.body import Body, Finish
@@ -20,6 +19,7 @@ from thermoscope.plugin import (
     NOTE,
     QUARTER,
     TITLE,
+    Array,
     Role,
     Room,
     SplitMesh,
@@ -37,7 +37,6 @@ from thermoscope.plugin import heat_colours as heat
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 NEAREST = 4  # nodes of the meshed part whose temperatures a point of the picture mixes
 CAPTION = "details are for the eye only: the mesh has none of them"
 VIEW = View(direction=(-1.0, 0.45, 0.85), angle=18.0, margin=1.1)

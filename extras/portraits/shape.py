@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from thermoscope.plugin import Array, Ints
 
 
 @dataclass(frozen=True)
@@ -17,7 +15,7 @@ class Shape:
     """points : (n, 3) m;  triangles : (m, 3), seen from outside they turn anticlockwise"""
 
     points: Array
-    triangles: Index
+    triangles: Ints
 
     @property
     def volume(self) -> float:

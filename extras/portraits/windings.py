@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.portraits.body import Body, Finish
 from extras.portraits.making import extruded, oval, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Part, Role
+from thermoscope.plugin import Array, Part, Role
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
 STEPS = 25  # along one coil
 LOOPS = 3  # of a coil around one tooth that are drawn
 LAYERS = 5  # of a coil around a pole that are drawn

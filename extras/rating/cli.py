@@ -1,4 +1,4 @@
-"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+"""The commands of this extra; nothing heavy is loaded until one runs."""
 
 from __future__ import annotations
 
@@ -30,13 +30,25 @@ def rate(
     start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
     bands: Sure = None,
     json: Json = None,
-) -> None:
+) -> int:
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
-    from extras.rating.commands.rate import rate as run
+    from extras.rating.commands import rate as ratings
+    from extras.rating.request import RatingRequest
+    from thermoscope import InputError
+    from thermoscope.plugin import give, notes, progress, read_limits
 
-    options = tuple(limit or ()), tuple(at or ())
-    loads = tuple(load or ())
-    raise typer.Exit(run(name, *options, losses, voltage, overload, top, loads, cycle, mapped, start, bands, json))
+    options = read_limits(limit or ()), ratings.read_at(at or ()), tuple(load or ())
+    request = RatingRequest(*options, losses, voltage, overload / 100.0, top, cycle, mapped, ratings.read_start(start))
+    if voltage is not None and losses is None:
+        right = "--losses FILE.csv with a column voltage_V"
+        raise InputError("is of a loss map, and none is given", "--voltage", right)
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    with progress() as tell, ratings.once() as messages:
+        document = ratings.rating_document(ratings.case_or_machine(name, tell), request, bands, tell)
+    notes(messages)
+    give(document, json, lambda: ratings.rating_summary(document))
+    return 0
 
 
 @use_commands.command()
@@ -57,13 +69,26 @@ def optimise(
     robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
     out: Out = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
-    from extras.rating.commands.optimise import optimise as run
-    from extras.rating.optimisation.search import Effort
+    from extras.rating.commands.optimise import optimisation_summary, optimised, read_bounds
+    from extras.rating.commands.rate import once, read_at
+    from extras.rating.design.design_problem import DesignRequest
+    from extras.rating.optimisation.search import METHODS, Effort
+    from thermoscope import InputError
+    from thermoscope.plugin import give, notes, read_limits
 
-    options = tuple(limit or ()), torque, tuple(at or ()), tuple(vary or ()), method
-    raise typer.Exit(run(name, *options, Effort(population, generations, seed), cluster, cycle, robust, out, json))
+    if method not in METHODS:
+        raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
+    request = DesignRequest(read_limits(limit or ()), torque, read_at(at or ()), read_bounds(vary or ()), robust, cycle)
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    effort = Effort(population, generations, seed)
+    with once() as messages:
+        document, where = optimised(name, request, method, effort, cluster, out)
+    notes(messages)
+    give(document, json, lambda: optimisation_summary(document, where))
+    return 0
 
 
 @use_commands.command("compare-designs")
@@ -73,8 +98,14 @@ def compare_designs(
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="For all of them.")] = None,
     bands: Sure = None,
     json: Json = None,
-) -> None:
+) -> int:
     """Designs side by side: dimensions that differ, hottest points, continuous ratings, masses, pump and fan power."""
-    from extras.rating.commands.compare_designs import compare_designs as run
+    from extras.rating.commands.compare_designs import compared_designs, designs_summary
+    from extras.rating.commands.rate import once, read_at
+    from thermoscope.plugin import give, notes, read_limits
 
-    raise typer.Exit(run(names, tuple(limit or ()), tuple(at or ()), bands, json))
+    with once() as messages:
+        document = compared_designs(names, read_limits(limit or ()), read_at(at or ()), bands)
+    notes(messages)
+    give(document, json, lambda: designs_summary(document))
+    return 0

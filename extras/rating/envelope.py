@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from extras.rating.operation import Operation
 from extras.rating.points import RUNAWAY_C, S3, S6, Model
 from thermoscope import InputError
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
 DUTIES = ("S1", "S2 60 min", "S2 60 s", "S2 10 s", "S3 40 %", "S6 40 %")

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.rating.envelope import until
 from extras.rating.operation import Operation
 from extras.rating.points import Model
-
-Array = NDArray[np.float64]
+from thermoscope.plugin import Array
 
 
 def holding_times(

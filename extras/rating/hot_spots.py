@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network
-from thermoscope.plugin import Row, Shapes
+from thermoscope.plugin import Array, Ints, Row, Shapes
 
-Array = NDArray[np.float64]
 MEAN = ".mean"  # after the name of a place: its mean instead of its hottest point
 CHUNK = 64  # instants that are looked at together: a part of 10,000 points then takes 5 MB
 
@@ -22,7 +20,7 @@ class HotSpots:
 
     name: str
     limit: float
-    states: NDArray[np.int64]
+    states: Ints
     V: Array
 
     def along(self, z: Array) -> Array:

@@ -11,13 +11,11 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import EDDY, RPM, Linear, MapLoss, Source
+from thermoscope.plugin import EDDY, RPM, Array, Ints, Linear, MapLoss, Source
 from thermoscope.plugin import KEY_UNITS as UNITS
 
-Array = NDArray[np.float64]
 BALANCED = 0.02  # of the input power: what losses and powers may disagree by
 TORQUE, SPEED = "torque_Nm", "speed_rpm"
 
@@ -82,7 +80,7 @@ def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) ->
     return {n: c[columns["voltage_V"] == level] for n, c in columns.items()}
 
 
-def _complete(count: NDArray[np.int64], axes: list[Array], where: str) -> None:
+def _complete(count: Ints, axes: list[Array], where: str) -> None:
     if np.all(count == 1):
         return
     bad = [at for at in product(*(range(a.size) for a in axes)) if count[at] != 1]

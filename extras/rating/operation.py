@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from thermoscope import InputError, Network
-from thermoscope.plugin import AIR, CLOCK, LIQUID, LOADS, Link, Radiation, Role, Scaled, suggestion
+from thermoscope.plugin import AIR, CLOCK, LIQUID, LOADS, Array, Link, Radiation, Role, Scaled, suggestion
 
-Array = NDArray[np.float64]
 ISA = 2.25577e-5, 4.2559  # density over that at sea level: (1 - a h)^b, international standard atmosphere
 STILL, BLOWN = 0.5, 0.8  # h ~ density^n: Nu ~ Ra^(1/4) and Nu ~ Re^0.8
 

@@ -6,14 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.rating.hot_spots import HotSpots
 from extras.rating.operation import Operation
 from thermoscope import Network, Record, ThermoscopeError, simulate, steady
-from thermoscope.plugin import Row, Signals, Stand, initial_state, s3
+from thermoscope.plugin import Array, Row, Signals, Stand, initial_state, s3
 
-Array = NDArray[np.float64]
 TOGETHER, ROUNDS = 2, 40  # periods that run as one record; of these at most
 REPEATS_K = 0.02  # change per period below which a duty repeats itself
 DEPTH = 4  # earlier rounds that Anderson's mixing looks back at

@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.rating.envelope import reached
 from extras.rating.operation import Operation
 from extras.rating.points import REPEATS_K, Model
 from thermoscope import InputError, Record, ThermoscopeError
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 LONGEST_S = 7 * 86400.0  # a week of the same cycle; heavier machines do not settle slower
 
 

@@ -1,4 +1,4 @@
-"""What the command line takes from this extra; nothing heavy is loaded until a command runs."""
+"""The command of this extra; nothing heavy is loaded until it runs."""
 
 from __future__ import annotations
 
@@ -16,8 +16,19 @@ def serve(
     case: Case,
     host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
-) -> None:
+) -> int:
     """The workbench in the browser: the machine, its sensors, what is missing, add it and see the error fall."""
-    from extras.workbench.commands.serve import serve as run
+    import os
 
-    raise typer.Exit(run(case, host, port))
+    from extras.workbench.access_control import AccessControl
+    from extras.workbench.jobs import prepare
+    from extras.workbench.serve import application, serve_until_stopped, token_for
+    from thermoscope.plugin import open_case_for_writing, progress, say
+
+    prepare()  # loads packages while the case is opened
+    access = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
+    with progress() as tell:
+        folder = open_case_for_writing(case, tell)
+    app = application(folder, access)
+    serve_until_stopped(app, access, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
+    return 0

@@ -23,39 +23,22 @@ def hashes(page: Path) -> str:
 
 
 @cache
+def _page_policy(*further: str) -> str:
+    """Of a page that runs no script but the viewer's."""
+    from thermoscope.plugin import script
+
+    first = ["default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'"]
+    return "; ".join([*first, "base-uri 'none'", "form-action 'none'", *further])
+
+
 def report_policy() -> str:
-    """Of the report: no script but the viewer's, which runs in a frame of its own."""
-    from thermoscope.plugin import script
-
-    return "; ".join(
-        [
-            "default-src 'none'",
-            f"script-src {_named(script().encode())}",
-            "style-src 'unsafe-inline'",
-            "img-src 'self' data:",
-            "font-src data:",
-            "base-uri 'none'",
-            "form-action 'none'",
-            "frame-ancestors 'none'",
-        ]
-    )
+    """Of the report, which runs the viewer in a frame of its own."""
+    return _page_policy("img-src 'self' data:", "font-src data:", "frame-ancestors 'none'")
 
 
-@cache
 def viewer_policy() -> str:
-    """Of the viewer: its one script, inside a page of ours."""
-    from thermoscope.plugin import script
-
-    return "; ".join(
-        [
-            "default-src 'none'",
-            f"script-src {_named(script().encode())}",
-            "style-src 'unsafe-inline'",
-            "base-uri 'none'",
-            "form-action 'none'",
-            "frame-ancestors 'self'",
-        ]
-    )
+    """Of the viewer, inside a page of ours."""
+    return _page_policy("frame-ancestors 'self'")
 
 
 def policy(page: Path, host: str) -> str:

@@ -73,8 +73,8 @@ async def _prepared(opened: Bench) -> None:
         await opened.compared(comparing_job)
 
 
-def serve(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:
-    """Serve until interrupted; `ready` gets the address to open once it can be opened."""
+def serve_until_stopped(app: web.Application, access: AccessControl, port: int, ready: Callable[[str], None]) -> None:
+    """Serve until Ctrl-C; `ready` gets the address to open once it can be opened."""
     asyncio.run(_serve(app, access, port, ready))
 
 

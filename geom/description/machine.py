@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from geom.description.geometry import NO_FEATURES, Features, Geometry
@@ -86,3 +87,8 @@ class Machine:
         x0, y0, x1, y1 = zip(*(profile.bounds for part in self.parts for profile, _, _ in part.prisms))
         spans = [part.span for part in self.parts]
         return max(z1 for _, z1 in spans) - min(z0 for z0, _ in spans), max(x1) - min(x0), max(y1) - min(y0)
+
+
+def step_sidecar(path: Path | str) -> Path:
+    """Where materials and other sections of a machine in a STEP file stand."""
+    return Path(f"{path}.toml")

@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from geom.description.identity import Identity, identity
 from geom.description.profile import Profile
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role, identity
 
 Prism = tuple[Profile, float, float]
 

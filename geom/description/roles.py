@@ -1,8 +1,11 @@
-"""What a part, a fluid or a boundary is: its role, said by whoever made the model, never read out of its name."""
+"""What a part, a node, a fluid or a boundary is: its role, never read out of its name, and how that is known."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
+
+DECLARED = "declared"
 
 
 class Role(StrEnum):
@@ -41,3 +44,23 @@ class Role(StrEnum):
 
 
 _TURNING = frozenset({Role.ROTOR, Role.CAGE, Role.MAGNET, Role.SHAFT, Role.COMMUTATOR, Role.FAN})
+
+
+@dataclass(frozen=True)
+class Identity:
+    """role, turns : None where nobody says and nothing tells
+    why : "declared", or the evidence of a guess in words
+    """
+
+    role: Role | None = None
+    turns: bool | None = None
+    why: str = DECLARED
+
+    @property
+    def declared(self) -> bool:
+        return self.why == DECLARED
+
+
+def identity(role: Role | None, turns: bool | None = None) -> Identity:
+    """As declared: what turns follows from the role unless it is said."""
+    return Identity(role, role.turns if turns is None and role is not None else turns)

@@ -6,15 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.meshing.partition import AMBIENT, Partition, partition
 from geom.meshing.voids import filled
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -57,14 +54,14 @@ def part_table(machine: Machine, segments: int = 180) -> tuple[PartRow, ...]:
 def common_areas(cut: Partition) -> dict[tuple[str, str], float]:
     """Area (m2) between every two of the parts, fluids and "ambient" that touch, each pair once."""
     names = [*(part.name for part in cut.parts), "ambient"]
-    areas: Floats = np.zeros((len(names), len(names)))
+    areas: Array = np.zeros((len(names), len(names)))
     for low, high, area in (*_floors(cut), *_walls(cut)):
         np.add.at(areas, (low, high), area)
     areas = np.triu(areas + areas.T, 1)
     return {(names[i], names[j]): float(areas[i, j]) for i, j in np.argwhere(areas > 0.0)}
 
 
-def _floors(cut: Partition) -> Iterator[tuple[Ints, Ints, Floats]]:
+def _floors(cut: Partition) -> Iterator[tuple[Ints, Ints, Array]]:
     """Labels under and over each level, and the areas of the faces there."""
     outside = np.full((len(cut.faces), 1), AMBIENT)
     stack = np.hstack([outside, cut.labels, outside])
@@ -72,7 +69,7 @@ def _floors(cut: Partition) -> Iterator[tuple[Ints, Ints, Floats]]:
         yield low, high, cut.area()
 
 
-def _walls(cut: Partition) -> Iterator[tuple[Ints, Ints, Floats]]:
+def _walls(cut: Partition) -> Iterator[tuple[Ints, Ints, Array]]:
     """Labels on both sides of each border in each slab, and the areas of the walls."""
     beside = np.vstack([cut.labels, np.full(cut.labels.shape[1], AMBIENT)])
     for slab, height in enumerate(np.diff(cut.levels)):

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from geom.arrays import Ints
 from geom.meshing.partition import AMBIENT, Partition
-
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geom.arrays import Array, Ints
+
 _STRAIGHT = 1e-4  # rad; a border that turns by less goes straight on
 _NUDGE = 1e-6  # of the length of a straight border: far below any tolerance, far above rounding
 
 
-def interior_points(face: shapely.Polygon, size: float) -> Floats:
+def interior_points(face: shapely.Polygon, size: float) -> Array:
     """A triangular grid of points (n, 2) inside the face, aligned with its longer side and centred in it.
 
     size : distance between points (m); none lies nearer to the border than 0.45 size
@@ -34,7 +33,7 @@ def interior_points(face: shapely.Polygon, size: float) -> Floats:
     return grid[shapely.contains_xy(room, grid)]
 
 
-def nudged(ring: Floats) -> Floats:
+def nudged(ring: Array) -> Array:
     """The ring (n, 2), face on its left, with points on straight stretches moved a hair into the face.
 
     Three points exactly in a line come out of a Delaunay triangulation as a triangle now and then. On a
@@ -52,7 +51,7 @@ def nudged(ring: Floats) -> Floats:
     return points
 
 
-def triangulate_face(points: Floats, border: Ints, face: shapely.Polygon) -> Ints:
+def triangulate_face(points: Array, border: Ints, face: shapely.Polygon) -> Ints:
     """Triangles (n, 3), anticlockwise, of the face whose border edges (m, 2) all appear.
 
     points : (n, 2) corners first, interior points after, no three on the border in a line.
@@ -68,7 +67,7 @@ def triangulate_face(points: Floats, border: Ints, face: shapely.Polygon) -> Int
     return _plain(points, face)
 
 
-def _plain(points: Floats, face: shapely.Polygon) -> Ints:
+def _plain(points: Array, face: shapely.Polygon) -> Ints:
     """Constrained Delaunay triangles between border points only (GEOS, robust)."""
     corners = shapely.get_coordinates(shapely.get_parts(shapely.constrained_delaunay_triangles(face)))
     tree = shapely.STRtree(shapely.points(points))
@@ -76,18 +75,18 @@ def _plain(points: Floats, face: shapely.Polygon) -> Ints:
     return _oriented(points, number)
 
 
-def _oriented(points: Floats, triangles: Ints) -> Ints:
+def _oriented(points: Array, triangles: Ints) -> Ints:
     flip = _doubled_area(points, triangles) < 0
     triangles[flip] = triangles[flip][:, ::-1]
     return triangles
 
 
-def _doubled_area(points: Floats, triangles: Ints) -> Floats:
+def _doubled_area(points: Array, triangles: Ints) -> Array:
     a, b, c = (points[triangles[:, i]] for i in range(3))
     return _cross(b - a, c - a)
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
+def _cross(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
@@ -98,7 +97,7 @@ def _missing(triangles: Ints, border: Ints) -> Ints:
     return border[~np.isin(np.sort(border, axis=1) @ [scale, 1], have)]
 
 
-def _force_edge(points: Floats, triangles: Ints, a: int, b: int) -> Ints:
+def _force_edge(points: Array, triangles: Ints, a: int, b: int) -> Ints:
     """Retriangulate the triangles that the segment a-b crosses (Anglada 1997)."""
     start, end = points[a], points[b]
     sides = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
@@ -125,7 +124,7 @@ def _chain(corners: Ints) -> list[int]:
     return [int(c) for c, before in zip(corners, [-1, *corners[:-1]]) if c != before]
 
 
-def _fill(points: Floats, chain: list[int], a: int, b: int) -> list[tuple[int, int, int]]:
+def _fill(points: Array, chain: list[int], a: int, b: int) -> list[tuple[int, int, int]]:
     """Delaunay triangles of the pseudo-polygon left of a-b whose other corners are `chain`, from a to b."""
     if not chain:
         return []
@@ -137,6 +136,6 @@ def _fill(points: Floats, chain: list[int], a: int, b: int) -> list[tuple[int, i
     return [*_fill(points, chain[:best], a, c), *_fill(points, chain[best + 1 :], c, b), (a, b, c)]
 
 
-def _in_circle(points: Floats, a: int, b: int, c: int, d: int) -> bool:
+def _in_circle(points: Array, a: int, b: int, c: int, d: int) -> bool:
     rows = points[[a, b, c]] - points[d]
     return bool(np.linalg.det(np.column_stack([rows, (rows**2).sum(axis=1)])) > 0)

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from geom.description.part import Part
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Block, Column
@@ -16,8 +16,6 @@ from geom.meshing.mesh import Contact, NamedMesh, Patch
 from geom.meshing.partition import AMBIENT, Partition
 from geom.meshing.triangulate import Triangulation
 
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 FaceName = Callable[[str, str], str]
 Walls = list[tuple[Ints, Ints]]  # triangles (n, 3) and the labels (n, 2) on their two sides
 
@@ -46,7 +44,7 @@ def extrude(
     return _assembled(flat.points, z, tets, label, walls, cut.parts, face_name)
 
 
-def _heights(z0: float, z1: float, axial_size: float) -> Floats:
+def _heights(z0: float, z1: float, axial_size: float) -> Array:
     pieces = max(1, int(np.ceil((z1 - z0) / axial_size - 1e-6)))
     return np.round(np.linspace(z0, z1, pieces + 1), 9)
 
@@ -79,7 +77,7 @@ def _floors(column: Column, triangles: Ints, ranks: Sequence[Ints]) -> Walls:
 
 
 def _sides(
-    cut: Partition, tree: shapely.STRtree, block: Block, points: Floats, base: tuple[Ints, Ints], rank: Ints
+    cut: Partition, tree: shapely.STRtree, block: Block, points: Array, base: tuple[Ints, Ints], rank: Ints
 ) -> Walls:
     """Vertical faces of a block: towards fluids, and between its parts."""
     triangles, labels = base
@@ -102,7 +100,7 @@ def _sides(
     return walls
 
 
-def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Floats, inside: Floats) -> Ints:
+def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Array, inside: Array) -> Ints:
     """Labels just across each segment (n, 2, 2) from the points inside (n, 2)."""
     along = ends[:, 1] - ends[:, 0]
     normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
@@ -115,7 +113,7 @@ def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Float
 
 
 def _assembled(
-    plane: Floats, z: Floats, tets: Ints, label: Ints, walls: Walls, parts: Sequence[Part], face_name: FaceName
+    plane: Array, z: Array, tets: Ints, label: Ints, walls: Walls, parts: Sequence[Part], face_name: FaceName
 ) -> NamedMesh:
     nodes, corners = np.unique(tets, return_inverse=True)
     points = np.column_stack([plane[nodes % len(plane)], z[nodes // len(plane)]])
@@ -127,7 +125,7 @@ def _assembled(
     return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))
 
 
-def _positive(points: Floats, tets: Ints) -> Ints:
+def _positive(points: Array, tets: Ints) -> Ints:
     a, b, c, d = (points[tets[:, i]] for i in range(4))
     negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
     tets[negative] = tets[negative][:, [1, 0, 2, 3]]

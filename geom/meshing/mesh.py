@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
-from geom.description.identity import Identity
+from geom.arrays import Array, Ints
+from geom.description.roles import Identity
 
 
 @dataclass(frozen=True)
@@ -21,7 +19,7 @@ class Patch:
 
     part: str
     fluid: str
-    facets: NDArray[np.int64]
+    facets: Ints
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ class Contact:
 
     a: str
     b: str
-    facets: NDArray[np.int64]
+    facets: Ints
 
 
 @dataclass(frozen=True)
@@ -46,9 +44,9 @@ class NamedMesh:
     identities : what the parts are, where it is declared
     """
 
-    points: NDArray[np.float64]
-    tets: NDArray[np.int64]
-    region: NDArray[np.int64]
+    points: Array
+    tets: Ints
+    region: Ints
     parts: tuple[str, ...]
     patches: Mapping[str, Patch] = field(default_factory=dict)
     contacts: Mapping[str, Contact] = field(default_factory=dict)

@@ -13,8 +13,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geom.arrays import Array, Ints
+
 GRID = 1e-7  # m; coordinates are snapped to this
 NEAR = 2e-6  # m; points and lines nearer than this are one, far below any tolerance of a motor
 
@@ -27,14 +27,14 @@ def noded(lines: list[shapely.Geometry]) -> NDArray[np.object_]:
     return shapely.linestrings(points[edges])
 
 
-def _segments(lines: shapely.Geometry) -> tuple[Floats, Ints]:
+def _segments(lines: shapely.Geometry) -> tuple[Array, Ints]:
     xy, line = shapely.get_coordinates(shapely.get_parts(lines), return_index=True)
     keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
     follows = line[1:] == line[:-1]
     return keys * GRID, np.column_stack([number[:-1][follows], number[1:][follows]])
 
 
-def _merged_points(points: Floats) -> Ints:
+def _merged_points(points: Array) -> Ints:
     """For each point the number of the point that stands for all those near it."""
     pairs = KDTree(points).query_pairs(NEAR, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
@@ -47,7 +47,7 @@ def _distinct(edges: Ints) -> Ints:
     return edges[edges[:, 0] != edges[:, 1]]
 
 
-def _split(points: Floats, edges: Ints) -> Ints:
+def _split(points: Array, edges: Ints) -> Ints:
     """Edges cut at every point that lies on them to within NEAR."""
     vertices = np.unique(edges)
     tree = shapely.STRtree(shapely.linestrings(points[edges]))

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Profile
 from geom.errors import InputError
@@ -30,12 +31,12 @@ class Partition:
     parts : solids and fluids in the order of the labels
     """
 
-    levels: NDArray[np.float64]
+    levels: Array
     faces: NDArray[np.object_]
-    labels: NDArray[np.int64]
-    left: NDArray[np.int64]
-    right: NDArray[np.int64]
-    length: NDArray[np.float64]
+    labels: Ints
+    left: Ints
+    right: Ints
+    length: Array
     parts: tuple[Part, ...]
 
     @property
@@ -44,7 +45,7 @@ class Partition:
         is_solid = np.array([part.solid for part in self.parts] + [False])
         return is_solid[self.labels]
 
-    def area(self) -> NDArray[np.float64]:
+    def area(self) -> Array:
         return shapely.area(self.faces)
 
 
@@ -63,7 +64,7 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
 
 
-def axial_levels(parts: Sequence[Part]) -> NDArray[np.float64]:
+def axial_levels(parts: Sequence[Part]) -> Array:
     """Sorted distinct end planes of all prisms (m)."""
     return np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
 
@@ -80,8 +81,8 @@ def _label(
     profiles: list[Profile],
     polygons: NDArray[np.object_],
     faces: NDArray[np.object_],
-    levels: NDArray[np.float64],
-) -> NDArray[np.int64]:
+    levels: Array,
+) -> Ints:
     inside = shapely.STRtree(shapely.point_on_surface(faces))
     which, members = inside.query(polygons, predicate="contains")
     faces_of = {profile: members[which == i] for i, profile in enumerate(profiles)}
@@ -97,7 +98,7 @@ def _label(
     return labels
 
 
-def _refuse_overlap(parts: Sequence[Part], index: int, block: NDArray[np.int64], faces: NDArray[np.object_]) -> None:
+def _refuse_overlap(parts: Sequence[Part], index: int, block: Ints, faces: NDArray[np.object_]) -> None:
     solid = block != AMBIENT
     if not solid.any() or shapely.area(faces)[solid.any(axis=1)].sum() < _OVERLAP:
         return
@@ -105,7 +106,7 @@ def _refuse_overlap(parts: Sequence[Part], index: int, block: NDArray[np.int64],
     raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
 
 
-def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def half_edges(faces: NDArray[np.object_]) -> tuple[Array, Ints]:
     """Points (n, 2), and (3, m) start, end (point numbers) and face of every directed border edge, face on its left."""
     rings, owner = shapely.get_rings(faces, return_index=True)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
@@ -114,7 +115,7 @@ def half_edges(faces: NDArray[np.object_]) -> tuple[NDArray[np.float64], NDArray
     return keys * GRID, np.array([number[:-1][follows], number[1:][follows], owner[ring[:-1][follows]]])
 
 
-def _neighbours(faces: NDArray[np.object_]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+def _neighbours(faces: NDArray[np.object_]) -> tuple[Ints, Ints, Array]:
     """Pairs of faces with a common edge, -1 is the plane beyond the box; and the length of that edge (m)."""
     points, (start, end, face) = half_edges(faces)
     forward = start < end

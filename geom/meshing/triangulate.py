@@ -13,14 +13,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Column
 from geom.meshing.delaunay import interior_points, nudged, triangulate_face
 from geom.meshing.noding import GRID
 from geom.meshing.partition import half_edges
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 _SLENDER = 15.0  # perimeter^2 / (4 area) beyond which a face is a layer: one element across is enough
 
 
@@ -31,7 +30,7 @@ class Triangulation:
     Columns over one another may be cut differently; beside one another they share the points of their border.
     """
 
-    points: Floats
+    points: Array
     triangles: tuple[Ints, ...]
 
 
@@ -56,13 +55,13 @@ def triangulate(columns: Sequence[Column], size: float, across: float = 2) -> Tr
     return Triangulation(points, tuple(blocks))
 
 
-def _sizes(faces: NDArray[np.object_], size: float, across: float) -> Floats:
+def _sizes(faces: NDArray[np.object_], size: float, across: float) -> Array:
     area, perimeter = shapely.area(faces), shapely.length(faces)
     width = 1.3 * 2 * area / perimeter
     return np.where(perimeter**2 / (4 * area) < _SLENDER, np.minimum(size, width / across), size)
 
 
-def _divided(points: Floats, edges: Ints, size: Floats) -> tuple[Floats, list[Ints]]:
+def _divided(points: Array, edges: Ints, size: Array) -> tuple[Array, list[Ints]]:
     """All points after dividing each edge evenly, and the new point numbers along each edge."""
     start, end = points[edges[:, 0]], points[edges[:, 1]]
     pieces = np.maximum(1, np.ceil(np.linalg.norm(end - start, axis=1) / size - 0.2)).astype(int)
@@ -73,7 +72,7 @@ def _divided(points: Floats, edges: Ints, size: Floats) -> tuple[Floats, list[In
     return np.vstack([points, start[owner] + share[:, None] * (end - start)[owner]]), inner
 
 
-def _borders(faces: NDArray[np.object_], points: Floats, edges: Ints, inner: list[Ints]) -> Iterable[list[Ints]]:
+def _borders(faces: NDArray[np.object_], points: Array, edges: Ints, inner: list[Ints]) -> Iterable[list[Ints]]:
     """For each face its rings as point numbers, division points included."""
     number = {key: i for i, key in enumerate(map(tuple, np.round(points / GRID).astype(np.int64).tolist()))}
     along = {(a, b): inner[i] for i, (a, b) in enumerate(edges.tolist())}
@@ -87,7 +86,7 @@ def _borders(faces: NDArray[np.object_], points: Floats, edges: Ints, inner: lis
         yield rings
 
 
-def _mesh_face(points: Floats, face: shapely.Polygon, rings: list[Ints], size: float) -> tuple[Ints, Floats]:
+def _mesh_face(points: Array, face: shapely.Polygon, rings: list[Ints], size: float) -> tuple[Ints, Array]:
     """Triangles of one face in global point numbers, and the points with those inside the face added."""
     corners, interior = np.unique(np.concatenate(rings)), interior_points(face, size)
     outline = [nudged(points[ring]) for ring in rings]

@@ -13,11 +13,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from geom.arrays import Array, Ints
 from geom.description.profile import Loop, Profile, edges, loop_area
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Ids = NDArray[np.int64]
 TOLERANCE = 1e-10  # m; points nearer than this are one, as in CAD files: above rounding at 10 m, below any gap
 
 
@@ -29,19 +28,19 @@ class Curves:
     straight edge.  Arcs run anticlockwise and straight edges up, or right, so that edges on one line agree.
     """
 
-    start: Floats
-    end: Floats
-    centre: Floats
-    radius: Floats
-    angle: Floats
-    sweep: Floats
+    start: Array
+    end: Array
+    centre: Array
+    radius: Array
+    angle: Array
+    sweep: Array
 
     @property
     def curved(self) -> Flags:
         return self.sweep > 0.0
 
     @property
-    def boxes(self) -> Floats:
+    def boxes(self) -> Array:
         """(n, 4) bounds (m), a little wider than the curves."""
         low, high = np.minimum(self.start, self.end), np.maximum(self.start, self.end)
         for quarter in range(4):
@@ -51,26 +50,26 @@ class Curves:
             high = np.where((passes & self.curved)[:, None], np.maximum(high, far), high)
         return np.hstack([low - TOLERANCE, high + TOLERANCE])
 
-    def place(self, which: Ids, points: Floats) -> Floats:
+    def place(self, which: Ints, points: Array) -> Array:
         """How far along its curve (0 to 1) each point lies; nan where it is not on it."""
         along, off = np.where(self.curved[which], self._on_arc(which, points), self._on_line(which, points))
         length = np.where(self.curved, self.radius * self.sweep, np.linalg.norm(self.end - self.start, axis=1))[which]
         inside = (along > -TOLERANCE) & (along < length + TOLERANCE)
         return np.where((np.abs(off) < TOLERANCE) & inside, along / length, np.nan)
 
-    def at(self, which: Ids, place: Floats) -> Floats:
+    def at(self, which: Ints, place: Array) -> Array:
         """(n, 2) points there."""
         angle = self.angle[which] + place * self.sweep[which]
         round_ = self.centre[which] + self.radius[which, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         straight = self.start[which] + place[:, None] * (self.end - self.start)[which]
         return np.where(self.curved[which, None], round_, straight)
 
-    def _on_line(self, which: Ids, points: Floats) -> Floats:
+    def _on_line(self, which: Ints, points: Array) -> Array:
         way, away = (self.end - self.start)[which], points - self.start[which]
         length = np.linalg.norm(way, axis=1)
         return np.stack([(way * away).sum(axis=1), way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0]]) / length
 
-    def _on_arc(self, which: Ids, points: Floats) -> Floats:
+    def _on_arc(self, which: Ints, points: Array) -> Array:
         x, y = (points - self.centre[which]).T
         radius, half = self.radius[which], self.sweep[which] / 2
         angle = np.arctan2(y, x) - self.angle[which] - half
@@ -85,11 +84,11 @@ class Arrangement:
     left, right : (m, k) whether profile k covers that side of it;  corners : (n, k) whether a point is one of its own
     """
 
-    points: Floats
-    pieces: Ids
-    centre: Floats
-    radius: Floats
-    sweep: Floats
+    points: Array
+    pieces: Ints
+    centre: Array
+    radius: Array
+    sweep: Array
     left: Flags
     right: Flags
     corners: Flags
@@ -118,7 +117,7 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     return Arrangement(points, pieces[first], *at, left | within, right | within, corners)
 
 
-def covers(loops: Iterable[Loop], points: Floats) -> Flags:
+def covers(loops: Iterable[Loop], points: Array) -> Flags:
     """(n,) whether the points (n, 2) (m) lie inside the loops (even-odd); on an edge either may be said.
 
     A ray crosses the chords; a point between an arc and its chord changes sides once more. A point on a chord is taken
@@ -139,7 +138,7 @@ def covers(loops: Iterable[Loop], points: Floats) -> Flags:
     return inside
 
 
-def _curves(profiles: Sequence[Profile]) -> tuple[Curves, Ids, Flags]:
+def _curves(profiles: Sequence[Profile]) -> tuple[Curves, Ints, Flags]:
     """All edges; the profile of each, and whether it has the profile on its left."""
     rows, owner, inside_left = [], [], []
     for k, profile in enumerate(profiles):
@@ -168,7 +167,7 @@ def _backward(row: tuple[float, ...]) -> tuple[float, ...]:
     return x1, y1, x0, y0, x, y, radius, start + sweep, -sweep
 
 
-def _points(curves: Curves) -> tuple[Floats, Ids]:
+def _points(curves: Curves) -> tuple[Array, Ints]:
     """Ends and crossings, nearly equal ones made one; which point every start, then every end, is."""
     crossings = _crossings(curves)
     loose = np.concatenate([curves.start, curves.end, crossings])
@@ -177,14 +176,14 @@ def _points(curves: Curves) -> tuple[Floats, Ids]:
     return loose[first], which[: 2 * len(curves.start)]
 
 
-def _merged(points: Floats) -> Ids:
+def _merged(points: Array) -> Ints:
     """A number for each point, the same for points that are one."""
     close = KDTree(points).query_pairs(TOLERANCE, output_type="ndarray")
     graph = coo_matrix((np.ones(len(close)), tuple(close.T)), shape=(len(points), len(points)))
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def _crossings(curves: Curves) -> Floats:
+def _crossings(curves: Curves) -> Array:
     boxes = shapely.box(*curves.boxes.T)
     i, j = shapely.STRtree(boxes).query(boxes)
     i, j = i[i < j], j[i < j]
@@ -197,10 +196,10 @@ def _crossings(curves: Curves) -> Floats:
     return points[on_both]
 
 
-Meeting = tuple[Ids, Ids, Floats]  # pairs of curves and a point on both lines or circles
+Meeting = tuple[Ints, Ints, Array]  # pairs of curves and a point on both lines or circles
 
 
-def _lines(curves: Curves, i: Ids, j: Ids) -> Meeting:
+def _lines(curves: Curves, i: Ints, j: Ints) -> Meeting:
     r, s, offset = (curves.end - curves.start)[i], (curves.end - curves.start)[j], curves.start[j] - curves.start[i]
     across = r[:, 0] * s[:, 1] - r[:, 1] * s[:, 0]
     skew = np.abs(across) > 1e-9 * np.linalg.norm(r, axis=1) * np.linalg.norm(s, axis=1)
@@ -209,14 +208,14 @@ def _lines(curves: Curves, i: Ids, j: Ids) -> Meeting:
     return i, j, curves.start[i] + place[:, None] * r
 
 
-def _line_circle(curves: Curves, i: Ids, j: Ids) -> Meeting:
+def _line_circle(curves: Curves, i: Ints, j: Ints) -> Meeting:
     way = (curves.end - curves.start)[i]
     way = way / np.linalg.norm(way, axis=1)[:, None]
     foot = curves.start[i] + ((curves.centre[j] - curves.start[i]) * way).sum(axis=1)[:, None] * way
     return _both_sides(i, j, foot, way, np.linalg.norm(foot - curves.centre[j], axis=1), curves.radius[j])
 
 
-def _circles(curves: Curves, i: Ids, j: Ids) -> Meeting:
+def _circles(curves: Curves, i: Ints, j: Ints) -> Meeting:
     offset = curves.centre[j] - curves.centre[i]
     distance = np.linalg.norm(offset, axis=1)
     i, j, offset, distance = (x[distance > TOLERANCE] for x in (i, j, offset, distance))
@@ -226,14 +225,14 @@ def _circles(curves: Curves, i: Ids, j: Ids) -> Meeting:
     return _both_sides(i, j, foot, axis @ np.array([(0.0, 1.0), (-1.0, 0.0)]), np.abs(along), curves.radius[i])
 
 
-def _both_sides(i: Ids, j: Ids, foot: Floats, way: Floats, distance: Floats, radius: Floats) -> Meeting:
+def _both_sides(i: Ints, j: Ints, foot: Array, way: Array, distance: Array, radius: Array) -> Meeting:
     """The points of a chord's line on a circle: either side of the foot of the perpendicular, which touches or cuts."""
     near = distance < radius + TOLERANCE
     half = np.sqrt(np.maximum(radius**2 - distance**2, 0.0))[near, None] * way[near]
     return np.tile(i[near], 2), np.tile(j[near], 2), np.concatenate([foot[near] - half, foot[near] + half])
 
 
-def _cut(curves: Curves, points: Floats) -> tuple[Ids, Floats, Ids]:
+def _cut(curves: Curves, points: Array) -> tuple[Ints, Array, Ints]:
     """Pieces between neighbouring points of a curve: its number, the place of their middles, and their two points."""
     point, curve = shapely.STRtree(shapely.box(*curves.boxes.T)).query(shapely.points(points))
     place = curves.place(curve, points[point])
@@ -245,7 +244,7 @@ def _cut(curves: Curves, points: Floats) -> tuple[Ids, Floats, Ids]:
     return curve[1:][follows], (place[1:] + place[:-1])[follows] / 2, pieces
 
 
-def _within(profiles: Sequence[Profile], points: Floats, on: Flags) -> Flags:
+def _within(profiles: Sequence[Profile], points: Array, on: Flags) -> Flags:
     """(m, k) whether a point lies inside a profile whose edge it is not on."""
     inside = np.zeros_like(on)
     for k, profile in enumerate(profiles):

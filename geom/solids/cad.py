@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geom.description.identity import Identity
-from geom.description.machine import Machine
+from geom.description.machine import Machine, step_sidecar
 from geom.description.names import file_stem
 from geom.description.palette import colour
 from geom.description.part import Part, Prism
+from geom.description.roles import Identity
 from geom.disk_cache import cache_file, recalled, stored
 from geom.errors import InputError
 from geom.solids.carved import carved
 from geom.solids.glb import write_glb
 from geom.solids.stack import stacked
-from geom.solids.step import step_sidecar
 
 if TYPE_CHECKING:
     import cadquery as cq

@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.Geom import Geom_BezierCurve, Geom_BezierSurface, Geom_CylindricalSurface, Geom_Plane
 from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.gp import gp_Pnt, gp_Pnt2d
@@ -20,6 +19,7 @@ from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2Of
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from scipy.special import binom
 
+from geom.arrays import Array
 from geom.description.part import Helix
 from geom.solids.brep import Boundary, axes, line, line_2d
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 mm = 1e3
 _DEGREE = 11  # of the polynomials of a face: interpolated, a cosine over a quarter turn is off by 6e-14
 _SPAN = math.pi / 2  # rad; of one face, at most
-Poles = NDArray[np.float64]
 
 
 def channel(helix: Helix) -> cq.Solid:
@@ -135,7 +134,7 @@ class _Span:
         ends = self.here.corner[side, edge], self.next.corner[side, edge]
         return self.make.edge(Geom_BezierCurve(poles), 0.0, 1.0, *ends)
 
-    def _poles(self, side: int, edge: int) -> Poles:
+    def _poles(self, side: int, edge: int) -> Array:
         """(n, 3) of the helix (mm) at a radius: x and y interpolated at Chebyshev's points, z is straight."""
         places, inverse = _collocation()
         angle = self.here.angle + self.sweep * places
@@ -144,7 +143,7 @@ class _Span:
 
 
 @cache
-def _collocation() -> tuple[Poles, Poles]:
+def _collocation() -> tuple[Array, Array]:
     """Places of interpolation (0 to 1), ends included, and what turns values there into poles."""
     k = np.arange(_DEGREE + 1)
     places = (1 - np.cos(math.pi * k / _DEGREE)) / 2

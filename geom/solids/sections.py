@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Ints
 from geom.description.part import Prism
 from geom.description.profile import Loop, loop_area
 from geom.solids.arrangement import Flags, arrangement, covers
@@ -96,7 +96,7 @@ class Sections:
     def area(self, region: Region) -> float:
         return sum(loop_area(self.outline(loop)) for loop in region)
 
-    def _valence(self, edge: Flags) -> NDArray[np.int64]:
+    def _valence(self, edge: Flags) -> Ints:
         """(n, n_point) how many of the pieces end at each point."""
         pieces, points = self.plane.pieces, len(self.plane.points)
         return np.array([np.bincount(pieces[row].ravel(), minlength=points) for row in edge])

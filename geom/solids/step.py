@@ -22,19 +22,16 @@ Closed voids between the solids become the fluid "air.inside".
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geom.description.identity import Identity
-from geom.description.machine import SECTIONS, Machine
+from geom.description.machine import SECTIONS, Machine, step_sidecar
 from geom.description.materials import material
 from geom.description.names import checked_name, plain_name
 from geom.description.part import Part, Prism
-from geom.description.reading import read_geometry
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.limits import STEP_BYTES
@@ -49,13 +46,14 @@ _ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 
 _KEYS = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
 
 
-def import_step(path: str | Path) -> Machine:
+def machine_in_step(path: Path, usual_materials: Callable[[], Mapping[str, str]]) -> Machine:
     """The machine in a STEP file, with what the TOML file beside it says.
+
+    usual_materials : part name -> material, asked where the file beside it says nothing
 
     Raises InputError for a file that is missing or has no solids, a solid that is not prismatic along the axis, a
     solid without a known material, and for faults in the TOML file.
     """
-    path = Path(path)
     if not path.is_file():
         raise InputError("no such file", str(path), "a STEP file with named solids")
     beside = step_sidecar(path)
@@ -67,7 +65,7 @@ def import_step(path: str | Path) -> Machine:
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
     materials = sidecar.get("materials", {})
     parts = tuple(
-        Part(name, _material(name, materials, str(beside)), prisms[name], role=is_.role, turns=is_.turns)
+        Part(name, _material(name, materials, beside, usual_materials), prisms[name], role=is_.role, turns=is_.turns)
         for name in prisms
         if name not in fluids
         for is_ in [what.get(name, NOTHING)]
@@ -113,11 +111,6 @@ def _role(entry: Any, where: str) -> Identity:
         raise InputError(f"{entry!r} is no role", where, right)
     turns = table.get("turns")
     return Identity(Role(table["role"]) if "role" in table else None, None if turns is None else bool(turns))
-
-
-def step_sidecar(path: Path | str) -> Path:
-    """Where materials and other sections of a STEP file stand."""
-    return Path(f"{path}.toml")
 
 
 def _read_sidecar(path: Path) -> dict[str, Any]:
@@ -204,22 +197,15 @@ def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
     return InputError(f"no solid is called {pattern!r}", where, f"the file has: {', '.join(names)}")
 
 
-def _material(name: str, materials: Mapping[str, str], where: str) -> str:
+def _material(
+    name: str, materials: Mapping[str, str], beside: Path, usual_materials: Callable[[], Mapping[str, str]]
+) -> str:
     """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
     fitting = (m for pattern, m in materials.items() if fnmatchcase(name, pattern))
     word = materials[name] if name in materials else next(fitting, None)
     if word is not None:
         return material(word).name
-    if name not in _habits():
-        raise InputError(f"no material for the solid {name!r}", where, f'write [materials] "{name}" = "steel"')
-    return _habits()[name]
-
-
-@cache
-def _habits() -> Mapping[str, str]:
-    """Part name -> material, where all families agree on it."""
-    from geom.families import families
-
-    default = [family.build(read_geometry(family.parameters, {}, name)) for name, family in families().items()]
-    parts = [part for built in default for part in built if part.solid]
-    return {a.name: a.material for a in parts if all(b.material == a.material for b in parts if b.name == a.name)}
+    if name not in usual_materials():
+        right = f'write [materials] "{name}" = "steel"'
+        raise InputError(f"no material for the solid {name!r}", str(beside), right)
+    return usual_materials()[name]

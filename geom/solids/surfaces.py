@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.disk_cache import cache_file, recalled, store
@@ -84,7 +84,7 @@ def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:
     return trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=True)
 
 
-def _triangles(solid: cq.Solid) -> NDArray[np.float64]:
+def _triangles(solid: cq.Solid) -> Array:
     """(3 n, 3) corners (mm), by a binary STL file: asked for one by one they take longer than to be made."""
     from OCP.StlAPI import StlAPI_Writer
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from geom.description.identity import Identity, identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role, identity
 from lumped.model.quantities import INPUTS
 from lumped.schemas.reader import Table, suggestion
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from geom.description.identity import Identity, identity
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.description.profile import ArcGrid
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role, identity
 from lumped.machine.path import stem
 from lumped.machine.shapes import wound
 from lumped.model.network import Network

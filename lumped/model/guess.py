@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 from lumped.model.quantities import LIQUID
 from lumped.model.rotation import turning
 from lumped.model.topology import Topology, conductance, fixed

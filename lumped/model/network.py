@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from geom.description.identity import Identity
+from geom.description.roles import Identity
 from geom.errors import InputError
 from geom.text import counted
 from lumped.model.quantities import INPUTS

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 from lumped.model.network import Link, Network, Place
 from lumped.model.once import once
 

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.identity import Identity
+from geom.description.roles import Identity
 from geom.errors import InputError
 from lumped.model.quantities import USUAL
 from lumped.transfer.laws import Law

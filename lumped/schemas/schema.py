@@ -65,7 +65,7 @@ def meaning(key: str) -> str:
 def machine_schema() -> Schema:
     """The machine file: header and geometry from the families' parameters, the other sections as tables."""
     from geom.description.machine import SECTIONS
-    from geom.families import families
+    from geom.machine_file import families
 
     groups: dict[str, dict[str, Schema]] = {}
     for family in families().values():

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-from measures import area
 
 from geom import material, part_table
 from geom.description import shapes
@@ -46,13 +45,3 @@ def test_films_and_contacts_make_up_the_whole_surface(rod_in_sleeve):
     whole = 2 * math.pi * 0.01 * (0.1 + 0.01)
     rod = rod_in_sleeve["rod"]
     assert rod.film_area + rod.contact_area == pytest.approx(whole, rel=1e-3)
-
-
-def test_table_and_mesh_name_the_same_areas(motor, motor_mesh):
-    rows = part_table(motor)
-    faces = {name: a for row in rows for name, a in row.faces.items()}
-    contacts = {"|".join(sorted((row.name, other))): a for row in rows for other, a in row.contacts.items()}
-    assert faces.keys() == motor_mesh.patches.keys()
-    assert contacts.keys() == motor_mesh.contacts.keys()
-    for name, contact in motor_mesh.contacts.items():
-        assert area(motor_mesh, contact.facets) == pytest.approx(contacts[name], rel=0.02), name

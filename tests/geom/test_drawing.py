@@ -8,7 +8,7 @@ import pytest
 from geom import load_machine
 from geom.description import shapes
 from geom.drawings.views import path
-from geom.families import families
+from geom.machine_file import families
 from scripts.drawing import drawing_of
 from scripts.family_pages import write_pages
 

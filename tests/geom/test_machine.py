@@ -3,8 +3,7 @@
 import pytest
 
 from geom import InputError, library, load_machine
-from geom.families import families
-from geom.machine_file import machine_from
+from geom.machine_file import families, machine_from
 
 
 def series(**geometry):

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from geom import InputError, check_cad
 from geom.description.profile import ArcGrid
-from geom.families import families
-from geom.machine_file import machine_from
+from geom.machine_file import families, machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
 

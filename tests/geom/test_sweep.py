@@ -11,10 +11,9 @@ from test_random_machines import FAMILIES, FEW, build, table_of
 from geom import InputError, check_cad
 from geom.description.parameters import UNITS
 from geom.description.reading import read_geometry, usual_geometry
-from geom.families import families
 from geom.families.proportions import remedy
 from geom.families.random_geometry import random_geometry
-from geom.machine_file import machine_from
+from geom.machine_file import families, machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geom.description.identity import identity
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.description.roles import Role
+from geom.description.roles import Role, identity
 from geom.description.shapes import disc
 from geom.description.shapes import ring as annulus
 from geom.meshing.mesh import NamedMesh

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from geom.description.identity import Identity
+from geom.description.roles import Identity
 from geom.errors import ThermoscopeError
 from geom.table import Table
 from geom.text import table

@@ -1,16 +1,16 @@
-"""Predicted temperatures over time with their 95 % bands, at sensors and at places without one."""
+"""Over time, with 95 % bands: predicted temperatures at sensors and elsewhere, and where heat is missing."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from viz.colours import BLUE, LIGHT, ORANGE
+from geom.arrays import Array
+from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import short
 from viz.figures import paper
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 COLUMNS, MOST = 3, 12  # panels: more are not read
 
 
@@ -58,3 +57,29 @@ def _panel(ax: Axes, minutes: Array, place: Predicted) -> None:
     ax.set_title(f"± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)
     if place.read is None:
         ax.text(0.03, 0.95, "no sensor", transform=ax.transAxes, va="top", color=LIGHT.ink, fontsize=8.5)
+
+
+@paper.styled
+def missing_heat(
+    where: Sequence[Mapping[str, Any]], *, events: Sequence[Mapping[str, Any]] = (), png: str | Path | None = None
+) -> Figure:
+    """Missing heat (W) over each test at the likeliest place, with its 2-sigma band.
+
+    events : of the same document, shaded as far as they are probable
+    where : [{"place", "evidence_nats", "heat": {test: {"time_s", "heat_W", "sd_W"}}}], as in a `diagnose` document
+    """
+    best = max(where, key=lambda w: w["evidence_nats"])
+    tests = list(best["heat"].items())
+    words = f"{best['place']}: {best['evidence_nats']:.0f} nats", "time (min)", "missing heat (W)"
+    figure, axes = paper.panels(len(tests), 3, (3.2, 2.1), *words, more=0.5)
+    for ax, (name, series) in zip(axes, tests, strict=False):
+        t, q, sd = (np.asarray(series[key], float) for key in ("time_s", "heat_W", "sd_W"))
+        ax.fill_between(t / 60, q - 2 * sd, q + 2 * sd, color=LIGHT.faint, alpha=0.4, lw=0)
+        ax.plot(t / 60, q, color=VERMILION)
+        ax.axhline(0, color=LIGHT.ink, lw=0.8)
+        for event, span in [(e, s) for e in events for s in e["spans"] if s["test"] == name]:
+            shade = 0.25 * event["probability"]
+            ax.axvspan(span["begin_s"] / 60, span["end_s"] / 60, color=ORANGE, alpha=shade, lw=0)
+        ax.margins(x=0)
+        ax.set_title(name)
+    return paper.save(figure, png)

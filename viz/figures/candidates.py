@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import BLUE, LIGHT, ORANGE, PURPLE, VERMILION
 from viz.figures import paper
 from viz.labels import minus
@@ -108,7 +108,7 @@ def factor(d: Mapping[str, Any]) -> str:
 
 
 @paper.styled
-def confusion(names: Sequence[str], cosine: NDArray[np.float64], *, png: str | Path | None = None) -> Figure:
+def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = None) -> Figure:
     """|cosine| between the signatures of candidate effects: 1 cannot be told apart with these sensors and tests.
 
     cosine : (n, n)
@@ -155,6 +155,6 @@ def amplitude(candidate: Mapping[str, Any]) -> str:
     return f"{text} (95 %: {between})" if text and between else text
 
 
-def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> NDArray[np.float64]:
+def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> Array:
     """(n, n) |cosine| of the named effects from a diagnosis' `confusion`; what it leaves out counts as 0."""
     return np.array([[1.0 if a == b else abs(cosines.get(a, {}).get(b, 0.0)) for b in names] for a in names])

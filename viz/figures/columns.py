@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from geom.arrays import Array
 from viz.colours import BLUE, LIGHT, ORANGE
 from viz.figures import paper
 
@@ -26,8 +24,8 @@ class Panel:
     """time (n,) s;  values (n,) as written;  meaning : what the column is taken for, "" if it is left out"""
 
     name: str
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
+    time: Array
+    values: Array
     meaning: str
     is_temperature: bool
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.balance import Balance
 from lumped.model.network import Link, Network
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ _HOME = {
     "residuals": "curves",
     "against_input": "curves",
     "parity": "curves",
-    "confusion": "candidates",
+    "confusion": "curves",
     "save": "style",
 }
 __all__ = sorted(_HOME)

@@ -1,12 +1,14 @@
-"""Measured against modelled: one sensor, all residuals, residuals against an input, and the parity plot."""
+"""Measured against modelled: one sensor, all residuals, against an input, parity; and which candidates look alike."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geom.arrays import Array
 from geom.errors import InputError
 from viz.colours import LIGHT, Theme
 from viz.data import Comparison, Curve, short
@@ -91,6 +93,28 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     out.add_scatter(x=[low, high], y=[low, high], mode="lines", showlegend=False, line={"color": theme.ink, "width": 1})
     out.update_xaxes(title="measured (°C)")
     out.update_yaxes(title="modelled (°C)", scaleanchor="x")
+    return out
+
+
+def confusion(names: Sequence[str], cosine: Array, *, theme: Theme = LIGHT) -> go.Figure:
+    """|cosine| between the traces of candidates, (n, n): 1 cannot be told apart with these sensors and tests."""
+    c = np.abs(np.asarray(cosine, float))
+    out = figure(theme, title={"text": "Traces in common (1: cannot be told apart)", "x": 0.02, "font": {"size": 13}})
+    numbers = [str(i) for i in range(1, len(names) + 1)]
+    labels = [f"{as_text(name)}  {i}" for name, i in zip(names, numbers, strict=True)]
+    out.add_heatmap(
+        z=[plain(row) for row in c],
+        x=numbers,
+        y=labels,
+        zmin=0,
+        zmax=1,
+        colorscale="Blues",
+        showscale=False,
+        texttemplate="%{z:.2f}",
+        hovertemplate="%{x}<br>%{y}<br>%{z:.3f}<extra></extra>",
+    )
+    out.update_yaxes(autorange="reversed", dtick=1)
+    out.update_xaxes(type="category", dtick=1, tickangle=0)
     return out
 
 

@@ -9,23 +9,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, MissingDependency
-from viz.colours import LIGHT, VERDICT, Theme
+from viz.colours import LIGHT, VERDICT, Theme, rgb
 from viz.data import Sensor
 from viz.machine import field
-from viz.machine.pulses import Pulses
 from viz.machine.thermocouples import frame_points
 from viz.rendering import scene
-from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.callouts import HOLLOW, draw_on_top
+from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
+from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
+    import pyvista
     from PIL import Image
 
-Array = NDArray[np.float64]
 PALETTE = 24  # pictures that a GIF's colours are taken from
 BITS, ROUNDS = 5, 3  # of a channel by which colours are counted; of k-means after the median cut
+DOT = 17.0  # pixels of a dot in a picture 960 wide
+SWELL = 1.1  # of its own size that the ring around a dot grows by while it pulses
+HERTZ = 1.2  # pulses in a second: slow enough not to flicker
 
 
 def animate(
@@ -65,7 +70,7 @@ def animate(
     scene.colour_bar(p, field.UNIT, theme)
     scene.look(p, frame_points(surface, sensors[0] if sensors else ()), view, Room(right=0.12, top=scene.TITLE))
     pictures, pulses = [], Pulses(p, surface, sensors[0]) if sensors else None
-    words_of = titles or _minutes(times)
+    words_of = titles or [f"{time / 60:.0f} min" for time in times]
     letters = max(map(len, words_of))
     for number, (words, values) in enumerate(zip(words_of, T, strict=True), 1):
         tell(number)
@@ -79,8 +84,38 @@ def animate(
     return WRITERS[path.suffix](path, pictures, frames_per_second)
 
 
-def _minutes(times: Sequence[float]) -> list[str]:
-    return [f"{time / 60:.0f} min" for time in times]
+class Pulses:
+    """Dots on a plotter whose camera stands still; `show` moves them on."""
+
+    def __init__(self, p: pyvista.Plotter, surface: Surface, sensors: Sequence[Sensor]) -> None:
+        self._p, self._xyz = p, np.array([s.xyz for s in sensors]).reshape(-1, 3)
+        self._hidden = covered(obstacle(surface), self._xyz, np.array(p.camera.position))
+
+    def show(self, sensors: Sequence[Sensor], second: float) -> None:
+        """The sensors as they are at this instant of the film (s); they stay in the order in which they came."""
+        colours = np.array([rgb(VERDICT[s.verdict]) for s in sensors], np.uint8).reshape(-1, 3)
+        wrong = np.array([s.verdict in ("hot", "cold") for s in sensors], bool)
+        phase = second * HERTZ % 1.0
+        self._dots("pulse", wrong, colours, DOT * (1.4 + SWELL * np.sin(np.pi * phase)), 1)
+        self._dots("halo", np.ones_like(wrong), np.full_like(colours, 255), 1.35 * DOT, 2)
+        self._dots("dot", np.ones_like(wrong), colours, DOT, 3)
+        self._dots("core", self._hidden, np.full_like(colours, 255), HOLLOW * DOT, 4)
+
+    def _dots(self, name: str, mask: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int) -> None:
+        self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
+        if mask.any():
+            actor = self._p.add_points(
+                self._xyz[mask],
+                scalars=colours[mask],
+                rgb=True,
+                point_size=size,
+                lighting=False,
+                render_points_as_spheres=True,
+                name=name,
+                reset_camera=False,
+                render=False,
+            )
+            draw_on_top(actor, order)
 
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:

@@ -1,51 +1,29 @@
-"""Heat flux in the solid parts: arrows on the cut faces, computed tetrahedron by tetrahedron."""
+"""Heat flux in the solid parts: arrows on the cut faces."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.errors import InputError
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme
 from viz.machine.field import UNIT, paint
 from viz.rendering import scene
 from viz.rendering.callouts import draw_on_top
 from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.flux import HasTensor, heat_flux
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import TITLE, Room, View
 
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SPACING = 0.045  # of the machine's length, between arrows
 LONGEST = 0.075  # of the machine's length
 SHORTEST = 0.02  # of the largest flux: smaller ones are left out
-
-
-class HasTensor(Protocol):
-    """A conductivity: tensor(x) is (n, 3, 3) W/m/K at points x (n, 3) m."""
-
-    def tensor(self, x: Array) -> Array: ...
-
-
-def heat_flux(nodes: SplitMesh, T: Array, conductivity: Mapping[str, HasTensor]) -> Array:
-    """-k grad T (n_tets, 3) W/m2 from temperatures (n_nodes,) degC; exact for a field linear in each tetrahedron."""
-    missing = [part for part in nodes.parts if part not in conductivity]
-    if missing:
-        raise InputError(f"no conductivity for {', '.join(missing)}", "flux", "one per part, as for fem.assemble")
-    corners, values = nodes.points[nodes.tets], on_nodes(nodes, T)[nodes.tets]
-    edges, rises = corners[:, 1:] - corners[:, :1], values[:, 1:] - values[:, :1]
-    gradient = np.linalg.solve(edges, rises[..., None])
-    out, middle = np.empty((len(nodes.tets), 3)), corners.mean(axis=1)
-    for i, part in enumerate(nodes.parts):
-        mine = nodes.region == i
-        out[mine] = -(conductivity[part].tensor(middle[mine]) @ gradient[mine])[..., 0]
-    return out
 
 
 def flux_arrows(
@@ -73,8 +51,7 @@ def flux_arrows(
     largest = float(np.linalg.norm(flux, axis=1).max(initial=0.0))
     scene.headline(p, f"{title} longest arrow {largest / 1000:.3g} kW/m²".strip(), theme)
     scene.look(p, surface.framed, view, Room(0.0, 0.1, TITLE))
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def on_faces(nodes: SplitMesh, flux: Array, wedge: Wedge) -> tuple[Array, Array]:

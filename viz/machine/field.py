@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import Sensor
 from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     import pyvista
     from matplotlib.colors import Colormap
 
-Array = NDArray[np.float64]
 UNIT = "°C"
 
 
@@ -62,8 +61,7 @@ def cutaway(
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
     marks.draw(p, surface, view, theme, note)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def uncertainty(
@@ -107,14 +105,9 @@ def difference(
 ) -> pyvista.Plotter:
     """After minus before (K): vermilion where it became hotter, blue where colder."""
     change = on_nodes(nodes, after) - on_nodes(nodes, before)
-    p, view, surface = scene.plotter(theme), view or View(), cut_away(nodes, wedge)
     most = float(np.abs(change).max())
-    paint(p, surface, change, (-most, most), theme, colours=missing())
-    scene.colour_bar(p, "K", theme)
-    scene.headline(p, title, theme)
-    scene.look(p, surface.framed, view, room_for([], title))
-    scene.save(p, png)
-    return p
+    look: dict[str, Any] = {"title": title, "wedge": wedge, "view": view, "theme": theme, "png": png}
+    return cutaway(nodes, change, limits=(-most, most), colours=missing(), unit="K", **look)
 
 
 def pair(
@@ -140,8 +133,7 @@ def pair(
         scene.headline(p, titles[i], theme)
         scene.look(p, surface.framed, view, Room(0.0, 0.16))
     scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.034)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def paint(

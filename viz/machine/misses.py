@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme, missing
 from viz.data import Sensor
 from viz.machine.field import cut_open, paint_cut, room_for
@@ -21,7 +22,6 @@ from viz.rendering.scene import View
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 GUESS = 0.5  # share of the variance below which the readings tell less than half
 PERIOD = 14.0  # pixels from stripe to stripe
 NEARER = 5e-4  # of the way to the eye, so that stripes lie on the surface and not in it
@@ -57,8 +57,7 @@ def misses(
     renderer.ResetCameraClippingRange()
     scene.headline(p, title, theme)
     marks.draw(p, surface, view, theme, CAPTION)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def _hatch(p: pyvista.Plotter, surface: Surface, guess: NDArray[np.bool_], theme: Theme) -> None:

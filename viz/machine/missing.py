@@ -94,5 +94,4 @@ def missing_in_machine(
         if n in anchor_points
     ]
     callouts(p, labels, surface.framed, view, theme, size=SMALL)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)

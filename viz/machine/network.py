@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.meshing.mesh import NamedMesh
 from viz.colours import LIGHT, Theme, heat, power
 from viz.figures.flows import Heat
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import pyvista
     from matplotlib.colors import Colormap
 
-Array = NDArray[np.float64]
 SIDE = View(direction=(-1.0, 0.0, 0.0), angle=4.0)
 CLOSEST = 0.075  # distance of two nodes, share of the machine's length
 LETTERS = 13  # size of the names
@@ -91,8 +90,7 @@ def network_in_machine(
     callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()  # the camera stood before lines and nodes were there
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def places(mesh: NamedMesh, nodes: SplitMesh) -> dict[str, Array]:

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.arrays import Array
+from geom.description.roles import Identity, Role
 from viz.colours import LIGHT, Theme, heat, part_colours, rgb
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, label_room, text
@@ -23,7 +22,6 @@ from viz.rendering.visibility import anchors
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 LETTERS = 13  # size of the names
 GAP = 0.25  # between assemblies pulled apart, share of the machine's length
 LONG = 1.5  # of the machine's length: with a longer base the machine would be small
@@ -54,8 +52,7 @@ def regions(
     anchor_points = anchors(surface, view, room, surface.framed)
     labels = [Label(tuple(xyz), nodes.parts[i], LIGHT.ink) for i, xyz in anchor_points.items()]  # type: ignore[arg-type]
     callouts(p, labels, surface.framed, view, theme, size=LETTERS)
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def exploded(
@@ -93,8 +90,7 @@ def exploded(
     scene.headline(p, title, theme)
     corners = points[np.concatenate([nodes.of(part) for part in members])]
     scene.look(p, corners, view, Room(right=0.1 if T is not None else 0.0, top=0.25))
-    scene.save(p, png)
-    return p
+    return scene.save(p, png)
 
 
 def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:

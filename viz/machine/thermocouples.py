@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import VERDICT, Theme
 from viz.data import Sensor, short
 from viz.labels import signed
@@ -54,7 +55,7 @@ class Marked:
             scene.footnote(p, "; ".join(says), theme)
 
 
-def frame_points(surface: Surface, sensors: Sequence[Sensor]) -> NDArray[np.float64]:
+def frame_points(surface: Surface, sensors: Sequence[Sensor]) -> Array:
     """(n, 3) m that a picture must hold: the machine, and of a long base what is near it or has a sensor."""
     return np.concatenate([surface.framed, np.array([s.xyz for s in sensors]).reshape(-1, 3)])
 
@@ -64,7 +65,7 @@ def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:
     return [_label(s, False).text for s in sorted(sensors, key=lambda s: -s.weight)[:labels]]
 
 
-def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: NDArray[np.float64]) -> Marked:
+def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: Array) -> Marked:
     """The sensors as seen from `eye` (m); labels for those furthest beyond their uncertainty."""
     by_weight = sorted(sensors, key=lambda s: -s.weight)
     places, solid = np.array([s.xyz for s in by_weight]).reshape(-1, 3), obstacle(surface)

@@ -18,7 +18,7 @@ from geom.table import Table
 from validation import tables
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
-from viz.figures import candidates, curves, errors, heat
+from viz.figures import bands, candidates, curves, errors
 from viz.machine.missing import placed
 from viz.pages import html, words
 
@@ -142,7 +142,7 @@ def _missing(r: Report) -> str:
     ]
     if placed(d) and d["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
-        parts.append(html.plot(heat.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
+        parts.append(html.plot(bands.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
     parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
     alike = [c for c in by_score[:12] if c["confused_with"]]
     likeness = html.table(Table.of("", alike, "effect | looks like=confused_with"))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.data import Comparison, short
 from viz.rendering.scene import View
 
@@ -19,7 +19,7 @@ OUT = 0.05  # of the diagonal: as far beyond the machine's outline stand the nam
 DISTANCE = 1.1  # of the machine's diagonal: fills the view at rerun's own angle of view, a base included
 
 
-def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], with_history: bool) -> rrb.Blueprint:
+def blueprint(comparison: Comparison, first: str, points: Array, with_history: bool) -> rrb.Blueprint:
     """The views; the curves of channel `first` lie on top, the time axis spans the test, the camera sees `points`."""
     import rerun as rr
     import rerun.blueprint as rrb
@@ -49,10 +49,10 @@ def blueprint(comparison: Comparison, first: str, points: NDArray[np.float64], w
     return rrb.Blueprint(layout, plays, collapse_panels=True)
 
 
-def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) -> list[bool]:
+def non_overlapping(places: Array, points: Array) -> list[bool]:
     """Which names, at places (n, 3) m in order of weight, cover none before them when the machine is first seen."""
     size = np.array(NAME) / DISTANCE
-    labels: list[NDArray[np.float64]] = []
+    labels: list[Array] = []
     out = []
     for at in in_view(places, points)[0]:
         out.append(not any((np.abs(at - other) < size).all() for other in labels))
@@ -60,22 +60,20 @@ def non_overlapping(places: NDArray[np.float64], points: NDArray[np.float64]) ->
     return out
 
 
-def eye(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def eye(points: Array) -> Array:
     """(3,) m, from where the machine is first seen."""
     low, high = points.min(axis=0), points.max(axis=0)
     return np.asarray((low + high) / 2 + DISTANCE * np.linalg.norm(high - low) * View().axes()[0])
 
 
-def in_view(
-    points: NDArray[np.float64], machine: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def in_view(points: Array, machine: Array) -> tuple[Array, Array]:
     """(n, 2) right and up per metre of distance, and (n,) m of distance, of points (n, 3) m when it is first seen."""
     towards, right, up = View().axes()
     distance = (eye(machine) - points) @ towards
     return (points - eye(machine)) @ np.stack([right, up], axis=1) / distance[:, None], distance
 
 
-def outside_outline(places: NDArray[np.float64], machine: NDArray[np.float64]) -> NDArray[np.float64]:
+def outside_outline(places: Array, machine: Array) -> Array:
     """(n, 3) m: out from places (n, 3) m, across the first line of sight, to just beyond the machine's outline."""
     _, right, up = View().axes()
     (at, distance), outline = in_view(places, machine), in_view(machine, machine)[0]
@@ -90,7 +88,7 @@ def _bar() -> rrb.Spatial2DView:
     return rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
 
 
-def _machine(comparison: Comparison, points: NDArray[np.float64]) -> rrb.Spatial3DView:
+def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:
     import rerun.blueprint as rrb
 
     middle = (points.min(axis=0) + points.max(axis=0)) / 2

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, VERDICT, heat
 from viz.data import Comparison, Curve, Sensor, short
@@ -22,8 +22,8 @@ from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings import scale
 from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
+from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
-from viz.rendering.edges import outline_strips
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scale import rounded
 from viz.rendering.visibility import covered, obstacle
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
     from measured.case import Channel
 
-Array = NDArray[np.float64]
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
 TIME, REVISION = "test_time", "revision"
 
@@ -97,7 +96,9 @@ def _machine(
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
     stream.log("machine/field", mesh, static=True)
-    lines = rr.LineStrips3D(list(outline_strips(surface)), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
+    edges = scene.feature_edges(scene.polydata(surface))
+    strips = np.asarray(edges.points)[edges.lines.reshape(-1, 3)[:, 1:]]
+    lines = rr.LineStrips3D(list(strips), colors=[31, 41, 51, 150], radii=rr.Radius.ui_points(0.6))
     stream.log("machine/edges", lines, static=True)
     stream.log("legend", rr.TextDocument(_LEGEND, media_type="text/markdown"), static=True)
     _colours(stream, surface, rr.TimeColumn(TIME, duration=times), fields, limits)
@@ -165,7 +166,7 @@ def _names(
     )
     stream.log("machine/names", labels, static=True)
     stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
-    lines = rr.LineStrips3D(stubs, colors=_rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
+    lines = rr.LineStrips3D(stubs, colors=scale.rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
 
 
@@ -176,7 +177,7 @@ def _markers(
     import rerun as rr
 
     colours = [
-        _rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
+        scale.rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
         for row in residual
         for channel, r in zip(channels, row, strict=True)
     ]
@@ -198,12 +199,9 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
 
 
 def _series(stream: rr.RecordingStream, path: str, time: Array, curve: Curve) -> None:
-    import rerun as rr
-
     finite = np.isfinite(curve.y)
-    stream.log(path, rr.SeriesLines(colors=_rgba(curve.colour), widths=2.0, names=curve.name), static=True)
-    index = rr.TimeColumn(TIME, duration=np.asarray(time, float)[finite])
-    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=curve.y[finite]))
+    index = scale.time_column(TIME, np.asarray(time)[finite])
+    scale.line(stream, path, index, curve.y[finite], curve.colour, curve.name, widths=2.0)
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:
@@ -212,22 +210,14 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
     for (name, role), errors in error_paths(history).items():
         path = f"error/{rr.escape_entity_path_part(name)}"
         colour, width = (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
-        name = f"{name} ({role})"
-        style = rr.SeriesLines(colors=_rgba(colour), widths=width, names=name, interpolation_mode="StepAfter")
-        stream.log(path, style, static=True)
-        index = rr.TimeColumn(REVISION, sequence=range(len(errors)))
-        stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=errors))
+        index, style = rr.TimeColumn(REVISION, sequence=range(len(errors))), {"interpolation_mode": "StepAfter"}
+        scale.line(stream, path, index, np.array(errors), colour, f"{name} ({role})", widths=width, **style)
     for i, text in enumerate(["as built", *(f"{r['action']} {r.get('effect') or ''}" for r in history)]):
         if history:
             stream.set_time(REVISION, sequence=i)
             stream.log(
                 "step", rr.TextDocument(f"# Revision {i}\n\n{MARKED.sub(MARK, text)}", media_type="text/markdown")
             )
-
-
-def _rgba(colour: str) -> int:
-    """'#rrggbb' as rerun's 0xRRGGBBAA."""
-    return int(colour[1:] + "ff", 16)
 
 
 _LEGEND = """Sensors: green within the uncertainty, vermilion where the machine is hotter than the model,

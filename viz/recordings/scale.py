@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from itertools import cycle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.arrays import Array
 from viz.colours import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, heat
 from viz.data import Comparison
 from viz.rendering.scale import decimals, marks
@@ -46,11 +47,30 @@ def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) ->
     for (name, values), colour in zip(test.inputs.items(), cycle(COLOURS), strict=False):
         value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
         largest = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
-        style = rr.SeriesLines(colors=int(colour[1:] + "ff", 16), names=f"{name} / {largest:.4g}")
         path = f"inputs/{rr.escape_entity_path_part(name)}"
-        stream.log(path, style, static=True)
-        index = rr.TimeColumn(timeline, duration=np.asarray(test.time, float))
-        stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=value / largest))
+        line(stream, path, time_column(timeline, test.time), value / largest, colour, f"{name} / {largest:.4g}")
+
+
+def time_column(timeline: str, seconds: Array) -> rr.TimeColumn:
+    """The times (n,) s of a line's values."""
+    import rerun as rr
+
+    return rr.TimeColumn(timeline, duration=np.asarray(seconds, float))
+
+
+def line(
+    stream: rr.RecordingStream, path: str, index: rr.TimeColumn, y: Array, colour: str, name: str, **style: Any
+) -> None:
+    """A named line of values (n,) at the places of `index`."""
+    import rerun as rr
+
+    stream.log(path, rr.SeriesLines(colors=rgba(colour), names=name, **style), static=True)
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=y))
+
+
+def rgba(colour: str) -> int:
+    """'#rrggbb' as rerun's 0xRRGGBBAA."""
+    return int(colour[1:] + "ff", 16)
 
 
 def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:

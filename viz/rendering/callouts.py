@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme
 from viz.labels import spread_labels
 from viz.rendering.scene import SIZE, View, set_font
@@ -16,7 +16,6 @@ from viz.rendering.scene import SIZE, View, set_font
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SMALL = 15  # letters of a label
 LINE = 1.9  # of its letters' size from one label to the next: its ground is 1.8 of it high
 GAP = 0.03  # share of the picture's width from the machine to a label, and from a label to the edge

@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
+from geom.arrays import Array, Ints
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, repeated
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -51,8 +49,8 @@ class Surface:
 
     nodes: SplitMesh
     weights: csr_matrix
-    triangles: Index
-    part: Index
+    triangles: Ints
+    part: Ints
 
     @cached_property
     def points(self) -> Array:
@@ -65,7 +63,7 @@ class Surface:
         return framed(self.points[~base], self.points[base])
 
     @cached_property
-    def owner(self) -> Index:
+    def owner(self) -> Ints:
         """(n_points,) index of the part each point belongs to."""
         out = np.zeros(self.weights.shape[0], np.int64)
         out[self.triangles] = self.part[:, None]
@@ -177,9 +175,9 @@ class _Combinations:
 
     def __init__(self, distance: Array, offset: int) -> None:
         self.distance, self.offset = distance, offset
-        self.pairs: list[Index] = []
+        self.pairs: list[Ints] = []
 
-    def edge(self, i: Index, j: Index) -> Index:
+    def edge(self, i: Ints, j: Ints) -> Ints:
         start = self.offset + sum(map(len, self.pairs))
         self.pairs.append(np.stack([i, j], axis=1))
         return np.arange(start, start + len(i))
@@ -201,14 +199,14 @@ def _facing(flat: Surface, normal: Array) -> Surface:
     return Surface(flat.nodes, flat.weights, triangles, flat.part)
 
 
-def _first(cells: Index, flag: NDArray[np.bool_], count: int) -> Index:
+def _first(cells: Ints, flag: NDArray[np.bool_], count: int) -> Ints:
     """Corners of each cell with the `count` flagged ones first."""
     order = np.argsort(~flag, axis=1, kind="stable")
     assert flag.sum(axis=1).max(initial=count) == count
     return np.take_along_axis(cells, order, axis=1)
 
 
-def _turned(triangles: Index, flag: NDArray[np.bool_]) -> Index:
+def _turned(triangles: Ints, flag: NDArray[np.bool_]) -> Ints:
     """Triangles turned (orientation kept) so that their single flagged corner comes first."""
     turn = (np.argmax(flag, axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(triangles, turn, axis=1)

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.rendering.cut import Surface, joined, section
 
-Array = NDArray[np.float64]
 SIDES = 20  # of a window: round to the eye
 OPACITY = 0.16  # of ghosted material: it is there, and what is behind it keeps its colour
 SAME = 1e-6  # rad between lines of sight below which no picture tells them apart

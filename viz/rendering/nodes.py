@@ -8,13 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.arrays import Array, Ints
+from geom.description.roles import Identity, Role
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # of a tetrahedron, seen from outside
 
 
@@ -29,11 +27,11 @@ class SplitMesh:
     """
 
     points: Array
-    tets: Index
-    region: Index
+    tets: Ints
+    region: Ints
     parts: tuple[str, ...]
-    original: Index
-    owner: Index
+    original: Ints
+    owner: Ints
     identities: Mapping[str, Identity] = field(default_factory=dict)
 
     @property
@@ -51,13 +49,13 @@ class SplitMesh:
         others = [self.of(part) for part in self.parts if part not in self.bases]
         return float(np.ptp(self.points[np.concatenate(others) if others else slice(None), 2]))
 
-    def of(self, part: str) -> Index:
+    def of(self, part: str) -> Ints:
         """Numbers of the nodes of one part."""
         if part not in self.parts:
             raise InputError(f"unknown part '{part}'", "mesh", f"known: {', '.join(self.parts)}")
         return np.flatnonzero(self.owner == self.parts.index(part))
 
-    def boundary(self) -> tuple[Index, Index]:
+    def boundary(self) -> tuple[Ints, Ints]:
         """Outer triangles of every part, (n, 3), and the part of each, (n,)."""
         outer = self.outer().ravel()
         return self.tets[:, FACES].reshape(-1, 3)[outer], np.repeat(self.region, 4)[outer]
@@ -71,7 +69,7 @@ class SplitMesh:
         return self.outer() & repeated(self.original[self.tets[:, FACES]].reshape(-1, 3)).reshape(-1, 4)
 
 
-def repeated(triangles: Index) -> NDArray[np.bool_]:
+def repeated(triangles: Ints) -> NDArray[np.bool_]:
     """(n,) which triangles, corners (n, 3) in any order, occur more than once."""
     a, b, c = np.sort(triangles, axis=1).T
     step = int(triangles.max(initial=0)) + 1

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.colours import LIGHT, Theme
 from viz.labels import minus
 from viz.rendering.cut import Surface
@@ -18,7 +18,6 @@ from viz.rendering.scale import decimals, marks
 if TYPE_CHECKING:
     import pyvista
 
-Array = NDArray[np.float64]
 SIZE = (1280, 800)  # pixels
 MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
 HEADLINE, LETTER = 14, 1.06  # size of a headline; pixels that one of its letters is wide, of that size
@@ -87,11 +86,16 @@ def polydata(surface: Surface, shift: Array | None = None) -> pyvista.PolyData:
 
 def outline(p: pyvista.Plotter, data: pyvista.PolyData, theme: Theme = LIGHT, opacity: float = 0.8) -> None:
     """Thin lines along sharp edges and along the edges of every part."""
-    edges = data.extract_feature_edges(
-        FEATURE_ANGLE, boundary_edges=True, non_manifold_edges=False, manifold_edges=False, clear_data=True
-    )
+    edges = feature_edges(data)
     if edges.n_points:
         p.add_mesh(edges, color=theme.ink, line_width=1.0, opacity=opacity, show_scalar_bar=False, lighting=False)
+
+
+def feature_edges(data: pyvista.PolyData) -> pyvista.PolyData:
+    """Edges with one triangle, or whose two triangles meet at a sharp angle."""
+    return data.extract_feature_edges(
+        FEATURE_ANGLE, boundary_edges=True, non_manifold_edges=False, manifold_edges=False, clear_data=True
+    )
 
 
 def look(p: pyvista.Plotter, points: Array, view: View, room: Room = NO_ROOM) -> None:
@@ -183,11 +187,12 @@ def _line(
     line.prop.justification_horizontal, line.prop.justification_vertical = anchor
 
 
-def save(p: pyvista.Plotter, png: str | Path | None) -> None:
-    """Write the picture if a path is given; the plotter stays open for the caller."""
+def save(p: pyvista.Plotter, png: str | Path | None) -> pyvista.Plotter:
+    """The plotter, which stays open for the caller; its picture is written if a path is given."""
     if png is not None:
         Path(png).parent.mkdir(parents=True, exist_ok=True)
         p.screenshot(str(png))
+    return p
 
 
 def set_font(style: Any) -> None:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from geom.arrays import Array, Ints
 from viz.rendering import scene
 from viz.rendering.cut import Surface
 from viz.rendering.scene import Room, View
 
-Array = NDArray[np.float64]
 SIZE = (640, 400)  # pixels, a quarter of those of a picture
 SLACK = 0.006  # m: a thermocouple this deep still counts as lying on the surface
 SMALLEST = 1.5  # pixels from the middle of a patch to its border below which a part counts as hidden
@@ -86,10 +86,10 @@ def _ray(row: int, column: int, view: View) -> Array:
     return np.asarray(-towards + x * right + y * up)
 
 
-def _as_colour(number: NDArray[np.int64]) -> NDArray[np.uint8]:
+def _as_colour(number: Ints) -> NDArray[np.uint8]:
     return np.stack([number % 16 * 16, number // 16 * 16, np.zeros_like(number)], axis=1).astype(np.uint8)
 
 
-def _as_number(picture: NDArray[np.uint8]) -> NDArray[np.int64]:
+def _as_number(picture: NDArray[np.uint8]) -> Ints:
     coarse = np.round(picture[..., :2] / 16.0).astype(np.int64)
     return coarse[..., 0] + 16 * coarse[..., 1]

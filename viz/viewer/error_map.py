@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from viz.data import Comparison, short
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.part_shapes import packed_fields
 
-Array = NDArray[np.float64]
 ERROR = 0.02  # of a residual: far below what a sensor can tell
 STEP = 0.008  # of a residual, of the shapes at their largest amplitude
 SHARE = 0.02  # in which steps the explained share is kept

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.meshing.mesh import NamedMesh
 from viz.machine.network import CLOSEST, SMALL, places, spread_out
 from viz.rendering.nodes import SplitMesh
 from viz.viewer.packing import packed_numbers
 
-Array = NDArray[np.float64]
 STEP_K, STEP_W = 0.1, 0.1  # a tenth of what is printed; the page's words have whole degrees and watts
 OFF_AXIS = 0.25  # of the largest radius: feet and base are drawn so far below the axis, one below the other
 

@@ -7,14 +7,14 @@ import zlib
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array, Ints
+
 UNKNOWN = -1  # whole numbers of a column begin at zero: this one stands for what is not finite
 LEVEL = 8  # of deflate: 9 makes a page half a percent shorter and takes two and a half times as long
 
 
-def packed_integers(values: NDArray[np.int64]) -> dict[str, Any]:
+def packed_integers(values: Ints) -> dict[str, Any]:
     """Rows of whole numbers (n, k), each as the difference from the row before it: meshes are regular.
 
     A difference n is 2 n, and -n is 2 n - 1: the upper bytes of small ones are then zero, whatever their sign.
@@ -36,14 +36,3 @@ def packed_numbers(values: Array, step: Array | float | None = None) -> dict[str
     steps = np.broadcast_to(fine if step is None else step, low.shape)
     whole = np.where(finite, np.round(above / steps), UNKNOWN).astype(np.int64)
     return {**packed_integers(whole), "low": low.tolist(), "step": steps.tolist()}
-
-
-def unpacked(packed: dict[str, Any]) -> Array:
-    """What the page reads: (n, k)."""
-    columns = packed["columns"]
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), np.uint8).reshape(4, -1)
-    unsigned = np.ascontiguousarray(planes.T).view("<u4").reshape(columns, -1).T.astype(np.int64)
-    whole = np.cumsum(np.where(unsigned % 2, -(unsigned + 1) // 2, unsigned // 2), axis=0)
-    if "step" not in packed:
-        return whole
-    return np.where(whole == UNKNOWN, np.nan, whole * np.array(packed["step"]) + np.array(packed["low"]))

@@ -11,23 +11,21 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from geom.description.machine import Machine
 from geom.meshing.mesh import NamedMesh
 from geom.plugins import plugins
 from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
 from viz.data import Comparison, short
+from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
 from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
-from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import ERROR_K
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
-from viz.viewer.part_shapes import packed_fields
+from viz.viewer.part_shapes import ERROR_K, packed_fields
 
-Array = NDArray[np.float64]
 FRAMES = 21  # instants of a test that the range of its errors is looked up at
 STEP_K = 0.02  # of fields and readings: a twentieth of what a thermocouple tells, and small shapes then take few bits
 
@@ -196,7 +194,7 @@ def _parts(nodes: SplitMesh, colours: Mapping[str, str]) -> list[dict[str, Any]]
     return [{"name": name, "colour": colours[name], "nodes": n} for name, n in zip(nodes.parts, sizes, strict=True)]
 
 
-def _faces(nodes: SplitMesh) -> NDArray[np.int64]:
+def _faces(nodes: SplitMesh) -> Ints:
     """(n_tets,) bits: 1, 2, 4, 8 for faces that bound their part, 16, 32, 64, 128 where another part lies on them."""
     return np.asarray(nodes.outer() @ [1, 2, 4, 8] + nodes.touching() @ [16, 32, 64, 128])
 
@@ -232,7 +230,7 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     }
 
 
-def _columns(values: Sequence[Array], at: NDArray[np.int64]) -> dict[str, Any]:
+def _columns(values: Sequence[Array], at: Ints) -> dict[str, Any]:
     return packed_numbers(np.stack([np.asarray(v, float)[at] for v in values], axis=1), STEP_K)
 
 

@@ -5,25 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.plugin import Summary, bases_table, give, open_case, progress
-
-
-def bases(case: str, target: str | None) -> int:
-    """Exit code 1 when the readings of a test exclude the base that its sheet says."""
-    from thermoscope.plugin import which_base
-
-    with progress() as tell:
-        folder = open_case(case, tell)
-        hypotheses = which_base(folder.case, progress=tell)
-    wrong = [h for h in hypotheses if h.declared and h.excluded]
-    document = {
-        "case": folder.case.name,
-        "revision": folder.case.model.revision,
-        "wrong": [h.test for h in wrong],
-        "hypotheses": [h.document() for h in hypotheses],
-    }
-    give(document, target, lambda: bases_summary(document))
-    return 1 if wrong else 0
+from thermoscope.plugin import Summary, bases_table
 
 
 def bases_summary(document: Mapping[str, Any]) -> Summary:

@@ -40,8 +40,6 @@ from pathlib import Path
 from typing import Any
 
 from extras.bench.measuring.protocol import Cold, Hot, Protocol, Record
-from extras.bench.measuring.protocol import protocol as judged
-from thermoscope import InputError
 from thermoscope.plugin import (
     COPPER,
     NDFEB,
@@ -52,10 +50,8 @@ from thermoscope.plugin import (
     Summary,
     Table,
     TomlTable,
-    give,
     meter_of,
     pairs,
-    progress,
     read_recording,
     read_toml,
     recording,
@@ -63,19 +59,6 @@ from thermoscope.plugin import (
 )
 
 Pairs = tuple[tuple[float, float], ...]
-
-
-def protocol(file: Path | None, target: str | None) -> int:
-    """Exit code 0 when all is measured, 1 when something is still to do, 2 (with the reason) when a step is refused."""
-    with progress() as tell:
-        tell("checking the record")
-        result = judged(Record(1.0) if file is None else read_record(file))
-    give(result.document(), target, lambda: protocol_summary(result))
-    if result.refused:
-        first = result.refused[0]
-        more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
-        raise InputError(first.words.split(";")[0], f"{file} [{first.name}]", first.words.partition("; ")[2] + more)
-    return 0 if file is None or result.complete else 1
 
 
 def read_record(file: Path) -> Record:
@@ -164,12 +147,9 @@ def protocol_summary(result: Protocol) -> Summary:
     spreads = [(n, s) for n, s in (("winding", result.winding), ("magnets", result.magnets)) if s is not None]
     headers = ["rise", "K", "worst case", "GUM 95 %", "Monte Carlo 95 %", "largest share"]
     rises = Table("Rises over the cold temperature", headers, [_row(n, s) for n, s in spreads], keep=["K", "GUM 95 %"])
-    ways = [[w.method, w.at_s, w.value, w.sd, w.words] for w in result.ways]
-    off = Table("Winding when switched off", ["way", "at (s)", "degC", "1 sigma (K)", "how"], ways)
-    rows: list[list[Any]] = [[s.name, s.state, s.when, s.what, s.words] for s in result.steps]
-    steps = Table(
-        "Thermal test", ["step", "state", "when", "what", "found"], rows, ["refused"], ["state", "when", "what"]
-    )
+    ways = "way=method | at (s)=at_s | degC=value | 1 sigma (K)=sd | how=words"
+    off = Table.of("Winding when switched off", result.ways, ways)
+    steps = Table.of("Thermal test", result.steps, "step=name | *state | *when | *what | found=words", ["refused"])
     return Summary(_in_short(result), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermoscope import InputError
-from thermoscope.plugin import Role, Summary, Table, give, load_machine_file, notes, open_case, progress, required
+from thermoscope.plugin import Role, Summary, Table, load_machine_file, required
 
 if TYPE_CHECKING:
     from thermoscope.plugin import MachineDescription as Machine
@@ -17,8 +17,8 @@ DESIGNS = ("full", "half", "gap", "morris", "sobol")
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
 
-def screen(machine: str, design: str, target: str | None, out: Path | None = None) -> int:
-    """Which of table I's factors move magnets, winding, end winding and laminations; `out`: folder for plots."""
+def screening_document(machine: str, design: str) -> dict[str, Any]:
+    """Which of table I's factors move magnets, winding, end winding and laminations."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
     required(("SALib",) if design in ("morris", "sobol") else ())
@@ -27,16 +27,8 @@ def screen(machine: str, design: str, target: str | None, out: Path | None = Non
     if Role.MAGNET not in roles or Role.HOUSING in roles:
         right = "a machine with magnets in open laminations, e.g. pmsm-m1"
         raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
-    with progress() as tell:
-        tell(f"screening {design_machine.name}")
-        document = (
-            _by_shares(design_machine, design) if design in ("morris", "sobol") else _by_effects(design_machine, design)
-        )
-    document = {"machine": design_machine.name, "design": design, **document}
-    give(document, target, lambda: screening_summary(document))
-    if out is not None:
-        notes(f"written: {path}" for path in plots(document, out))
-    return 0
+    effects = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
+    return {"machine": design_machine.name, "design": design, **effects}
 
 
 def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
@@ -77,16 +69,14 @@ def screening_summary(document: Mapping[str, Any]) -> Summary:
 
 
 def _effects(name: str, effects: Mapping[str, Any]) -> Table:
-    rows = [[e["effect"], e["words"], e["value"], "yes" if e["active"] else ""] for e in effects["effects"]]
     title = f"{name}: beyond {effects['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
-    headers = ["effect", "factors", f"high - low ({unit_of(name)})", "active"]
-    return Table(title, headers, rows, ["yes"], headers[2:])
+    columns = f"effect | factors=words | *high - low ({unit_of(name)})=value | *active"
+    return Table.of(title, effects["effects"], columns, ["yes"], active=lambda e: "yes" if e["active"] else "")
 
 
 def _ranking(name: str, indices: Mapping[str, Any]) -> Table:
-    rows = [[r["factor"], r["measure"], r["conf95"], r["spread"]] for r in indices["ranking"]]
     title = f"{name}: {indices['method']}, {indices['runs']} runs"
-    return Table(title, ["factor", "measure", "+- 95 %", "spread"], rows)
+    return Table.of(title, indices["ranking"], "factor | measure | +- 95 %=conf95 | spread")
 
 
 def unit_of(response: str) -> str:
@@ -112,73 +102,31 @@ def _png(out: Path, response: str) -> Path:
     return out / f"{response.split(' (')[0].replace(' ', '-')}.png"
 
 
-def two_paths(case: str, winding: str, machine: str, target: str | None) -> int:
-    """R_ext and R_w of the case's network at the mean load of every test."""
-    from extras.bench.reduction.two_paths import of_test
-
-    if winding == machine:
-        raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
-    with progress() as tell:
-        folder = open_case(case, tell)
-        by_test = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
-    document = {"case": folder.case.name, "tests": by_test}
-    give(document, target, lambda: paths(by_test))
-    return 0
-
-
 def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Summary:
     """Two resistances per test."""
-    headers = ["test", "R_ext (K/W)", "R_w (K/W)", "winding (K)", "machine (K)", "left at other loads (K)"]
-    keys = ("R_ext", "R_w", "winding_K", "machine_K", "largest_residual_K")
+    columns = "test | R_ext (K/W)=R_ext | R_w (K/W)=R_w | winding (K)=winding_K | machine (K)=machine_K"
+    columns += " | left at other loads (K)=largest_residual_K"
+    rows = [{"test": name, **one} for name, one in resistances.items()]
     left = max(one["largest_residual_K"] for one in resistances.values())
     sentence = f"Two resistances describe {len(resistances)} tests to {left:.2g} K at other loads."
-    return Summary(
-        sentence, [Table("", headers, [[name, *(one[k] for k in keys)] for name, one in resistances.items()])]
-    )
-
-
-def carry(source: str, targets: list[str], target: str | None) -> int:
-    """Exit code 1 when a sensor of a machine that was not used disagrees by more than its uncertainty."""
-    from extras.bench.reduction.transfer import transferred
-
-    with progress() as tell:
-        calibrated = open_case(source, tell)
-        transfers = [transferred(calibrated.case, open_case(name, tell).case) for name in targets]
-    document = {
-        "source": calibrated.case.name,
-        "revision": calibrated.case.model.revision,
-        "targets": [one.document() for one in transfers],
-    }
-    give(document, target, lambda: show_transfer(document))
-    return 0 if all(one.agrees for one in transfers) else 1
+    return Summary(sentence, [Table.of("", rows, columns)])
 
 
 def show_transfer(document: Mapping[str, Any]) -> Summary:
     """Where the model of one machine is over on the others."""
-    keys = ("test", "measured_C", "simulated_C", "difference_K", "U95_K", "worst_K")
-    headers = [
-        "sensor",
-        "case",
-        "test",
-        "measured (degC)",
-        "simulated (degC)",
-        "difference (K)",
-        "95 % (K)",
-        "worst case (K)",
-        "verdict",
-    ]
+    words = {True: "within", False: "over"}
     rows = [
-        [r["channel"], one["case"], *(r[key] for key in keys), "within" if r["within"] else "over"]
+        {**r, "case": one["case"], "verdict": words[r["within"]]}
         for one in document["targets"]
         for r in sorted(one["rows"], key=lambda r: r["within"])
     ]
-    over = sum(row[-1] == "over" for row in rows)
+    columns = "sensor=channel | *case | test | measured (degC)=measured_C | simulated (degC)=simulated_C"
+    columns += " | *difference (K)=difference_K | *95 % (K)=U95_K | worst case (K)=worst_K | *verdict"
+    over = sum(row["verdict"] == "over" for row in rows)
     parameters = document["targets"][0]["parameters"] if document["targets"] else []
     sentence = (
         f"{document['source']}, revision {document['revision']}, on other machines: {over} of {len(rows)} "
         "sensors are over."
     )
-    keep = ["case", "difference (K)", "95 % (K)", "verdict"]
-    return Summary(
-        sentence, [Table("", headers, rows, ["over"], keep), f"Taken over: {', '.join(parameters) or 'nothing'}."]
-    )
+    note = f"Taken over: {', '.join(parameters) or 'nothing'}."
+    return Summary(sentence, [Table.of("", rows, columns, ["over"]), note])

@@ -15,11 +15,9 @@ from itertools import combinations, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError
-
-Array = NDArray[np.float64]
+from thermoscope.plugin import Array
 
 
 @dataclass(frozen=True)

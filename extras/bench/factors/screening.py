@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.bench.factors.factorial import Design, Effects, Factor, effects
 from extras.bench.factors.sensitivity import Response, Varied
 from extras.bench.reduction.pm_network import PmSettings, Rows, pm_network, table_of
 from thermoscope import Record, simulate
-from thermoscope.plugin import ALPHA_CU
+from thermoscope.plugin import ALPHA_CU, Array
 from thermoscope.plugin import MachineDescription as Machine
 
-Array = NDArray[np.float64]
 AMBIENT = 20.0  # degC
 TABLE_I = (
     Factor("A", "convection", 5.0, 10.0),

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 Response = Callable[[Mapping[str, float]], float]
 
 

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.bench.measuring.warming import equilibrium
-from thermoscope.plugin import Test
+from thermoscope.plugin import Array, Test
 
-Array = NDArray[np.float64]
 CLOSE, TOLERANCE, NEVER = 3.0, 4.0, 7.0  # percent of the temperature, as published
 Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
 

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.bench.measuring.assemblies import Assembly, assemblies, worst
 from extras.bench.measuring.repeats import Repeats, repeats
 from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8
 from thermoscope import InputError
-from thermoscope.plugin import Channel, Test, ambient, physical, predict, standing
+from thermoscope.plugin import Array, Channel, Test, ambient, physical, predict, standing
 from thermoscope.plugin import MeasuredCase as Case
 
-Array = NDArray[np.float64]
 R = TypeVar("R")
 STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load
 ALIKE = 0.02  # tests whose mean loads differ by less are repeats of one test

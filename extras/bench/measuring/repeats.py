@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError
-from thermoscope.plugin import NORMAL_95
+from thermoscope.plugin import NORMAL_95, Array
 
-Array = NDArray[np.float64]
 LEVEL = 0.05  # significance: how often equal runs are said to differ
 
 

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 START_K = 2.0  # a fitted start further off the measured one than this is worth a warning
 
 

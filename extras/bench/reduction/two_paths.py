@@ -21,6 +21,7 @@ from thermoscope.plugin import (
     Source,
     Test,
     heat_model,
+    multipliers,
     physical,
     standing,
     temperature_value,
@@ -108,7 +109,8 @@ def _state(
     """T_w, T_m (degC), P_w, P_all (W) at rest."""
     rows = [network.places[place].mean for place in at]
     state = steady(network, inputs, dict.fromkeys(network.boundaries, ambient), values, rows)
-    power = {s.name: _multiplier(network, s, values) * power_of(s, inputs, state) for s in network.sources}
+    more = multipliers(network, values)
+    power = {s.name: more.get(s.name, 1.0) * power_of(s, inputs, state) for s in network.sources}
     copper = sum(power[s.name] for s in network.sources if s.kind == "copper")
     return float(state.y[0]), float(state.y[1]), copper, sum(power.values())
 
@@ -124,13 +126,3 @@ def power_of(source: Source, inputs: Mapping[str, float], state: Steady) -> floa
         )
     T = float(source.probe.weights @ state.z[source.probe.index])
     return factor * temperature_value(law, T, T)
-
-
-def _multiplier(network: Network, source: Source, values: Mapping | None) -> float:
-    """What the parameters make of a loss."""
-    out = 1.0
-    for p in network.parameters:
-        value = (values or {}).get(p.name, p.value)
-        m = 1.0 + value if p.mapping == "relative" else value
-        out *= float(np.prod([m**e for target, e in p.targets if target == source.name]))
-    return out

@@ -16,9 +16,7 @@ from thermoscope.plugin import (
     notes,
     open_case,
     plain,
-    plugins,
     progress,
-    read_limits,
     suggestion,
     tables,
     write_csvs,
@@ -34,17 +32,11 @@ MODELS = ("c", "fmu", "json", "matlab")
 VERSIONS = (2, 3)  # of FMI
 
 
-def export(
-    case: str,
-    out: Path | None,
-    form: str,
-    limits: Sequence[str],
-    version: int,
-    target: str | None,
-    sensors: Sequence[str] = (),
-) -> int:
-    """A workbook, CSV files, the model as C, FMU, JSON or MAT file, or its observer.  sensors : of the observer"""
-    further = {} if form in (*WORKBOOKS, *MODELS) else plugins("exports")
+def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping[str, Any]) -> None:
+    """Raises InputError for a form that nobody writes, and for options that another form has.
+
+    further : forms of other extras
+    """
     if form not in (*WORKBOOKS, *MODELS, *further):
         raise InputError(f"'{form}' is no form to export", "--as", suggestion(form, (*WORKBOOKS, *MODELS, *further)))
     if version not in VERSIONS:
@@ -53,10 +45,10 @@ def export(
         raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
     if form == "fmu":
         compiler(here())
-    if form in further:
-        return int(further[form](case, out, read_limits(limits), sensors, target))
-    if form in MODELS:
-        return _model(case, out, form, read_limits(limits), version, target)
+
+
+def export_workbook(case: str, out: Path | None, form: str, target: str | None) -> int:
+    """Results as a workbook or CSV files."""
     with progress() as tell:
         folder = open_case(case, tell)
         tell("running the model")
@@ -72,10 +64,11 @@ def export(
     return 0
 
 
-def _model(
+def export_model(
     case: str, out: Path | None, form: str, limits: Mapping[str, float], version: int, target: str | None
 ) -> int:
-    from extras.export.heading import state_bytes, step_operations
+    """The model itself, to run elsewhere."""
+    from extras.export.c_code import state_bytes, step_operations
     from extras.export.model import exported
 
     with progress() as tell:

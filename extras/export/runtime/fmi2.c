@@ -23,11 +23,7 @@ EXPORT int fmi2SetupExperiment(component c, int relative, double tolerance, doub
     return OK;
 }
 EXPORT int fmi2EnterInitializationMode(component c) { (void)c; return OK; }
-EXPORT int fmi2ExitInitializationMode(component c) {
-    int status = fmu_begin(c);
-    ((fmu_instance *)c)->now.begun = 2;
-    return status;
-}
+EXPORT int fmi2ExitInitializationMode(component c) { return fmu_initialised(c); }
 EXPORT int fmi2Terminate(component c) { (void)c; return OK; }
 EXPORT int fmi2Reset(component c) { fmu_reset(c); return OK; }
 EXPORT int fmi2GetReal(component c, const reference *vr, size_t n, double *value) { return fmu_get(c, vr, n, value); }
@@ -47,34 +43,19 @@ EXPORT int fmi2DoStep(component c, double time, double step, int keeps) {
 
 EXPORT int fmi2GetFMUstate(component c, void **state) {
     free(*state);
-    *state = fmu_copy(&((fmu_instance *)c)->now);
-    return *state ? OK : ERROR;
+    return fmu_keep(&((fmu_instance *)c)->now, sizeof(fmu_values), state);
 }
-EXPORT int fmi2SetFMUstate(component c, void *state) {
-    memcpy(&((fmu_instance *)c)->now, state, sizeof(fmu_values));
-    return OK;
-}
-EXPORT int fmi2FreeFMUstate(component c, void **state) {
-    (void)c;
-    free(*state);
-    *state = NULL;
-    return OK;
-}
+EXPORT int fmi2SetFMUstate(component c, void *state) { return fmu_write(state, &((fmu_instance *)c)->now, sizeof(fmu_values)); }
+EXPORT int fmi2FreeFMUstate(component c, void **state) { (void)c; return fmu_forget(state); }
 EXPORT int fmi2SerializedFMUstateSize(component c, void *state, size_t *size) {
     (void)c, (void)state;
     *size = sizeof(fmu_values);
     return OK;
 }
-EXPORT int fmi2SerializeFMUstate(component c, void *state, char *to, size_t size) {
-    (void)c;
-    if (size < sizeof(fmu_values)) return ERROR;
-    memcpy(to, state, sizeof(fmu_values));
-    return OK;
-}
+EXPORT int fmi2SerializeFMUstate(component c, void *state, char *to, size_t size) { (void)c; return fmu_write(state, to, size); }
 EXPORT int fmi2DeSerializeFMUstate(component c, const char *from, size_t size, void **state) {
     (void)c;
-    *state = size == sizeof(fmu_values) ? fmu_copy(from) : NULL;
-    return *state ? OK : ERROR;
+    return fmu_keep(from, size, state);
 }
 EXPORT int fmi2CancelStep(component c) { (void)c; return ERROR; }
 EXPORT int fmi2GetRealStatus(component c, int kind, double *value) {

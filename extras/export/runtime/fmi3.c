@@ -37,11 +37,7 @@ EXPORT int fmi3EnterInitializationMode(instance c, bool defined, double toleranc
     ((fmu_instance *)c)->now.begin = start;
     return OK;
 }
-EXPORT int fmi3ExitInitializationMode(instance c) {
-    int status = fmu_begin(c);
-    ((fmu_instance *)c)->now.begun = 2;
-    return status;
-}
+EXPORT int fmi3ExitInitializationMode(instance c) { return fmu_initialised(c); }
 EXPORT int fmi3Terminate(instance c) { (void)c; return OK; }
 EXPORT int fmi3Reset(instance c) { fmu_reset(c); return OK; }
 EXPORT int fmi3EnterStepMode(instance c) { (void)c; return OK; }
@@ -64,34 +60,19 @@ EXPORT int fmi3DoStep(instance c, double time, double step, bool keeps, bool *ev
 
 EXPORT int fmi3GetFMUState(instance c, void **state) {
     free(*state);
-    *state = fmu_copy(&((fmu_instance *)c)->now);
-    return *state ? OK : ERROR;
+    return fmu_keep(&((fmu_instance *)c)->now, sizeof(fmu_values), state);
 }
-EXPORT int fmi3SetFMUState(instance c, void *state) {
-    memcpy(&((fmu_instance *)c)->now, state, sizeof(fmu_values));
-    return OK;
-}
-EXPORT int fmi3FreeFMUState(instance c, void **state) {
-    (void)c;
-    free(*state);
-    *state = NULL;
-    return OK;
-}
+EXPORT int fmi3SetFMUState(instance c, void *state) { return fmu_write(state, &((fmu_instance *)c)->now, sizeof(fmu_values)); }
+EXPORT int fmi3FreeFMUState(instance c, void **state) { (void)c; return fmu_forget(state); }
 EXPORT int fmi3SerializedFMUStateSize(instance c, void *state, size_t *size) {
     (void)c, (void)state;
     *size = sizeof(fmu_values);
     return OK;
 }
-EXPORT int fmi3SerializeFMUState(instance c, void *state, uint8_t *to, size_t size) {
-    (void)c;
-    if (size < sizeof(fmu_values)) return ERROR;
-    memcpy(to, state, sizeof(fmu_values));
-    return OK;
-}
+EXPORT int fmi3SerializeFMUState(instance c, void *state, uint8_t *to, size_t size) { (void)c; return fmu_write(state, to, size); }
 EXPORT int fmi3DeserializeFMUState(instance c, const uint8_t *from, size_t size, void **state) {
     (void)c;
-    *state = size == sizeof(fmu_values) ? fmu_copy(from) : NULL;
-    return *state ? OK : ERROR;
+    return fmu_keep(from, size, state);
 }
 #define BOTH(type) UNSUPPORTED(fmi3Get##type) UNSUPPORTED(fmi3Set##type)
 BOTH(Float32)

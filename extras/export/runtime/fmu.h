@@ -78,10 +78,29 @@ static int fmu_step(fmu_instance *m, double seconds) {
     return thermal_step(&m->now.s, &m->w, (thermal_real)seconds, m->now.in) ? ERROR : OK;
 }
 
-static void *fmu_copy(const void *from) {
-    void *out = malloc(sizeof(fmu_values));
-    if (out) memcpy(out, from, sizeof(fmu_values));
-    return out;
+static int fmu_initialised(fmu_instance *m) {
+    int status = fmu_begin(m);
+    m->now.begun = 2;
+    return status;
+}
+
+/* The values apart from their instance: a state of the standard, and its bytes. */
+static int fmu_keep(const void *values, size_t size, void **state) {
+    *state = size == sizeof(fmu_values) ? malloc(size) : NULL;
+    if (*state) memcpy(*state, values, size);
+    return *state ? OK : ERROR;
+}
+
+static int fmu_forget(void **state) {
+    free(*state);
+    *state = NULL;
+    return OK;
+}
+
+static int fmu_write(const void *values, void *to, size_t size) {
+    if (size < sizeof(fmu_values)) return ERROR;
+    memcpy(to, values, sizeof(fmu_values));
+    return OK;
 }
 
 #define UNSUPPORTED(name) EXPORT int name() { return ERROR; }

@@ -16,48 +16,35 @@ from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
 from thermoscope import InputError
 from thermoscope.plugin import (
     NORMAL_95,
+    Progress,
     Summary,
     Table,
     dask_cluster,
-    give,
     load_sheet,
     one_blas_thread,
     open_case,
-    progress,
     suggestion,
 )
 
 
 @one_blas_thread
-def fleet(case: str, names: Sequence[Path], like: str | None, cluster: str | None, target: str | None) -> int:
+def fleet_document(
+    case: str, names: Sequence[Path], like: str | None, cluster: str | None, tell: Progress
+) -> dict[str, Any]:
     """like : the test of the case whose sheet the recordings have;  cluster : address of a Dask scheduler"""
-    files = recordings(names)
-    with progress() as tell:
-        folder = open_case(case, tell)
-        sheets = {e.name: e.sheet for e in folder.settings.tests}
-        if like is not None and like not in sheets:
-            raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
-        test = next(t for t in folder.case.tests if like in (None, t.name))
-        reader = Reader(
-            replace(folder.case, tests=()),
-            test,
-            load_sheet(sheets[test.name]),
-            folder.settings.sample_s or STEP_S,
-            tuple(sheets),
-        )
-        with dask_cluster(cluster) if cluster else nullcontext() as executor:
-            units = histories(files, reader, tell, executor)
-        tell("the motors together")
-        spread = population(units)
+    files, folder = recordings(names), open_case(case, tell)
+    sheets = {e.name: e.sheet for e in folder.settings.tests}
+    if like is not None and like not in sheets:
+        raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
+    test = next(t for t in folder.case.tests if like in (None, t.name))
+    sheet, step_s = load_sheet(sheets[test.name]), folder.settings.sample_s or STEP_S
+    reader = Reader(replace(folder.case, tests=()), test, sheet, step_s, tuple(sheets))
+    with dask_cluster(cluster) if cluster else nullcontext() as executor:
+        units = histories(files, reader, tell, executor)
+    tell("the motors together")
     fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
-    document = {
-        "case": folder.case.name,
-        "revision": folder.case.model.revision,
-        "recordings": len(files),
-        **_document(spread, fits),
-    }
-    give(document, target, lambda: fleet_summary(document))
-    return 0
+    head = {"case": folder.case.name, "revision": folder.case.model.revision, "recordings": len(files)}
+    return {**head, **_document(population(units), fits)}
 
 
 def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:

@@ -3,80 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
-from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
-from extras.monitor.rows.observing import chosen, designed, joined, record_of, started
-from thermoscope import InputError, Record
+from extras.monitor.rows.live_rows import PIPE, Rows
+from extras.monitor.rows.observing import joined, record_of, started
+from thermoscope import Record
 from thermoscope.plugin import (
     NORMAL_95,
     PACKAGE,
-    STDOUT,
+    Array,
     Channel,
     Folder,
     Summary,
     Table,
     csv_lines,
-    give,
     initial_state,
-    load_sheet,
     mean_rows,
     model_of,
-    open_case,
-    progress,
     say,
     stem_of,
-    write_whole,
 )
 
-Array = NDArray[np.float64]
 MINUTE = 60.0
 
 
-def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
-    """Rows from a file or a pipe.  names : sensors to use, by default all;  like : test whose sheet the rows have"""
-    with open_stream(follow) as stream:
-        with progress() as tell:
-            folder = open_case(case, tell)
-            sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
-            network = folder.case.model.network
-            name, table, lines = table_of(stream, follow, sheets, network, like)
-            channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
-            here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = chosen(here, names, follow)
-            design = designed(folder, tell)
-        session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
-        with suppress(KeyboardInterrupt):
-            for part in together(lines, 1 if follow == PIPE else TOGETHER):
-                session.take(table.rows(part))
-    if session.one is None:
-        raise InputError("holds no row", follow, "rows of numbers under the header")
-    where = out or (Path("out") / folder.settings.path.name if _shipped(folder) else folder.settings.out)
-    label = "pipe" if follow == PIPE else stem_of(Path(follow))
-    file = write_whole(where / f"watch-{label}.csv", session.csv())
-    document = {
-        "case": folder.case.name,
-        "revision": folder.case.model.revision,
-        "source": follow,
-        "like": name,
-        **session.document(),
-        "file": str(file),
-    }
-    give(document, target, lambda: watch_summary(document))
-    return 0
-
-
-def _shipped(folder: Folder) -> bool:
-    return PACKAGE in folder.settings.path.resolve().parents
+def watched_file(folder: Folder, follow: str, out: Path | None) -> Path:
+    """Where every sample is kept; beside no case that comes along."""
+    shipped = PACKAGE in folder.settings.path.resolve().parents
+    where = out or (Path("out") / folder.settings.path.name if shipped else folder.settings.out)
+    return where / f"watch-{'pipe' if follow == PIPE else stem_of(Path(follow))}.csv"
 
 
 @dataclass

@@ -15,12 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm
 
 from extras.monitor.fleet.unit import UnitHistory
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 FREEDOM = 4.0  # of Student's t: a motor at four deviations counts half
 ROUNDS, TOLERANCE = 300, 1e-4  # of the iteration: it ends far sooner or turns in a circle; a tenth of NARROW
 NARROW = 1e-3  # smallest spread (of the logarithm): a per mille is no difference

@@ -13,13 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network, Parameter
+from thermoscope.plugin import Array, Test, minimise, parameter_values, standing_reference, to_coordinate, working
 from thermoscope.plugin import MeasuredCase as Case
-from thermoscope.plugin import Test, minimise, parameter_values, standing_reference, to_coordinate, working
 
-Array = NDArray[np.float64]
 CAPACITY_YEAR, LOSS_YEAR = 0.005, 0.03  # masses stay, magnets and sheets age by per cents (of the logarithm)
 PATH_YEAR = 0.3  # a film or joint that loses a quarter in a year is fouling or loosening badly
 ITERATIONS = 5  # of Gauss and Newton: a film at a third of its value takes four

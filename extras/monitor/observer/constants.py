@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network, Parameter
 from thermoscope.plugin import (
     AIR,
     LIQUID,
+    Array,
     Channel,
     Doubt,
     Fixed,
@@ -31,7 +31,6 @@ from thermoscope.plugin import (
     to_value,
 )
 
-Array = NDArray[np.float64]
 MOVING = ("speed", "vehicle_speed", AIR, LIQUID)
 FARTHEST = 1.5  # of a logarithm: beyond, a tangent says nothing
 LEARNED = "learned:"
@@ -151,10 +150,10 @@ class Constants:
 
     def by_sensor(self, j: int, z: Array) -> Iterator[tuple[int, float]]:
         """Where in the vector, and how much (K) its reading at z = [x; u] changes with it."""
-        i, reading = self.first(j), _at(self.channels[j].row, z)
+        i, reading = self.first(j), row_temperature(self.channels[j].row, z)
         for k, (row, _) in enumerate(self.beside[j]):
-            yield i + k, _at(row, z) - reading
-        yield i + len(self.beside[j]), reading - _at(self.air, z)
+            yield i + k, row_temperature(row, z) - reading
+        yield i + len(self.beside[j]), reading - row_temperature(self.air, z)
         yield i + len(self.beside[j]) + 1, 1.0
 
     def bias(self, j: int, w: Array) -> float:
@@ -167,5 +166,6 @@ class Constants:
         }
 
 
-def _at(row: Row, z: Array) -> float:
+def row_temperature(row: Row, z: Array) -> float:
+    """At a row (degC) of z = [x; u]."""
     return float(row.weights @ z[row.index])

@@ -15,12 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thermoscope.plugin import PRIOR, temper
+from thermoscope.plugin import PRIOR, Array, temper
 from thermoscope.plugin import USUAL_DOUBT as USUAL
 
-Array = NDArray[np.float64]
 FORGETS_S = 1800.0  # half an hour: a motor's own time constant
 SURE = 0.95  # probability from which a hypothesis is said
 OVER = 0.5  # and below which it is withdrawn

@@ -12,14 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from extras.monitor.observer.constants import Constants
+from extras.monitor.observer.constants import Constants, row_temperature
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Record
 from thermoscope.plugin import (
     CONSTANT,
+    Array,
     Channel,
     Row,
     Signals,
@@ -38,7 +38,6 @@ from thermoscope.plugin import (
 )
 from thermoscope.plugin import USUAL_DOUBT as USUAL
 
-Array = NDArray[np.float64]
 LASTS_S = 600.0  # an error of a whole recording is that of a place or of its rig: it lasts as long as the heat does
 CLOSE = 1e-3  # deviations of a constant that change no heat worth the work
 STEP_K = 0.01  # of the difference that says how a law turns with temperature
@@ -82,8 +81,7 @@ class _Run:
         self.u = np.column_stack([np.broadcast_to(course.boundaries[b], self.time.shape) for b in names])
         self.at = {c.name: j for j, c in enumerate(of.constants.channels)}
         self.x, self.P = self._begun(of.noise)
-        self.along = np.zeros((self.x.size, self.process.slow.size))
-        self.along[self.process.slow, np.arange(self.process.slow.size)] = 1.0
+        self.along = self.process.slow_only
         self.lagged = np.zeros(len(test.channels))
 
     def _begun(self, noise: ProcessNoise) -> tuple[Array, Array]:
@@ -144,8 +142,7 @@ class _Run:
 
     def _reading_of(self, c: Channel, z: Array) -> float:
         j = self.at[c.name]
-        row = self.of.constants.sensor_row(j, self.w)
-        return float(row.weights @ z[row.index]) + self.of.constants.bias(j, self.w)
+        return row_temperature(self.of.constants.sensor_row(j, self.w), z) + self.of.constants.bias(j, self.w)
 
     def _slope(self, c: Channel, z: Array) -> Array:
         """(N,) what a reading sees of everything."""
@@ -218,7 +215,7 @@ class _Terms:
     def _laws(self, z: Array) -> Array:
         out = np.ones(len(self.every.patterns))
         for e, law, hot, cold in self._bent:
-            out[e] = temperature_value(law, _T(hot, z), _T(cold, z), self._sizes[e])
+            out[e] = temperature_value(law, row_temperature(hot, z), row_temperature(cold, z), self._sizes[e])
         return out
 
     def heat(self, z: Array) -> tuple[Array, Array]:
@@ -254,14 +251,10 @@ class _Varying(Process):
         return self.stepped(lambda x: self.terms.heat(np.concatenate([x, u, [1.0]])), self.terms.C, x, q, h)
 
 
-def _T(row: Row, z: Array) -> float:
-    return float(row.weights @ z[row.index])
-
-
 def _slope(law: TemperatureLaw, hot: Row, cold: Row, z: Array, side: int, size: float) -> float:
     """Of a law with one of its temperatures, at a size of the input that it sees."""
     if law == CONSTANT:
         return 0.0
-    a, b = _T(hot, z), _T(cold, z)
+    a, b = row_temperature(hot, z), row_temperature(cold, z)
     more = temperature_value(law, a + STEP_K * (side == 0), b + STEP_K * (side == 1), size)
     return (more - temperature_value(law, a, b, size)) / STEP_K

@@ -10,12 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
-
-Array = NDArray[np.float64]
+from thermoscope.plugin import Array
 
 
 @dataclass
@@ -82,6 +80,4 @@ def begun(
     S = np.zeros((n + m, n + m))
     S[:n, :n] = np.diag([sd.get(int(column), usual_sd) for column in process.slow])
     S[n:, n:] = noise.root
-    along = np.zeros((len(process.network.states), n))
-    along[process.slow, np.arange(n)] = 1.0
-    return Filter(process, noise, x, np.zeros(m), S, np.zeros((n + m, heats.shape[1])), heats, along)
+    return Filter(process, noise, x, np.zeros(m), S, np.zeros((n + m, heats.shape[1])), heats, process.slow_only)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer.constants import Constants, Sensor, with_motion
 from extras.monitor.observer.joint_filter import JointFilter
@@ -14,10 +13,9 @@ from extras.monitor.observer.observer import Observer, Sample, observer
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Network, Parameter
-from thermoscope.plugin import Channel, Doubt, ParameterPosterior, Test, parameter_posterior, record, thermal
+from thermoscope.plugin import Array, Channel, Doubt, ParameterPosterior, Test, parameter_posterior, record, thermal
 from thermoscope.plugin import MeasuredCase as Case
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor
 TIME_S = 1200.0  # that missing heat lasts: between a winding's time constant and a machine's

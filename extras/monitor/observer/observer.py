@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, hypotheses
@@ -16,9 +15,8 @@ from extras.monitor.observer.process_noise import ProcessNoise
 from extras.monitor.observer.sensor_faults import SensorState
 from thermoscope import Record
 from thermoscope.plugin import USUAL_DOUBT as USUAL
-from thermoscope.plugin import Channel, Row, initial_state
+from thermoscope.plugin import Array, Channel, Row, initial_state
 
-Array = NDArray[np.float64]
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
 
 

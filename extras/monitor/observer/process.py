@@ -15,13 +15,11 @@ from functools import cached_property, partial
 from math import ceil, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from thermoscope import Network, Record
-from thermoscope.plugin import READINGS, Channel, Compiled, Row, compiled, instant, within_silence
+from thermoscope.plugin import READINGS, Array, Channel, Compiled, Ints, Row, compiled, instant, within_silence
 
-Array = NDArray[np.float64]
 GAMMA = 1.0 - sqrt(0.5)  # L-stable
 LONGEST_S = 20.0  # of an inner step: a fraction of the time constants that windings have
 
@@ -59,13 +57,13 @@ class Process:
     bodies: tuple[str, ...]
 
     @cached_property
-    def slow(self) -> NDArray[np.int64]:
+    def slow(self) -> Ints:
         """The states of the reduced model."""
         visible = np.array(["#" not in s for s in self.network.states], bool)
         return np.flatnonzero(visible & (self.network.C > 0.0))
 
     @cached_property
-    def fast(self) -> NDArray[np.int64]:
+    def fast(self) -> Ints:
         """The others: shapes, and nodes without capacity."""
         return np.setdiff1d(np.arange(len(self.network.states)), self.slow)
 
@@ -139,10 +137,16 @@ class Process:
 
     def balance(self, G: Array) -> Array:
         """(n, n_slow) all states that follow the slow ones at once."""
-        out = np.zeros((len(G), self.slow.size))
-        out[self.slow, np.arange(self.slow.size)] = 1.0
+        out = self.slow_only
         if self.fast.size:
             out[self.fast] = -np.linalg.solve(G[np.ix_(self.fast, self.fast)], G[np.ix_(self.fast, self.slow)])
+        return out
+
+    @property
+    def slow_only(self) -> Array:
+        """(n, n_slow) the slow states alone: where nothing follows them yet."""
+        out = np.zeros((len(self.network.states), self.slow.size))
+        out[self.slow, np.arange(self.slow.size)] = 1.0
         return out
 
     def sensed(self, row: Row, along: Array) -> Array:

@@ -10,10 +10,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network, Parameter, simulate
 from thermoscope.plugin import (
+    Array,
     Assembly,
     ParameterPosterior,
     Test,
@@ -33,7 +33,6 @@ from thermoscope.plugin import (
     within_silence,
 )
 
-Array = NDArray[np.float64]
 INSTANTS = 100  # of a test: heat turns slowly
 MOST_BODIES = 10  # heat in small parts shows in their neighbours
 REMAINS = 1e-6  # of the largest variance: keeps a covariance positive where nothing is in doubt

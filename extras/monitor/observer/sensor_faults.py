@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thermoscope.plugin import COLDEST, HOTTEST
+from thermoscope.plugin import COLDEST, HOTTEST, Array
 
-Array = NDArray[np.float64]
 LOST_S = 30.0  # a plug that is wiggled comes back sooner
 BACK_S = 60.0  # of good readings, before a sensor is believed again
 FROZEN_S = 120.0  # a recorder that hangs for less does little harm

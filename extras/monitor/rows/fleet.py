@@ -10,17 +10,15 @@ from datetime import date
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.fleet import Statistics, UnitHistory, statistics
 from extras.monitor.rows.live_rows import Rows, open_stream, table_of, together
 from thermoscope import InputError, Network
 from thermoscope.plugin import LAW_RUNNING as RUNNING
+from thermoscope.plugin import Array, Channel, Ints, Sheet, Test, stem_of
 from thermoscope.plugin import CaseProgress as Progress
-from thermoscope.plugin import Channel, Sheet, Test, stem_of
 from thermoscope.plugin import MeasuredCase as Case
 
-Array = NDArray[np.float64]
 PIECE = 20_000  # rows that are in memory at once: five hours at 1 Hz
 LEAST = 60  # rows worth a fit
 STEP_S = 20.0  # between the instants that a fit looks at, where the case does not say
@@ -87,7 +85,7 @@ class Reader:
         return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
 
 
-def _starts(time: Array, step_s: float) -> NDArray[np.int64]:
+def _starts(time: Array, step_s: float) -> Ints:
     """First row of every step."""
     cell = np.floor((time - time[0]) / step_s)
     return np.flatnonzero(np.diff(cell, prepend=-1.0) > 0)

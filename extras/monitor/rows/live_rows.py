@@ -11,12 +11,10 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import Column, Sheet, as_number, converted, suggestion
+from thermoscope.plugin import Array, Column, Sheet, as_number, converted, suggestion
 
-Array = NDArray[np.float64]
 TOGETHER = 500  # rows of a file that are read at once
 PIPE = "-"
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.monitor.observer import Observer
 from extras.monitor.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
@@ -17,6 +16,7 @@ from extras.monitor.rows.live_rows import Rows
 from thermoscope import InputError, Record
 from thermoscope.plugin import (
     CLOCK,
+    Array,
     Channel,
     Folder,
     cache_folder,
@@ -30,7 +30,6 @@ from thermoscope.plugin import (
 from thermoscope.plugin import LAW_RUNNING as RUNNING
 from thermoscope.plugin import CaseProgress as Progress
 
-Array = NDArray[np.float64]
 LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.rating.commands.rate import case_or_machine, once, read_at
+from extras.rating.commands.rate import case_or_machine
 from extras.rating.envelope import rated
 from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import coolant_boundaries
@@ -24,12 +24,9 @@ from thermoscope.plugin import (
     Table,
     bands_requested,
     families,
-    give,
     named_rows,
-    notes,
     posterior_of,
     progress,
-    read_limits,
 )
 from thermoscope.plugin import MachineDescription as Machine
 
@@ -51,28 +48,27 @@ class Design:
         return self.folder.built.machine
 
 
-def compare_designs(
-    names: Sequence[str], limits: Sequence[str], at: Sequence[str], sure: bool | None, target: str | None
-) -> int:
-    """Machines, or cases of machines, side by side: two to six of them."""
+def compared_designs(
+    names: Sequence[str], limits: Mapping[str, float], around: Mapping[str, float], sure: bool | None
+) -> dict[str, Any]:
+    """Two to six machines, or cases of machines, side by side.
+
+    limits : place -> degC;  around : boundaries (degC) and inputs of all;  sure : whether ratings have bands
+    """
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
-    limited, around = read_limits(limits), read_at(at)
-    with progress() as tell, once() as messages:
+    with progress() as tell:
         designs: list[Design] = []
         for name in names:
             folder = case_or_machine(name, tell)
             conditions = {**(designs[0].it.op.boundaries if designs else {}), **around}
-            designs.append(design(folder, limited, conditions))
+            designs.append(design(folder, limits, conditions))
         tell("ratings")
-        document = {
-            "designs": [_described(one, limited, sure, tell) for one in designs],
+        return {
+            "designs": [_described(one, limits, sure, tell) for one in designs],
             "dimensions": dimensions([one.machine for one in designs]),
             "boundaries": dict(designs[0].it.op.boundaries),
         }
-    notes(messages)
-    give(document, target, lambda: designs_summary(document))
-    return 0
 
 
 def design(folder: Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:

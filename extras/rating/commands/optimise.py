@@ -2,49 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from extras.rating.commands.rate import case_or_machine, once, read_at
+from extras.rating.commands.rate import case_or_machine
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.design_problem import DesignRequest, checked_request, design_problem
 from extras.rating.design.machine_keys import MachineFile, machine_file_text, short_key
-from extras.rating.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
+from extras.rating.designs import WORDS
+from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, pareto_set
 from thermoscope import InputError
-from thermoscope.plugin import Summary, Table, csv_lines, file_stem, give, notes, progress, read_limits, write_whole
-
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
-WORDS = {PEAK: "peak (degC)", SETTLING: "settling (min)", COPPER: "copper (W)", AUXILIARY: "pump and fan (W)"}
+from thermoscope.plugin import Summary, Table, csv_lines, file_stem, progress, write_whole
 
 
-def optimise(
-    name: str,
-    limits: Sequence[str],
-    torque: float | None,
-    at: Sequence[str],
-    vary: Sequence[str],
-    method: str,
-    effort: Effort,
-    cluster: str | None,
-    cycle: str | None,
-    robust: bool,
-    out: Path | None,
-    target: str | None,
-) -> int:
-    """The Pareto set of a case or a machine file; table, plots and machine files in a folder."""
-    if method not in METHODS:
-        raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
-    request = DesignRequest(read_limits(limits), torque, read_at(at), read_bounds(vary), robust, cycle)
-    if not request.limits:
-        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as messages, _executor(cluster) as executor:
+def optimised(
+    name: str, request: DesignRequest, method: str, effort: Effort, cluster: str | None, out: Path | None
+) -> tuple[dict[str, Any], Path]:
+    """The Pareto set of a case or a machine file, and the folder of its table, plots and machine files."""
+    from thermoscope.plugin import dask_cluster
+
+    with progress() as tell, dask_cluster(cluster) if cluster else nullcontext() as executor:
         folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
@@ -54,21 +36,8 @@ def optimise(
             document["interpolation_error"] = Condensations(problem, tell).verified(samples)
         where = out or Path("out") / f"{file_stem(folder.case.name)}-designs"
         tell(f"writing {where}")
-        document = {"case": folder.case.name, **document, "files": _write(where, problem, designs, document, file)}
-    notes(messages)
-    give(document, target, lambda: optimisation_summary(document, where))
-    return 0
-
-
-@contextmanager
-def _executor(cluster: str | None) -> Iterator[Executor | None]:
-    if cluster is None:
-        yield None
-        return
-    from thermoscope.plugin import dask_cluster
-
-    with dask_cluster(cluster) as executor:
-        yield executor
+        files = _write(where, problem, designs, document, file)
+    return {"case": folder.case.name, **document, "files": files}, where
 
 
 def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:

@@ -30,12 +30,9 @@ from thermoscope.plugin import (
     bands_requested,
     before_last,
     find_case,
-    give,
     notes,
     open_case,
     posterior_of,
-    progress,
-    read_limits,
     read_pairs,
     read_settings,
     short_of,
@@ -47,42 +44,6 @@ POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
 LARGEST_START = 1e7  # in amperes or newton metres: beyond any machine
 WARM = 0.75  # load at rest from which an overload begins warm
-
-
-def rate(
-    name: str,
-    limits: Sequence[str],
-    at: Sequence[str],
-    losses: Path | None,
-    voltage: float | None,
-    overload: float,
-    top_rpm: float | None,
-    loads: Sequence[str],
-    cycle: str | None,
-    mapped: bool,
-    start: str,
-    sure: bool | None,
-    target: str | None,
-) -> int:
-    """Ratings of a case, or of a machine with nothing measured."""
-    options = read_limits(limits), read_at(at), tuple(loads)
-    request = RatingRequest(*options, losses, voltage, overload / 100.0, top_rpm, cycle, mapped, read_start(start))
-    if voltage is not None and losses is None:
-        raise InputError(
-            "is of a loss map, and none is given", "--voltage", "--losses FILE.csv with a column voltage_V"
-        )
-    if not request.limits:
-        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, once() as messages:
-        folder = case_or_machine(name, tell)
-        document = {
-            "case": folder.case.name,
-            "revision": folder.case.model.revision,
-            **document_of(folder, request, sure, tell),
-        }
-    notes(messages)
-    give(document, target, lambda: rating_summary(document))
-    return 0
 
 
 def read_at(words: Sequence[str]) -> dict[str, float]:
@@ -128,7 +89,7 @@ def once() -> Iterator[list[str]]:
     notes.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
 
 
-def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
+def rating_document(folder: Folder, request: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
     it = rated_model(folder, request)
     model, op, limits = it.model, it.op, it.limits
     tell("ratings")
@@ -142,6 +103,8 @@ def document_of(folder: Folder, request: RatingRequest, sure: bool | None, tell:
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
         "limits": [{"place": p, "degC": T} for p, T in limits.items()],
         "reference": {
             "input": op.main,
@@ -232,22 +195,20 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
     """The continuous rating with its band; the other forms; cycle, map, envelope and derating."""
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
-    band = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
-    sentence = f"Continuous: {main} = {first['value']:.4g}{band}, limited by {first['at']}{_change(first)}."
+    sure = "" if first["ci95"] is None else f" ({first['ci95'][0]:.4g} to {first['ci95'][1]:.4g})"
+    sentence = f"Continuous: {main} = {first['value']:.4g}{sure}, limited by {first['at']}{_change(first)}."
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
     elif np.isfinite(margin := 100.0 * (first["value"] / reference["value"] - 1.0)):
         more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"{-margin:.3g} % too much"
         sentence += f" At {reference['value']:.4g} there is {more}."
-    rows = [
-        [r["form"], r["value"], *(r["ci95"] or (None, None)), r["at"], r["before"], r["change_percent"]]
-        for r in document["ratings"]
-    ]
-    headers = ["form", main, "95 % from", "to", "limited by", "before", "change (%)"]
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
-    table = Table("", headers, rows, keep=[main, "95 % from", "to", "change (%)"])
+    ends: dict[str, Any] = {"low": lambda r: (r["ci95"] or [None])[0], "high": lambda r: (r["ci95"] or [None])[-1]}
+    heading = main.replace("|", "/").replace("=", "/")  # signs that end the name of a column
+    band = f"*{heading}=value | *95 % from=low | *to=high | limited by=at | before"
+    table = Table.of("", document["ratings"], f"form | {band} | *change (%)=change_percent", **ends)
     parts: list[Table | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(
@@ -258,17 +219,18 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
         parts.append(_of_cycle(cycle))
     parts += [_of_map(document["map"], main)] if document["map"] else []
     shares = [
-        [d["of"], d["value"], d["unit"], *_percent([d["share"], *(d["share_ci95"] or (None, None)), d["share_before"]])]
+        {
+            **d,
+            "share": _percent(d["share"]),
+            "share_before": _percent(d["share_before"]),
+            "ci95": [100.0 * s for s in d["share_ci95"] or ()],
+        }
         for d in document["derating"]
     ]
-    elsewhere = ["over", "value", "unit", "% of it", "95 % from", "to", "before (%)"]
-    parts.append(Table("Continuous rating elsewhere", elsewhere, shares, keep=["value", "% of it", "95 % from", "to"]))
-    envelope = [
-        [e["form"], e["speed_rpm"], e["value"], *(e["ci95"] or (None, None)), e["at"], e["before"]]
-        for e in document["envelope"]
-    ]
-    over_speed = ["form", "speed (1/min)", main, "95 % from", "to", "limited by", "before"]
-    parts.append(Table("Over the speed", over_speed, envelope, keep=["speed (1/min)", main]))
+    elsewhere = "over=of | *value | unit | *% of it=share | *95 % from=low | *to=high | before (%)=share_before"
+    parts.append(Table.of("Continuous rating elsewhere", shares, elsewhere, **ends))
+    over_speed = f"form | *speed (1/min)=speed_rpm | {band.replace('*95', '95').replace('*to', 'to')}"
+    parts.append(Table.of("Over the speed", document["envelope"], over_speed, **ends))
     return Summary(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
 
 
@@ -280,8 +242,8 @@ def _change(first: Mapping[str, Any]) -> str:
     return f"; {abs(change):.3g} % {'more' if change > 0.0 else 'less'} than the model before its last step said"
 
 
-def _percent(shares: Sequence[float | None]) -> list[float | None]:
-    return [None if s is None else 100.0 * s for s in shares]
+def _percent(share: float | None) -> float | None:
+    return None if share is None else 100.0 * share
 
 
 def _of_cycle(cycle: Mapping[str, Any]) -> str:

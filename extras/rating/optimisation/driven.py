@@ -10,11 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thermoscope.plugin import ALPHA_CU, Controller, SeriesMachine, Vehicle, drive_cycle
+from thermoscope.plugin import ALPHA_CU, Array, Controller, SeriesMachine, Vehicle, drive_cycle
 
-Array = NDArray[np.float64]
 GAINS = {"controller.Kp": "Kp", "controller.Ki": "Ki"}  # keys of a cycle that a design may change
 LAG = 0.05  # of the cycle's mean speed: what the vehicle may lack on average; it coasts where it is too fast
 

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.rating.hot_spots import HotSpots
 from extras.rating.optimisation.auxiliaries import auxiliary_power
@@ -19,10 +18,9 @@ from extras.rating.optimisation.rest import Rest, losses, rest, without_feedback
 from extras.rating.optimisation.scaling import Scaling
 from extras.rating.optimisation.space import Space
 from thermoscope import InputError, Network
-from thermoscope.plugin import NORMAL_95, Row
+from thermoscope.plugin import NORMAL_95, Array, Row
 from thermoscope.plugin import MachineDescription as Machine
 
-Array = NDArray[np.float64]
 PEAK, SETTLING, COPPER, AUXILIARY = OBJECTIVES = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
 IMPOSSIBLE = 1e9  # what a design costs that no file can describe
 GEOMETRY = "geometry fits"

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermoscope import Network, Record
 from thermoscope.plugin import (
+    Array,
     Law,
     Linear,
     Row,
@@ -34,7 +34,6 @@ from thermoscope.plugin import (
 )
 from thermoscope.plugin import integration_stages as stages
 
-Array = NDArray[np.float64]
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
 SMALLEST = 1e-6  # of the largest heat capacity: what stands for none
 REMAINING = 0.05  # of the rise that is left at the settling time

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from extras.rating.optimisation.problem import Performance, Problem
 from thermoscope import InputError, MissingDependency
+from thermoscope.plugin import Array
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 Method = Callable[[int, int, int], Any]
 CHUNKS = 16  # tasks per generation on a cluster

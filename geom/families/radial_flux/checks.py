@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from geom.description.geometry import Geometry
+from geom.families.channels import too_near
 from geom.families.fit import Fit, mm
-from geom.families.nozzles import too_near
 from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets

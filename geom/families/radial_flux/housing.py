@@ -9,9 +9,8 @@ from geom.description.geometry import Geometry
 from geom.description.part import CadShape, Part, Port, Prism, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role
-from geom.families.nozzles import Nozzle
+from geom.families.channels import Nozzle, Turns
 from geom.families.radial_flux.layout import Layout
-from geom.families.turns import Turns
 
 
 def enclosure(g: Geometry, at: Layout) -> tuple[Part, ...]:

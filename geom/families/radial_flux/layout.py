@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from geom.description.geometry import Geometry
-from geom.families.shaft_fan import WHEEL
 
 
 class Layout:
@@ -14,7 +13,6 @@ class Layout:
     def __init__(self, g: Geometry) -> None:
         self.length = g.frame.length
         self.cowl0 = 0.0 - g.fan.depth  # no -0.0
-        self.shaft0 = (1 - WHEEL[0]) * self.cowl0
         self.cap0, self.cap1 = g.frame.cap, g.frame.length - g.frame.cap
         self.core0 = (g.frame.length - g.stator.stack_length) / 2
         self.core1 = self.core0 + g.stator.stack_length

@@ -9,11 +9,13 @@ from geom.description.profile import Profile
 from geom.description.roles import Role
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import corners
+from geom.families.shaft_fan import WHEEL
 
 
 def shaft(g: Geometry, at: Layout) -> Part:
-    round_bar = shapes.disc(g.shaft.diameter / 2)
-    return Part("shaft", "steel", ((round_bar, at.shaft0, at.length + g.shaft.extension),), role=Role.SHAFT)
+    """From the fan's wheel to the end of the extension."""
+    span = (1 - WHEEL[0]) * at.cowl0, at.length + g.shaft.extension
+    return Part("shaft", "steel", ((shapes.disc(g.shaft.diameter / 2), *span),), role=Role.SHAFT)
 
 
 def magnet_rotor(g: Geometry, at: Layout) -> tuple[Part, ...]:

@@ -14,8 +14,7 @@ from geom.families.family import Family
 from geom.families.series_dc.checks import check
 from geom.families.series_dc.commutator import brush_gear
 from geom.families.series_dc.features import features
-from geom.families.series_dc.housing import enclosure
-from geom.families.series_dc.jacket import coolant, ports
+from geom.families.series_dc.housing import coolant, enclosure, ports
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.parameters import PARAMETERS
 from geom.families.series_dc.rotor import rotor

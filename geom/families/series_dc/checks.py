@@ -6,9 +6,9 @@ import math
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
+from geom.families.channels import too_near
 from geom.families.fit import Fit, mm
-from geom.families.nozzles import too_near
-from geom.families.series_dc.jacket import nozzles
+from geom.families.series_dc.housing import nozzles
 from geom.families.series_dc.layout import Axial, Radii
 from geom.families.series_dc.rotor import duct_circle
 from geom.families.shaft_fan import check_fan

@@ -94,6 +94,7 @@ def test_curves_shows_them_and_the_pool(thermoscope, tmp_path):
     )
     assert code == 0
     assert (tmp_path / "found.json").is_file()
+    assert "3 of 3 assemblies are within the 3 to 4 % rule" in out
     assert "T = a exp(b exp(c t))" in out
     assert "run-1, run-2, run-3" in out
 

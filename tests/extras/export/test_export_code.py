@@ -10,7 +10,7 @@ import pytest
 from random_networks import built, machine
 
 from extras.export.c_code import c_files
-from extras.export.commands.export import export
+from extras.export.cli import export
 from extras.export.drive import AGREES_K, Compiled, difference
 from extras.export.model import Output, packed
 from lumped.correlations.ducts import duct_film
@@ -135,7 +135,7 @@ def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
 
 
 def test_the_header_says_what_a_user_must_know(tmp_path):
-    assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], 2, str(tmp_path / "said.json")) == 0
+    assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], json=str(tmp_path / "said.json")) == 0
     text = (tmp_path / "thermal_network_sizes.h").read_text()
     for said in (
         "revision 0",

@@ -12,7 +12,7 @@ from small_case import small_case
 from test_export_code import curved, states
 
 from extras.export.c_code import RUNTIME
-from extras.export.commands.export import export
+from extras.export.cli import export
 from extras.export.compilers import here
 from extras.export.document import document, mat
 from extras.export.drive import AGREES_K, sampled, signals_of
@@ -230,5 +230,5 @@ def test_the_command_writes_a_model(tmp_path, thermoscope):
 
 
 def test_the_workbook_is_still_there(tmp_path):
-    assert export(str(small_case(tmp_path)), tmp_path / "o", "csv", (), 2, str(tmp_path / "said.json")) == 0
+    assert export(str(small_case(tmp_path)), tmp_path / "o", "csv", json=str(tmp_path / "said.json")) == 0
     assert list((tmp_path / "o").glob("*.csv"))

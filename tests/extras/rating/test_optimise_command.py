@@ -17,7 +17,7 @@ from extras.rating.optimisation.space import Space
 from geom import load_machine
 from geom.description.reading import read_geometry
 from geom.errors import InputError
-from geom.families import families
+from geom.machine_file import families
 from lumped.build.pipeline import build
 from thermoscope.case_folder.runs import mean_rows
 from thermoscope.cli import whole_app

@@ -10,8 +10,7 @@ from small_case import small_case
 
 from extras.rating.commands.rate import rating_summary
 from extras.rating.request import places, rated_point
-from geom.description.identity import Identity
-from geom.description.roles import Role
+from geom.description.roles import Identity, Role
 from geom.errors import InputError
 from lumped.model.build import bare_network
 from lumped.model.network import Row

@@ -14,7 +14,7 @@ from small_case import small_case
 from yarl import URL
 
 from extras.workbench.access_control import AccessControl, loopback, served
-from extras.workbench.commands.serve import serve
+from extras.workbench.cli import serve
 from extras.workbench.serve import application, token_for
 from extras.workbench.tabs import MOST, Tabs
 from geom.errors import InputError
@@ -235,7 +235,7 @@ def test_serve_always_asks_for_a_token(folder, monkeypatch):
     controls = []
     monkeypatch.delenv("THERMOSCOPE_TOKEN", raising=False)
     monkeypatch.setattr("extras.workbench.serve.application", lambda folder, access: controls.append(access))
-    monkeypatch.setattr("extras.workbench.serve.serve", lambda *given: None)
+    monkeypatch.setattr("extras.workbench.serve.serve_until_stopped", lambda *given: None)
     for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0"):
         assert serve(str(folder.settings.path), host, 0) == 0
     assert all(len(access.token) >= 32 for access in controls)

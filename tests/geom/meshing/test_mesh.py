@@ -1,29 +1,63 @@
-"""The motor's mesh: conformal, complete, named, and true to the exact geometry."""
+"""Meshes of the motor and of every other machine: conformal, completely named, and true to the exact geometry."""
 
 import math
 
 import numpy as np
 import pytest
+from distinct_machines import DISTINCT
 from inside_parts import point_in
 from measures import area, facets_of_tets, keys, tet_volumes
 
-from geom import build_mesh
+from geom import COARSE, build_mesh, load_machine, part_table
 from geom.description.profile import ArcGrid, Profile
 from geom.description.shapes import circle_loop
 
-
-def test_every_tetrahedron_is_positive(motor_mesh):
-    assert tet_volumes(motor_mesh).min() > 0
-
-
-def test_no_facet_belongs_to_more_than_two_tetrahedra(motor_mesh):
-    assert np.unique(facets_of_tets(motor_mesh)[0], return_counts=True)[1].max() == 2
+MOTOR = "series-dc-100kw"
+MACHINES = [MOTOR, *(pytest.param(name, marks=pytest.mark.nightly) for name in DISTINCT if name != MOTOR)]
 
 
-def test_every_outer_facet_has_exactly_one_patch(motor_mesh):
-    facets, counts = np.unique(facets_of_tets(motor_mesh)[0], return_counts=True)
-    named = np.concatenate([keys(motor_mesh, patch.facets) for patch in motor_mesh.patches.values()])
+@pytest.fixture(scope="module", params=MACHINES)
+def meshed(request, motor, motor_mesh):
+    """A machine and its coarse mesh: the motor's every time, the other machines' at night."""
+    if request.param == MOTOR:
+        return motor, motor_mesh
+    machine = load_machine(request.param)
+    return machine, build_mesh(machine, **COARSE)
+
+
+def test_facets_are_shared_by_two_or_named_once(meshed):
+    _, mesh = meshed
+    facets, counts = np.unique(facets_of_tets(mesh)[0], return_counts=True)
+    named = np.concatenate([keys(mesh, patch.facets) for patch in mesh.patches.values()])
+    assert counts.max() == 2
     assert np.array_equal(np.sort(named), facets[counts == 1])
+
+
+def test_volumes_are_within_one_per_cent(meshed):
+    machine, mesh = meshed
+    volumes = tet_volumes(mesh)
+    assert volumes.min() > 0
+    for index, name in enumerate(mesh.parts):
+        assert volumes[mesh.region == index].sum() == pytest.approx(machine.part(name).volume, rel=0.01), name
+
+
+def test_areas_are_within_two_per_cent_of_the_description(meshed):
+    machine, mesh = meshed
+    rows = part_table(machine, segments=96)
+    contacts = {"|".join(sorted((row.name, other))): a for row in rows for other, a in row.contacts.items()}
+    faces = {name: a for row in rows for name, a in row.faces.items()}
+    for found, exact in ((mesh.contacts, contacts), (mesh.patches, faces)):
+        assert found.keys() == exact.keys()
+        for name in found:
+            assert area(mesh, found[name].facets) == pytest.approx(exact[name], rel=0.02), name
+
+
+def test_all_parts_hang_together(meshed):
+    _, mesh = meshed
+    reached = {mesh.parts[0]}
+    for _ in mesh.parts:
+        reached |= {name for c in mesh.contacts.values() if {c.a, c.b} & reached for name in (c.a, c.b)}
+    assert reached == set(mesh.parts)
 
 
 def test_every_facet_between_two_parts_has_exactly_one_contact(motor_mesh):
@@ -40,12 +74,6 @@ def test_patch_facets_belong_to_the_part_they_name(motor_mesh):
     owner = dict(zip(key.tolist(), region.tolist()))
     for patch in motor_mesh.patches.values():
         assert {owner[k] for k in keys(motor_mesh, patch.facets).tolist()} == {motor_mesh.parts.index(patch.part)}
-
-
-def test_part_volumes_are_within_one_per_cent(motor, motor_mesh):
-    volumes = tet_volumes(motor_mesh)
-    for index, name in enumerate(motor_mesh.parts):
-        assert volumes[motor_mesh.region == index].sum() == pytest.approx(motor.part(name).volume, rel=0.01), name
 
 
 def test_contact_areas_follow_from_radii_and_lengths(motor, motor_mesh):
@@ -71,44 +99,9 @@ def test_rotor_surface_is_the_whole_cylinder(motor, motor_mesh):
     assert found == pytest.approx(math.pi * g.outer_diameter * g.stack_length, rel=0.01)
 
 
-def test_names_of_the_motor(motor_mesh):
-    assert set(motor_mesh.parts) == {
-        "shaft",
-        "rotor.core",
-        "slot.liner",
-        "winding.armature",
-        "winding.armature.left",
-        "winding.armature.right",
-        "commutator",
-        "yoke",
-        "poles",
-        "winding.field",
-        "field.insulation",
-        "housing",
-        "flange.left",
-        "flange.right",
-        "bearing.left",
-        "bearing.right",
-        "feet",
-        "base",
-    }
-    for name in ("flange.right.outer", "flange.right.air.right", "housing.fins", "poles.gap", "base.outer"):
-        assert name in motor_mesh.patches
-    for name, contact in motor_mesh.contacts.items():
-        assert name == f"{contact.a}|{contact.b}"
-        assert contact.a < contact.b
-
-
 def test_parts_that_must_not_touch_do_not(motor_mesh):
     for pair in ("poles|rotor.core", "winding.field|yoke", "rotor.core|winding.armature", "housing|winding.field"):
         assert pair not in motor_mesh.contacts
-
-
-def test_all_parts_hang_together(motor_mesh):
-    reached = {motor_mesh.parts[0]}
-    for _ in motor_mesh.parts:
-        reached |= {name for c in motor_mesh.contacts.values() if {c.a, c.b} & reached for name in (c.a, c.b)}
-    assert reached == set(motor_mesh.parts)
 
 
 def test_coarse_mesh_is_small(motor_mesh):

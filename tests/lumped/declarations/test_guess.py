@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from geom.description.identity import identity
-from geom.description.roles import Role
+from geom.description.roles import Role, identity
 from geom.errors import InputError
 from lumped.declarations.network import read_network
 

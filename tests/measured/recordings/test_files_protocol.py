@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from extras.bench.commands.protocol import protocol, read_record
+from extras.bench.cli import protocol
+from extras.bench.commands.protocol import read_record
 from extras.bench.measuring.protocol import protocol as judged
 from geom.errors import InputError
 from thermoscope.console.summary import limited_lines

@@ -14,10 +14,10 @@ from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, still, ta
 from extras.portraits.looks import packed_looks
 from geom import build_mesh, load_machine
 from viz import split
+from viz.rendering.flux import nodal_flux
 from viz.viewer.error_map import ERROR
-from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import ERROR_K
 from viz.viewer.page import Earlier, document, machine_document, render, temperature_document
+from viz.viewer.part_shapes import ERROR_K
 
 pytestmark = pytest.mark.nightly
 LARGEST = 1e6  # bytes of a page

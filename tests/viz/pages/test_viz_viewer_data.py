@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from viewer_pages import NODES, PLACE, mapped, recorded, warming, write_viewer
+from viewer_pages import NODES, PLACE, mapped, mixed, recorded, unpacked, warming, write_viewer
 
+from viz.rendering.flux import nodal_flux
 from viz.viewer.error_map import ERROR, SHARE, packed_maps
-from viz.viewer.flux import nodal_flux
-from viz.viewer.low_rank import BLOCK, ERROR_K, low_rank
-from viz.viewer.packing import packed_integers, packed_numbers, unpacked
+from viz.viewer.packing import packed_integers, packed_numbers
 from viz.viewer.page import STEP_K, document
-from viz.viewer.part_shapes import mixed, packed_fields
+from viz.viewer.part_shapes import BLOCK, ERROR_K, low_rank, packed_fields
 
 
 def test_mixed_shapes_are_the_fields():

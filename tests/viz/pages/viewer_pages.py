@@ -1,6 +1,8 @@
 """Pages of the viewer, and a browser that draws them: shared by the tests of pages."""
 
+import base64
 import shutil
+import zlib
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +16,7 @@ from viz import split
 from viz.data import Comparison
 from viz.viewer.error_map import ErrorMap
 from viz.viewer.network import NetworkRun
+from viz.viewer.packing import UNKNOWN
 from viz.viewer.page import Recorded, document, render
 
 NODES = split(motor(24))
@@ -78,3 +81,23 @@ def tab(browser, file: Path, width: int = 800, height: int = 600):
         yield page, said
     finally:
         context.close()
+
+
+def unpacked(packed):
+    """What the page reads: (n, k)."""
+    columns = packed["columns"]
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), np.uint8).reshape(4, -1)
+    unsigned = np.ascontiguousarray(planes.T).view("<u4").reshape(columns, -1).T.astype(np.int64)
+    whole = np.cumsum(np.where(unsigned % 2, -(unsigned + 1) // 2, unsigned // 2), axis=0)
+    if "step" not in packed:
+        return whole
+    return np.where(whole == UNKNOWN, np.nan, whole * np.array(packed["step"]) + np.array(packed["low"]))
+
+
+def mixed(packed):
+    """What the page mixes: (n_fields, n_nodes)."""
+    weights, first, out = unpacked(packed["weights"]), 0, []
+    for block in map(unpacked, packed["blocks"]):
+        out.append(weights[:, first : first + block.shape[1]] @ block.T)
+        first += block.shape[1]
+    return np.hstack(out)

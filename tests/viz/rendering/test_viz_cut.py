@@ -6,8 +6,8 @@ from small_motor import LEVELS, RADII, motor
 
 from geom.errors import InputError
 from viz.rendering.cut import HALF, QUARTER, Wedge, cut_away, exposed, section
-from viz.rendering.edges import feature_edges
 from viz.rendering.nodes import on_nodes, split
+from viz.rendering.scene import feature_edges, polydata
 
 NODES = split(motor(32))
 
@@ -55,8 +55,7 @@ def test_flat_sections_have_no_lines_inside_a_part():
     cut = section(NODES, np.array([np.sin(0.3), np.cos(0.3), 0.0]))
     only = cut.part == NODES.parts.index("yoke")
     yoke = type(cut)(cut.nodes, cut.weights, cut.triangles[only], cut.part[only]).compact()
-    ends = yoke.points[feature_edges(yoke)]
-    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()
+    length = feature_edges(polydata(yoke)).compute_cell_sizes(volume=False, area=False)["Length"].sum()
     z = LEVELS[8] - LEVELS[2]
     radial = np.ptp(np.hypot(*yoke.points[:, :2].T))
     assert length == pytest.approx(4 * (z + radial), rel=1e-3)

@@ -8,8 +8,8 @@ from small_motor import motor
 from extras.portraits.portrait import portrait
 from geom import load_machine
 from viz import Sensor, cutaway, misses, split, uncertainty
+from viz.machine.animation import Pulses
 from viz.machine.misses import CAPTION, GUESS, pixels
-from viz.machine.pulses import Pulses
 from viz.rendering import scene
 from viz.rendering.cut import cut_away
 from viz.rendering.scene import NOTE, View

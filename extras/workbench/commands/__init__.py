@@ -1,1 +1,0 @@
-"""thermoscope show serve"""

@@ -1,0 +1,7 @@
+"""What annotations call arrays of numbers."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
