@@ -3,7 +3,8 @@
     python examples/hust.py [--rounds 4] [--ablation] [--out out/hust]
 
 What `thermoscope explain improve` does, the best-fitting of a group taken unasked: the effect that leads is added and
-what case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever
+what case.toml leaves free is calibrated again; where nothing is left to add, what a free network needs, as long as it
+predicts better. Profiles 5, 8, 11 and 15 are only ever
 predicted, and nothing here looks at them before the end. With --ablation every effect that was added is deleted in
 turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
 cases/hust-ipmsm/README.md and writes them to --out, with that of the front page and the model; scripts/published.py
@@ -180,7 +181,7 @@ def main() -> None:
         print(message, file=sys.stderr)
 
     case = load_case(find_case("hust-ipmsm"), tell).case
-    done = improve(case, Supervisor(best), options.rounds, progress=tell)
+    done = improve(case, Supervisor(best, suggest=True), options.rounds, progress=tell)
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))
