@@ -32,6 +32,7 @@ from thermoscope.validation.comparison.compare import Comparison, pooled
 from thermoscope.validation.parameters.unknowns import with_model
 from thermoscope.validation.revision import revise
 from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
+from thermoscope.validation.revision.revise import TOGETHER
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = ("| added | size (95 % interval) | probability | verdict | confused with |", "|---|---|---|---|---|")
@@ -51,13 +52,18 @@ def name(stair: Step) -> str:
 
 
 def evidence(stair: Step) -> str:
-    """What speaks for the effect that was added, as a row of Markdown."""
+    """What speaks for the effects that were added, as rows of Markdown."""
     assert stair.revision
-    p = next(p for p in stair.revision.parameters if p.name == stair.effect)
-    size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
-    e = stair.evidence
-    alike = cell(str(e.get("confused_with", "nothing")))
-    return f"| {cell(p.name)} | {size} | {100 * float(e['probability']):.0f} % | {e['verdict']} | {alike} |"
+    e, rows = stair.evidence, []
+    for p in (p for p in stair.revision.parameters if p.name in str(stair.effect).split(TOGETHER)):
+        size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
+        said = (
+            [f"{100 * float(e['probability']):.0f} %", str(e["verdict"])]
+            if "probability" in e
+            else ["", "free network"]
+        )
+        rows.append(f"| {' | '.join([cell(p.name), size, *said, cell(str(e.get('confused_with', 'nothing')))])} |")
+    return "\n".join(rows)
 
 
 def cell(text: str) -> str:

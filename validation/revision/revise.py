@@ -34,6 +34,7 @@ from validation.revision.acceptance import (
     fall,
     fold_prediction,
     folds,
+    middle_instant,
     prediction_checks,
     squares,
     telling_tests,
@@ -235,7 +236,7 @@ def _effect_checks(
     (plain,) = staged_fit(training, tests, start(training))
     bare = _sure(plain, tests, replace(case.model, values=_values(case.model, [plain])), case)
     telling = telling_tests(fit, names)
-    parts = folds(tests, telling)
+    parts = folds(tests, telling, middle_instant(fit, names, telling[0]) if len(telling) == 1 else None)
     before, after = (
         [fold_prediction(one, fold, parameter_values(one.network, values)) for fold in parts]
         for one, values in ((bare, {**case.model.values, **bare.values}), (fit, new.values))
