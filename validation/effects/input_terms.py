@@ -25,6 +25,7 @@ FACTOR = re.compile(rf"([^|*^>]+?)(?:>{NUMBER})?(?:\^{NUMBER})? at {NUMBER}")
 ZERO = np.zeros(1)
 STRAIGHT = 0.05  # an exponent this close to one is a straight line: nobody sees the difference
 Interval = tuple[float, float]
+NOTHING: Interval = (0.0, 0.0)
 Factor = tuple[str, float, float, float]  # input, where it sets in, its largest value, exponent
 
 
@@ -113,23 +114,20 @@ class InputTerm(ReadingEffect):
     def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
         """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is no straight line."""
 
-    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = (0.0, 0.0)) -> str:
+    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """The same, of something missing."""
         return f"missing: {self.law_words(a, network, values, ci95)}"
 
-    def sizes_words(
-        self, a: float, rest: float, more: float, unit: str, values: Mapping[str, float], ci95: Interval
-    ) -> str:
-        """What it is at rest and at most, with the interval and the shape between them.  more : of others at most"""
-        low, high = (f"{more + end:.3g}" for end in ci95)
-        interval = f" [{low}, {high}]" if ci95[1] > ci95[0] else ""
+    def sentence(self, subject: str, rest: float, most: float, values: Mapping[str, float], width: Interval) -> str:
+        """What it is at rest and at most, how sure that is, and the shape between them.  width : interval, most = 0"""
         each = []
         for name, begin, _, p in self.parts()[1]:
             exponent = p + values.get(f"{self.name}^{name}", 0.0)
             each += [f"two regimes, it grows from {name} {begin:g} on"] if begin else []
             each += [f"with {name} to the power of {exponent:.2g}"] if abs(exponent - 1.0) >= STRAIGHT else []
         shape = f" ({'; '.join(each)})" if each else ""
-        return f"{rest:.3g} {unit} at rest, {more + a:.3g} at {self.levels}{interval}{shape}"
+        interval = (most + width[0], most + width[1])
+        return law_sentence(subject, rest, most, self.unit, self.levels, interval) + shape
 
 
 @dataclass(frozen=True)
@@ -147,8 +145,8 @@ class InputLoss(InputTerm):
     def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
         """ "a loss at stator that no declared one gives: 0 W at rest, 230 at speed_rpm 4000 [200, 260]"."""
         exponents = [x for x in network.sources if x.name.startswith(f"{self.name}^")]
-        sizes = self.sizes_words(a, 0.0, _total(exponents, network, values, self.most), "W", values, ci95)
-        return f"a loss at {self.parts()[0][0]} that no declared one gives: {sizes}"
+        most, where = a + _total(exponents, network, values, self.most), self.parts()[0][0]
+        return self.sentence(f"a loss at {where} that no declared one gives", 0.0, most, values, _width(a, ci95))
 
     def extend(self, network: Network) -> Network:
         (place,) = self.checked_ends(network)
@@ -174,13 +172,24 @@ class InputConductance(InputTerm):
         one, other = self.parts()[0]
         others = [x for x in links_between(network, one, other) if x.name != self.name]
         rest, more = (_total(others, network, values, now) for now in ({}, self.most))
-        return f"{one} to {other}: {self.sizes_words(a, rest, more, 'W/K', values, ci95)}"
+        return self.sentence(f"{one} to {other}", rest, more + a, values, _width(a, ci95))
 
     def extend(self, network: Network) -> Network:
         one, other = self.checked_ends(network)
         link = exchange(network, self.name, one, other, self.law())
         parameter = self.parameter(link.name, scale=conductance_scale(network), unit=f"W/K at {self.levels}")
         return with_parameter(network.extended(links=[link]), parameter)
+
+
+def law_sentence(subject: str, rest: float, most: float, unit: str, at: str, interval: Interval = NOTHING) -> str:
+    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]": a law of inputs, wherever it is told."""
+    sure = f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else ""
+    return f"{subject}: {rest:.3g} {unit} at rest, {most:.3g} at {at}{sure}"
+
+
+def _width(a: float, ci95: Interval) -> Interval:
+    """An interval about the amplitude in it."""
+    return (ci95[0] - a, ci95[1] - a) if ci95[1] > ci95[0] else NOTHING
 
 
 def _total(
@@ -204,7 +213,7 @@ def law_words(
 ) -> list[str]:
     """What the terms that follow inputs came to in a fit, with their intervals, as they are told everywhere."""
     return [
-        e.law_words(values[e.name], network, values, ci95.get(e.name, (0.0, 0.0)))
+        e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING))
         for e in effects
         if isinstance(e, InputTerm)
     ]

@@ -1,8 +1,8 @@
 """What a step must stand up to: it predicts what it was not fitted to better than the model did before, and than none.
 
-Each test is left out in turn, of the only one that tells of the step what follows half of it: fitted to the rest, with the step
-and without it, and its readings predicted with sensors as the rest has them. Log predictive density and error have to
-agree. Held-out tests have no say.
+Each test is left out in turn, of the only one that tells of the step what follows half of it: fitted to the rest, with
+the step and without it, and its readings predicted with sensors as the rest has them. Log predictive density and error
+have to agree. Held-out tests have no say.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class FoldPrediction:
 
 
 def folds(tests: Sequence[Test], telling: Sequence[str], middle: float | None = None) -> list[Fold]:
-    """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its second half.
+    """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
     telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
     """

@@ -10,6 +10,7 @@ import numpy as np
 from lumped.model.network import Link, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
+from validation.effects.input_terms import law_sentence
 from validation.parameters.unknowns import scene_of
 from validation.yardstick.network_terms import follows, input_term, inputs_of, largest_inputs, term_elements
 from validation.yardstick.terms import Term
@@ -42,9 +43,7 @@ class Suggestion:
         what = f"{self.place} to {self.other}" if self.other else f"a loss at {self.place}"
         if not self.inputs:
             return f"{what}: {self.rest:.3g} {self.unit}"
-        return (
-            f"{what}: {self.rest:.3g} {self.unit} at rest, {self.most:.3g} at the largest {' and '.join(self.inputs)}"
-        )
+        return law_sentence(what, self.rest, self.most, self.unit, f"the largest {' and '.join(self.inputs)}")
 
     def document(self) -> dict:
         """As an entry of `lacking`."""

@@ -145,7 +145,7 @@ def test_an_effect_on_the_measurement_is_free_in_the_fit_of_the_model_that_has_i
 
 
 def test_the_only_test_that_tells_is_cut_where_half_of_what_the_step_does_has_been_seen():
-    """A lid opened late: in the first half of the record it has done nothing, and nothing is to be learnt of it there."""
+    """A lid opened late: in the first half of the record it has done nothing, so that says nothing of it."""
     tests = [measured("one"), measured("two")]
     fit = list(both(tests))[1]
     last = float(tests[1].time[-1])
