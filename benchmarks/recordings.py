@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -29,9 +29,9 @@ from geom.errors import ThermoscopeError
 from measured.case import Case
 from scripts.published import publish
 from thermoscope.case_folder.folder import find_case, load_case
-from validation.comparison.compare import Comparison
+from validation.comparison.compare import Comparison, pooled
 from validation.revision.improvement import Improvement, Supervisor, best, improve
-from validation.yardstick.words import model_error
+from validation.yardstick.words import model_error, scoped
 from validation.yardstick.yardstick import KINDS, Yardstick, yardstick
 
 ROOT = Path(__file__).parents[1]
@@ -47,6 +47,7 @@ HEAD = (
     "declared",
     "calibrated",
     "at the end",
+    "sensors as fitted",
     "over the best",
     "added",
     "CPU (s)",
@@ -73,7 +74,9 @@ class Source:
 class Row:
     """Rms errors (K) over the tests kept back, of our model step by step and of the yardsticks.
 
-    steps : name of each step -> error;  cpu_s : from raw file to the last step;  fault : why there is none
+    steps : name of each step -> error, as sensors read
+    fitted : at the end, with sensors as the fit has them from the other tests, which is what the yardsticks learn too
+    cpu_s : from raw file to the last step;  fault : why there is none
     """
 
     name: str
@@ -82,6 +85,7 @@ class Row:
     sensors: int = 0
     yardsticks: dict[str, float] = field(default_factory=dict)
     steps: list[tuple[str, float]] = field(default_factory=list)
+    fitted: float = float("nan")
     verdict: str = ""
     why: str = ""
     cpu_s: float = 0.0
@@ -89,10 +93,10 @@ class Row:
     fault: str = ""
 
     @property
-    def ratio(self) -> float:
-        """Ours at the end over the best yardstick."""
-        known = [x for x in self.yardsticks.values() if np.isfinite(x)]
-        return self.steps[-1][1] / min(known) if self.steps and known else float("nan")
+    def ratios(self) -> tuple[float, float]:
+        """Ours at the end over the best yardstick: as sensors read, and as they are fitted."""
+        best = min((x for x in self.yardsticks.values() if np.isfinite(x)), default=float("nan"))
+        return (self.steps[-1][1] / best, self.fitted / best) if self.steps else (float("nan"), float("nan"))
 
 
 def shipped() -> list[Source]:
@@ -186,7 +190,9 @@ def row(source: Source, case: Case, yard: Yardstick, result: Improvement, second
     counts = len(case.tests), back, sensors
     yards = {kind: float(yard.hold_out[kind]) for kind in KINDS}
     verdict = result.diagnosis.verdict
-    return Row(source.name, *counts, yards, steps, verdict, result.why, seconds, bool(source.case))
+    rows = [replace(c, rmse_K=c.fitted_rmse_K) for c in scoped(yard, result.stairs[-1].comparison) if c.fitted_rmse_K]
+    fitted = pooled(rows) if rows else steps[-1][1]
+    return Row(source.name, *counts, yards, steps, fitted, verdict, result.why, seconds, bool(source.case))
 
 
 def cpu_s() -> float:
@@ -211,17 +217,16 @@ def table(rows: Sequence[Row]) -> str:
             start,
             f"{r.steps[min(1, len(r.steps) - 1)][1]:.2f}",
             f"**{r.steps[-1][1]:.2f}**",
-            f"{r.ratio:.2f}",
+            f"**{r.fitted:.2f}**",
+            " / ".join(f"{x:.2f}" for x in r.ratios),
             ", ".join(added).replace("|", "\\|") or "nothing",
             f"{r.cpu_s:.0f}",
         ]
         lines.append(f"| {' | '.join(cells)} |")
-    ratios = [r.ratio for r in rows if np.isfinite(r.ratio)]
-    if ratios:
-        lines += [
-            "",
-            f"Ours over the best yardstick: median {np.median(ratios):.2f}, worst {max(ratios):.2f} of {len(ratios)}.",
-        ]
+    ratios = np.array([r.ratios for r in rows if np.isfinite(r.ratios).all()])
+    if ratios.size:
+        middle, worst = (" / ".join(f"{x:.2f}" for x in of(ratios, axis=0)) for of in (np.median, np.max))
+        lines += ["", f"Ours over the best yardstick: median {middle}, worst {worst} of {len(ratios)}."]
     lines += ["", *(f"{r.name}: {r.fault}" for r in rows if r.fault)]
     return "\n".join(lines).strip()
 
@@ -236,7 +241,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.page:
         rows = [
-            Row(**{k: v for k, v in r.items() if k != "ratio"}) for r in json.loads(options.page.read_text())["rows"]
+            Row(**{k: v for k, v in r.items() if k != "ratios"}) for r in json.loads(options.page.read_text())["rows"]
         ]
         for page in PAGES:
             publish(page, "recordings", table(rows))
@@ -251,7 +256,7 @@ def main() -> None:
             rows.append(measured_row(source, options.most, scratch))
             print(f"{source.name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
             if options.json:
-                document = {"rows": [{**asdict(r), "ratio": r.ratio} for r in rows]}
+                document = {"rows": [{**asdict(r), "ratios": r.ratios} for r in rows]}
                 options.json.write_text(json.dumps(document, indent=1), encoding="utf-8")
         print(table(rows))
     finally:

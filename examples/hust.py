@@ -3,7 +3,8 @@
     python examples/hust.py [--rounds 4] [--ablation] [--out out/hust]
 
 What `thermoscope explain improve` does, the best-fitting of a group taken unasked: the effect that leads is added and
-what case.toml leaves free is calibrated again, until nothing is named. Profiles 5, 8, 11 and 15 are only ever
+what case.toml leaves free is calibrated again; where nothing is left to add, what a free network needs, as long as it
+predicts better. Profiles 5, 8, 11 and 15 are only ever
 predicted, and nothing here looks at them before the end. With --ablation every effect that was added is deleted in
 turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
 cases/hust-ipmsm/README.md and writes them to --out, with that of the front page and the model; scripts/published.py
@@ -31,6 +32,7 @@ from thermoscope.validation.comparison.compare import Comparison, pooled
 from thermoscope.validation.parameters.unknowns import with_model
 from thermoscope.validation.revision import revise
 from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
+from thermoscope.validation.revision.revise import TOGETHER
 
 CHANNELS = ("winding", "stator", "rotor")
 EVIDENCE = ("| added | size (95 % interval) | probability | verdict | confused with |", "|---|---|---|---|---|")
@@ -50,13 +52,18 @@ def name(stair: Step) -> str:
 
 
 def evidence(stair: Step) -> str:
-    """What speaks for the effect that was added, as a row of Markdown."""
+    """What speaks for the effects that were added, as rows of Markdown."""
     assert stair.revision
-    p = next(p for p in stair.revision.parameters if p.name == stair.effect)
-    size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
-    e = stair.evidence
-    alike = cell(str(e.get("confused_with", "nothing")))
-    return f"| {cell(p.name)} | {size} | {100 * float(e['probability']):.0f} % | {e['verdict']} | {alike} |"
+    e, rows = stair.evidence, []
+    for p in (p for p in stair.revision.parameters if p.name in str(stair.effect).split(TOGETHER)):
+        size = f"{p.value:.3g} {p.unit} ({p.ci95[0]:.3g} to {p.ci95[1]:.3g})"
+        said = (
+            [f"{100 * float(e['probability']):.0f} %", str(e["verdict"])]
+            if "probability" in e
+            else ["", "free network"]
+        )
+        rows.append(f"| {' | '.join([cell(p.name), size, *said, cell(str(e.get('confused_with', 'nothing')))])} |")
+    return "\n".join(rows)
 
 
 def cell(text: str) -> str:
@@ -180,7 +187,7 @@ def main() -> None:
         print(message, file=sys.stderr)
 
     case = load_case(find_case("hust-ipmsm"), tell).case
-    done = improve(case, Supervisor(best), options.rounds, progress=tell)
+    done = improve(case, Supervisor(best, suggest=True), options.rounds, progress=tell)
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))

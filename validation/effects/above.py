@@ -64,7 +64,9 @@ class Above(ReadingEffect):
     def inputs(self) -> tuple[str, ...]:
         return (self.parts()[1],)
 
-    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
+    def words(
+        self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
+    ) -> str:
         """ "the declared loss:stator is 40 % too high above current_A 150"."""
         target, name, level = self.parts()
         side = "too low" if a > 0 else "too high"

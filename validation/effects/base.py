@@ -126,7 +126,9 @@ class ReadingEffect(Effect):
         """What it follows."""
 
     @abstractmethod
-    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
+    def words(
+        self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
+    ) -> str:
         """What an amplitude means, beside what the network has there at the values of its parameters."""
 
 

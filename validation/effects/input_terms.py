@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -11,29 +12,50 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.model.multipliers import multipliers, parameter_values
-from lumped.model.network import Network
-from lumped.transfer.laws import InputPower
+from lumped.model.network import Link, Network, Source
+from lumped.transfer.laws import Array, InputPower, Inputs, Law
 from lumped.transfer.ranges import within_silence
 from measured.sensors.operators import head
-from validation.effects.base import ReadingEffect, with_parameter
-from validation.effects.build import conductance_scale, exchange, heat, links_between, power_scale
+from validation.effects.base import Effect, ReadingEffect, with_parameter
+from validation.effects.build import Shaped, conductance_scale, exchange, heat, links_between, power_scale
 
 PLACE = re.compile(r"([^|]+)(?:\|([^|]+))?\|([^|]+)")
-FACTOR = re.compile(r"([^|*^]+?)(?:\^(\d+(?:\.\d+)?))? at (\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
+NUMBER = r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
+FACTOR = re.compile(rf"([^|*^>]+?)(?:>{NUMBER})?(?:\^{NUMBER})? at {NUMBER}")
 ZERO = np.zeros(1)
-Factor = tuple[str, float, float]  # input, its largest value, exponent
+STRAIGHT = 0.05  # an exponent this close to one is a straight line: nobody sees the difference
+Interval = tuple[float, float]
+NOTHING: Interval = (0.0, 0.0)
+Factor = tuple[str, float, float, float]  # input, where it sets in, its largest value, exponent
 
 
 def factor_words(factors: Iterable[Factor]) -> str:
-    """ "speed_rpm^2 at 4000 * id_A at 120", as a place has it."""
-    return " * ".join(f"{name}{'' if p == 1.0 else f'^{p:g}'} at {level:.4g}" for name, level, p in factors)
+    """ "speed_rpm^2 at 4000 * id_A at 120", "speed_rpm>2000 at 4000", as a place has it."""
+    return " * ".join(
+        f"{name}{f'>{begin:.4g}' if begin else ''}{'' if p == 1.0 else f'^{p:g}'} at {level:.4g}"
+        for name, begin, level, p in factors
+    )
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """The product of ((|u| - begin) / (level - begin)) ** exponent of some inputs u, 0 where one is below its begin."""
+
+    factors: tuple[Factor, ...]
+
+    def __call__(self, inputs: Inputs) -> Array | float:
+        out: Array | float = 1.0
+        for name, begin, level, p in self.factors:
+            out = out * np.maximum((np.abs(np.asarray(inputs[name], float)) - begin) / (level - begin), 0.0) ** p
+        return out
 
 
 @dataclass(frozen=True)
 class InputTerm(ReadingEffect):
     """A coefficient a |u / level|^p of one input u, or a product of two such: a is what it is at these levels.
 
-    Place: "PLACE|INPUT^POWER at LEVEL", each level in the input's unit; of two inputs " * " between them.
+    Place: "PLACE|INPUT^POWER at LEVEL", each level in the input's unit; of two inputs " * " between them. What acts
+    only from a value of the input on is "INPUT>VALUE at LEVEL".
     """
 
     ends: ClassVar[int]
@@ -50,15 +72,15 @@ class InputTerm(ReadingEffect):
         match = PLACE.fullmatch(self.place)
         ends = [end for end in match.groups()[:2] if end] if match else []
         matches = [FACTOR.fullmatch(word) for word in match[3].split(" * ")] if match else []
-        factors = tuple((m[1], float(m[3]), float(m[2] or 1.0)) for m in matches if m)
-        if len(ends) != self.ends or len(factors) < len(matches) or not all(level > 0.0 for _, level, _ in factors):
+        factors = tuple((m[1], float(m[2] or 0.0), float(m[4]), float(m[3] or 1.0)) for m in matches if m)
+        if len(ends) != self.ends or len(factors) < len(matches) or not all(f[2] > f[1] for f in factors):
             right = "|".join([*("PLACE" for _ in range(self.ends)), "INPUT^POWER at LEVEL"])
             raise InputError(f"'{self.place}' is not a place and what it follows", f"effect '{self.name}'", right)
         return tuple(ends), factors
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        return tuple(name for name, _, _ in self.parts()[1])
+        return tuple(factor[0] for factor in self.parts()[1])
 
     def checked_ends(self, network: Network) -> tuple[str, ...]:
         """The places, if the network has them; heat put into a boundary would warm nothing."""
@@ -71,14 +93,41 @@ class InputTerm(ReadingEffect):
                 raise InputError(f"no place '{end}'", f"effect '{self.name}'", f"one of {', '.join(possible)}")
         return ends
 
-    def law(self) -> InputPower:
+    def law(self) -> Law:
         """Of 1 at the levels."""
-        return InputPower(1.0, self.parts()[1])
+        factors = self.parts()[1]
+        if any(begin for _, begin, _, _ in factors):
+            return Shaped(InputPower(1.0, ()), Regimes(factors), also_reads=self.inputs)
+        return InputPower(1.0, tuple((name, level, p) for name, _, level, p in factors))
+
+    @property
+    def most(self) -> dict[str, float]:
+        """Input -> its level."""
+        return {name: level for name, _, level, _ in self.parts()[1]}
 
     @property
     def levels(self) -> str:
         """ "speed_rpm 4000 and id_A 120"."""
-        return " and ".join(f"{name} {level:g}" for name, level, _ in self.parts()[1])
+        return " and ".join(f"{name} {level:g}" for name, level in self.most.items())
+
+    @abstractmethod
+    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+        """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is no straight line."""
+
+    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
+        """The same, of something missing."""
+        return f"missing: {self.law_words(a, network, values, ci95)}"
+
+    def sentence(self, subject: str, rest: float, most: float, values: Mapping[str, float], width: Interval) -> str:
+        """What it is at rest and at most, how sure that is, and the shape between them.  width : interval, most = 0"""
+        each = []
+        for name, begin, _, p in self.parts()[1]:
+            exponent = p + values.get(f"{self.name}^{name}", 0.0)
+            each += [f"two regimes, it grows from {name} {begin:g} on"] if begin else []
+            each += [f"with {name} to the power of {exponent:.2g}"] if abs(exponent - 1.0) >= STRAIGHT else []
+        shape = f" ({'; '.join(each)})" if each else ""
+        interval = (most + width[0], most + width[1])
+        return law_sentence(subject, rest, most, self.unit, self.levels, interval) + shape
 
 
 @dataclass(frozen=True)
@@ -93,11 +142,11 @@ class InputLoss(InputTerm):
     isolating_test = "that input alone, at two levels"
     confused_with = ("loss.constant", "loss.factor")
 
-    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
-        """ "a loss at stator: 0 W at rest, 230 at speed_rpm 4000"."""
-        return (
-            f"missing: a loss at {self.parts()[0][0]} that no declared one gives, 0 W at rest, {a:.3g} at {self.levels}"
-        )
+    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+        """ "a loss at stator that no declared one gives: 0 W at rest, 230 at speed_rpm 4000 [200, 260]"."""
+        exponents = [x for x in network.sources if x.name.startswith(f"{self.name}^")]
+        most, where = a + _total(exponents, network, values, self.most), self.parts()[0][0]
+        return self.sentence(f"a loss at {where} that no declared one gives", 0.0, most, values, _width(a, ci95))
 
     def extend(self, network: Network) -> Network:
         (place,) = self.checked_ends(network)
@@ -118,11 +167,12 @@ class InputConductance(InputTerm):
     isolating_test = "cool down at two levels of that input without load"
     confused_with = ("flow", "coupling")
 
-    def words(self, a: float, network: Network, values: Mapping[str, float]) -> str:
-        """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000"."""
+    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+        """What the place gives in all, with what is declared there."""
         one, other = self.parts()[0]
-        rest = _rest(network, one, other, values)
-        return f"missing: {one} to {other} {rest:.3g} W/K at rest, {rest + a:.3g} at {self.levels}"
+        others = [x for x in links_between(network, one, other) if x.name != self.name]
+        rest, more = (_total(others, network, values, now) for now in ({}, self.most))
+        return self.sentence(f"{one} to {other}", rest, more + a, values, _width(a, ci95))
 
     def extend(self, network: Network) -> Network:
         one, other = self.checked_ends(network)
@@ -131,14 +181,39 @@ class InputConductance(InputTerm):
         return with_parameter(network.extended(links=[link]), parameter)
 
 
-def _rest(network: Network, one: str, other: str, values: Mapping[str, float]) -> float:
-    """Conductance (W/K) of the declared links between two places where all inputs are zero."""
+def law_sentence(subject: str, rest: float, most: float, unit: str, at: str, interval: Interval = NOTHING) -> str:
+    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]": a law of inputs, wherever it is told."""
+    sure = f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else ""
+    return f"{subject}: {rest:.3g} {unit} at rest, {most:.3g} at {at}{sure}"
+
+
+def _width(a: float, ci95: Interval) -> Interval:
+    """An interval about the amplitude in it."""
+    return (ci95[0] - a, ci95[1] - a) if ci95[1] > ci95[0] else NOTHING
+
+
+def _total(
+    elements: Iterable[Link | Source], network: Network, values: Mapping[str, float], now: Mapping[str, float]
+) -> float:
+    """Conductance (W/K) or heat (W) of links or losses where some inputs have a value and all others are zero."""
     bare = replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
     times = multipliers(bare, parameter_values(bare, values))
     with within_silence():
         return sum(
             times.get(x.name, 1.0)
-            * float(np.max(np.abs(x.vals)) * np.max(x.law.size(dict.fromkeys(x.law.reads, ZERO))))
-            for x in links_between(bare, one, other)
-            if times.get(x.name, 1.0) > 0.0
+            * (float(np.max(np.abs(x.vals))) if isinstance(x, Link) else 1.0)
+            * float(np.max(x.law.size({n: ZERO + now.get(n, 0.0) for n in x.law.reads})))
+            for x in elements
+            if times.get(x.name, 1.0) != 0.0
         )
+
+
+def law_words(
+    effects: Iterable[Effect], network: Network, values: Mapping[str, float], ci95: Mapping[str, Interval]
+) -> list[str]:
+    """What the terms that follow inputs came to in a fit, with their intervals, as they are told everywhere."""
+    return [
+        e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING))
+        for e in effects
+        if isinstance(e, InputTerm)
+    ]

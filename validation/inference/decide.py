@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 from measured.doubt import COSTS
 from validation.calibration.calibrate import CachedSegments, Fit
 from validation.calibration.model_error import ModelError
+from validation.effects.base import Effect
+from validation.effects.during import During
 from validation.inference.contradiction import Contradiction
 from validation.inference.evidence import Evidence, continued, log_bayes
 from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
 from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
+from validation.inference.stretches import ALIKE
 
 Array = NDArray[np.float64]
 Group = tuple[int, ...]
@@ -176,8 +179,11 @@ def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, fl
 
 def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decision]) -> Decision:
     """The decision on all instants, with no more claimed than either half of them would."""
-    choice = decision(posterior)
-    halves = [decision(half_posterior(posterior, first)) for first in (0, 1)]
+    choice = without_twins(posterior.evidence, decision(posterior), ())
+    claimed = [k for g in choice.groups for k in g]
+    halves = [
+        without_twins(posterior.evidence, decision(half_posterior(posterior, first)), claimed) for first in (0, 1)
+    ]
     other = tuple(d for d in halves if differs(choice, d))
     if not other or not choice.groups:
         return replace(choice, others=other)
@@ -186,6 +192,23 @@ def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decisi
         groups = united_groups(groups, d.groups)
     verdict: Verdict = "group" if choice.verdict == "named" else choice.verdict
     return replace(choice, verdict=verdict, groups=groups, others=other)
+
+
+def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> Decision:
+    """The decision in which one event with ends a little apart is one thing: the first of them, or what is claimed."""
+    same: dict[int, int] = {}
+    for k in (*claimed, *(k for g in decision.groups for k in g)):
+        same[k] = next((j for j in same.values() if is_same_event(e.effects[j], e.effects[k])), k)
+    groups = tuple(tuple(dict.fromkeys(same[k] for k in g)) for g in decision.groups)
+    alone = decision.verdict == "group" and len(groups[0]) == 1 < len(decision.groups[0])
+    return replace(decision, groups=groups, verdict="named" if alone else decision.verdict)
+
+
+def is_same_event(one: Effect, other: Effect) -> bool:
+    """Is it the same effect, for about the same while?"""
+    if not (isinstance(one, During) and isinstance(other, During) and one.event and other.event):
+        return one == other
+    return one.base == other.base and one.event.overlap(other.event) >= ALIKE
 
 
 def differs(choice: Decision, other: Decision) -> bool:

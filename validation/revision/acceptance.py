@@ -1,8 +1,8 @@
 """What a step must stand up to: it predicts what it was not fitted to better than the model did before, and than none.
 
-Each test is left out in turn, of the only one that tells of the step the second half: fitted to the rest, with the step
-and without it, and its readings predicted with sensors as the rest has them. Log predictive density and error have to
-agree. Held-out tests have no say.
+Each test is left out in turn, of the only one that tells of the step what follows half of it: fitted to the rest, with
+the step and without it, and its readings predicted with sensors as the rest has them. Log predictive density and error
+have to agree. Held-out tests have no say.
 """
 
 from __future__ import annotations
@@ -62,10 +62,10 @@ class FoldPrediction:
     count: int
 
 
-def folds(tests: Sequence[Test], telling: Sequence[str]) -> list[Fold]:
-    """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its second half.
+def folds(tests: Sequence[Test], telling: Sequence[str], middle: float | None = None) -> list[Fold]:
+    """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
-    telling : names of the tests in which the step acts
+    telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
     """
     halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
     out = []
@@ -74,15 +74,16 @@ def folds(tests: Sequence[Test], telling: Sequence[str]) -> list[Fold]:
         shares = [tests[i::count] for i in range(count)]
         out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
     for test in (t for t in tests if t.name == halved):
-        first, second = halves(test)
+        first, second = halves(test, middle)
         out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
     return out
 
 
-def halves(test: Test) -> tuple[Test, Test]:
-    """A test with the readings of its first half, and with those of its second."""
+def halves(test: Test, middle: float | None = None) -> tuple[Test, Test]:
+    """A test with the readings of its first half, and with those of its second; or before and after an instant (s)."""
     start = groups(test.time.size)
-    first = np.arange(test.time.size) < start[start.size // 2]
+    cut = start.size // 2 if middle is None else np.clip(np.searchsorted(test.time[start], middle), 1, start.size - 1)
+    first = np.arange(test.time.size) < start[cut]
 
     def read(where: NDArray[np.bool_]) -> Test:
         return replace(test, channels=tuple(replace(c, y=np.where(where, c.y, np.nan)) for c in test.channels))
@@ -97,6 +98,16 @@ def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
     for s in fit.parts:
         size[s.test] = max(size.get(s.test, 0.0), float(np.max(np.abs(s.J[:, columns]), initial=0.0)))
     return [name for name, largest in size.items() if largest > FELT * max(size.values())]
+
+
+def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
+    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has its own."""
+    columns, parts = [fit.unknowns.names.index(name) for name in names], [s for s in fit.parts if s.test == test]
+    time = np.concatenate([s.time for s in parts])
+    size = np.concatenate([np.sum(s.J[:, columns] ** 2, axis=1) for s in parts])
+    order = np.argsort(time, kind="stable")
+    total = np.cumsum(size[order])
+    return float(time[order][np.searchsorted(total, 0.5 * total[-1])])
 
 
 def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> FoldPrediction:
@@ -170,7 +181,7 @@ def prediction_checks(
     was, now = rms(before), rms(after)
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, {sum(nats):+.3g} nats in all"
     only = (
-        f"; seen in {telling[0]} only, judged on its second half: not yet tested elsewhere" if len(telling) == 1 else ""
+        f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if len(telling) == 1 else ""
     )
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))

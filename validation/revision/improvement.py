@@ -42,6 +42,13 @@ class Step:
         """What was added."""
         return self.revision.effect if self.revision else None
 
+    @property
+    def left_out_K(self) -> float:
+        """Error (K rms) on tests that were left out in turn; of a model from before on those a fit may use."""
+        known = self.revision.left_out_K if self.revision else None
+        rows = [c for t in self.comparison.tests if t.role != "hold-out" for c in t.channels]
+        return pooled(rows) if known is None else known
+
     def document(self) -> dict:
         tests = [
             {"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
@@ -88,7 +95,8 @@ class Supervisor:
 
     offer : of a diagnosis the candidates that may be added now
     choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
-    suggest : add what a free network has and the model lacks, where no effect of the diagnosis is left
+    suggest : add what a free network has and the model lacks, where no effect of the diagnosis is left and the model
+        predicts tests that were left out less well than it
     keep : told every accepted revision and the evidence for it
     """
 
@@ -129,14 +137,14 @@ def improve(
         progress(f"{diagnosis.verdict}: {diagnosis.words}")
         if supervisor.offer(diagnosis) and len(stairs) > most:
             return Improvement(case, tuple(stairs), diagnosis, f"{most} steps are enough for one run")
-        step, document, why = _added(case, supervisor, diagnosis, progress)
+        step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, progress)
         if step is None:
             return Improvement(case, tuple(stairs), diagnosis, why)
         case = _with_step(case, step, supervisor, document, stairs)
 
 
 def _added(
-    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, progress: Progress
+    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
     """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
     why, present = [], {e.name for e in case.model.effects}
@@ -155,33 +163,43 @@ def _added(
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 why.append(f"{step.effect} was not accepted: {step.why}")
-    further, document, refusals = free_network_step(case, supervisor, progress)
-    return further, document, "; ".join([*why, *refusals]) or diagnosis.words
+    further, document, refusals = free_network_step(case, supervisor, left_out, progress)
+    return further, document, "; ".join([*(why or [diagnosis.words]), *refusals])
 
 
 def free_network_step(
-    case: Case, supervisor: Supervisor, progress: Progress
+    case: Case, supervisor: Supervisor, left_out: float, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], list[str]]:
-    """The first effect that a free network has and the model lacks, if it is accepted; or None, and what was tried.
+    """What a free network has and the model lacks, if it is accepted; or None, and what stops it, in words.
 
-    Only where that network predicts better what is left out, and where nobody is asked.
+    All of it is tried in one step, since terms that need each other are worth nothing alone; then, where that network
+    is better by more than a tenth, each for itself.
+
+    left_out : error (K) of the model on tests left out in turn
     """
     yard = yardstick(case) if supervisor.suggest else None
-    if yard is None or not yard.left_out["free_network"] * WORTH < pooled_training(case):
+    if yard is None:
         return None, {}, []
-    refusals = list[str]()
-    for suggestion in suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case)))):
-        for name in [n for n in suggestion.starts if n not in {e.name for e in case.model.effects}][:1]:
-            step = add(case, name, progress)
-            if step.accepted:
-                return step, {"free network": suggestion.words, "share": suggestion.share}, refusals
-            refusals.append(f"{suggestion.words}, as {name}: not accepted: {step.why}")
-    return None, {}, refusals
+    why = [f"left out in turn {left_out:.2f} K, of the best yardstick {min(yard.left_out.values()):.2f} K"]
+    if not yard.left_out["free_network"] < left_out:
+        return None, {}, why
+    every = suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case))))
+    every = tuple(s for s in every if s.effects and {e.name for e in case.model.effects}.isdisjoint(s.effects))
+    alone = [(s,) for s in every] if yard.left_out["free_network"] * WORTH < left_out else []
+    for some in ([every] if every else []) + alone * (len(every) > 1):
+        step = _present(case, [name for s in some for name in s.effects], progress)
+        words = ", ".join(s.words for s in some)
+        if step.accepted:
+            return step, {"free network": words, "share": some[0].share}, why
+        why.append(f"{words}, as {step.effect}: not accepted: {step.why}")
+    return None, {}, why if every else [*why, "the free network has no term that the model lacks"]
 
 
-def pooled_training(case: Case) -> float:
-    """Error (K rms) of the model on the tests that a fit may use."""
-    return pooled([c for t in errors(replace(case, tests=case.usable)).tests for c in t.channels])
+def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:
+    """Some effects added in one step, without those that are fitted to nothing beside the others."""
+    step = add(case, names, progress)
+    left = [name for name, check in zip(names, step.checks, strict=False) if check.passed]
+    return add(case, left, progress) if 0 < len(left) < len(names) else step
 
 
 def _with_step(

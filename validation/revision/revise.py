@@ -24,6 +24,7 @@ from validation.comparison.compare import Comparison, errors
 from validation.comparison.linearisation import segments
 from validation.effects import Effect, effect
 from validation.effects.during import During
+from validation.effects.input_terms import law_words
 from validation.effects.time_window import checked, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
@@ -33,6 +34,7 @@ from validation.revision.acceptance import (
     fall,
     fold_prediction,
     folds,
+    middle_instant,
     prediction_checks,
     squares,
     telling_tests,
@@ -87,6 +89,12 @@ class Revision:
     def worth_keeping(self) -> bool:
         """Whether it belongs into the model: also a calibration that only its own tests gain by, which is told."""
         return self.accepted or (self.action == "calibrate" and self.converged and bool(failures(self.checks)))
+
+    @property
+    def left_out_K(self) -> float | None:
+        """Error (K rms) of tests that were left out in turn, with sensors as the rest has them; None where none was."""
+        check = {"add": "no change", "calibrate": "left out"}.get(self.action)
+        return next((c.value for c in self.checks if c.check == check), None)
 
     def __repr__(self) -> str:
         what = " ".join(x for x in (self.action, self.effect) if x)
@@ -214,6 +222,8 @@ def _revised(
         acceptance = _fit_checks(case, sure[-1], new, changes) if action == "calibrate" else ()
     accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
+    effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
+    why = "; ".join([why, *law_words(effects, fits[-1].network, new.values, ci95)])
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
 
@@ -226,7 +236,7 @@ def _effect_checks(
     (plain,) = staged_fit(training, tests, start(training))
     bare = _sure(plain, tests, replace(case.model, values=_values(case.model, [plain])), case)
     telling = telling_tests(fit, names)
-    parts = folds(tests, telling)
+    parts = folds(tests, telling, middle_instant(fit, names, telling[0]) if len(telling) == 1 else None)
     before, after = (
         [fold_prediction(one, fold, parameter_values(one.network, values)) for fold in parts]
         for one, values in ((bare, {**case.model.values, **bare.values}), (fit, new.values))

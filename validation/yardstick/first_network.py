@@ -72,7 +72,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
     terms = [
         FirstTerm(
-            ends, float(theta[k]), tuple((i, scale[i], p) for i, p in of), _spread([part[k] for part, _ in parts])
+            ends,
+            float(theta[k]),
+            tuple((f.input, scale[f.input], f.exponent) for f in of),
+            _spread([part[k] for part, _ in parts]),
         )
         for k, (ends, of) in enumerate(table.candidates)
         if theta[k] > 0.0
@@ -192,9 +195,9 @@ class _TermTable:
         lessons = NetworkLessons.of(folds, columns, form)
         first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
         nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
-        links, losses = link_powers(columns.inputs, form.powers), loss_powers(columns.inputs)
-        stirs = [may_stir([measures(i) for i, _ in of]) for of in links]
-        heats = [may_heat([measures(i) for i, _ in of]) for of in losses]
+        links, losses = link_powers(columns.inputs, form.shapes), loss_powers(columns.inputs)
+        stirs = [may_stir([measures(f.input) for f in of]) for of in links]
+        heats = [may_heat([measures(f.input) for f in of]) for of in losses]
         bodies = [
             *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
             *columns.boundaries,
@@ -264,7 +267,7 @@ class _TermTable:
     def price(self) -> Array:
         """(n_term,): what follows one input is likelier than what follows two, or a square, or heat of nothing."""
         heat = np.array([len(ends) == 1 and not of for ends, of in self.candidates])
-        return np.array([1.0 + 0.25 * sum(p for _, p in of) for _, of in self.candidates]) + UNDRIVEN * heat
+        return np.array([1.0 + 0.25 * sum(f.exponent for f in of) for _, of in self.candidates]) + UNDRIVEN * heat
 
     def shares(self, lessons: Sequence[int], theta: Array, C: Array) -> Array:
         """(n_term,): of what moves a node, root mean squares; of a link's two nodes the larger."""

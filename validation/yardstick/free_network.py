@@ -4,7 +4,7 @@ For each sensor n, over windows of h seconds,
 
     T_n(t + h) - T_n(t) = sum_j sum_g a_njg int (T_j - T_n) x_g dt + sum_k b_nk int y_k dt,    all a, b >= 0,
 
-j every other sensor and boundary, x_g powers of the inputs that a link may follow, y_k products of them that may be
+j every other sensor and boundary, x_g shapes of the inputs that a link may follow, y_k products of them that may be
 losses. One non-negative least squares per sensor, so there is one optimum and no start to choose.
 Source: the integral form of sparse identification (Schaeffer and McCalla 2017), with a library of physics only.
 """
@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,23 +22,34 @@ from numpy.typing import NDArray
 from validation.yardstick.records import Columns, Record
 
 Array = NDArray[np.float64]
-Powers = tuple[tuple[str, float], ...]  # inputs, each over its largest size, with their exponents
+Shape = tuple[float, float]  # exponent, and the share of the largest size from which on it acts
+
+
+class Factor(NamedTuple):
+    """((|u| - begin) / (1 - begin)) ** exponent of an input u over its largest size; 0 below `begin`."""
+
+    input: str
+    exponent: float = 1.0
+    begin: float = 0.0
+
+
+Powers = tuple[Factor, ...]
 RIDGE = 1e-12  # on normal equations of unit columns: two inputs that are one another's copy share their work
 SMALL = 1e-10  # of the largest: rounding of sums over thousands of rows
 
 
 @dataclass(frozen=True)
 class Form:
-    """Which terms a free network may use.  window : s;  powers : of each input that a link may follow, beside 1"""
+    """Which terms a free network may use.  window : s;  shapes : of each input that a link may follow, beside 1"""
 
     window: float
-    powers: int
+    shapes: tuple[Shape, ...]
 
 
-def link_factors(u: Array, powers: int) -> Array:
-    """(n, n_factor): 1 and the powers of every input's size."""
+def link_factors(u: Array, shapes: Sequence[Shape]) -> Array:
+    """(n, n_factor): 1 and the shapes of every input's size."""
     size = np.abs(u)
-    return np.column_stack([np.ones(len(u)), *(size**p for p in range(1, powers + 1))])
+    return np.column_stack([np.ones(len(u)), *(np.maximum((size - b) / (1.0 - b), 0.0) ** p for p, b in shapes)])
 
 
 def loss_factors(u: Array) -> Array:
@@ -53,21 +65,25 @@ def loss_factors(u: Array) -> Array:
     return np.column_stack([np.ones(len(u)), *single, *pairs])
 
 
-def link_powers(inputs: Sequence[str], powers: int) -> list[Powers]:
+def link_powers(inputs: Sequence[str], shapes: Sequence[Shape]) -> list[Powers]:
     """What stands in the columns of `link_factors`."""
-    return [(), *(((i, float(p)),) for p in range(1, powers + 1) for i in inputs)]
+    return [(), *((Factor(i, *shape),) for shape in shapes for i in inputs)]
 
 
 def loss_powers(inputs: Sequence[str]) -> list[Powers]:
     """What stands in the columns of `loss_factors`."""
-    single: list[Powers] = [((i, p),) for p in (1.0, 2.0) for i in inputs]
-    pairs: list[Powers] = [((a, p), (b, q)) for a, b in combinations(inputs, 2) for p in (1.0, 2.0) for q in (1.0, 2.0)]
+    powers = (1.0, 2.0)
+    single: list[Powers] = [(Factor(i, p),) for p in powers for i in inputs]
+    pairs = [(Factor(a, p), Factor(b, q)) for a, b in combinations(inputs, 2) for p in powers for q in powers]
     return [(), *single, *pairs]
 
 
 def power_words(powers: Powers) -> str:
-    """ "id_A^2 speed_rpm", "" where nothing is followed."""
-    return " ".join(name if p == 1.0 else f"{name}^{p:g}" for name, p in powers)
+    """ "id_A^2 speed_rpm", "speed_rpm>0.5" from half of its largest on, "" where nothing is followed."""
+    return " ".join(
+        f"{f.input}{f'>{f.begin:g}' if f.begin else ''}{f'^{f.exponent:g}' if f.exponent != 1.0 else ''}"
+        for f in powers
+    )
 
 
 def integral(time: Array, y: Array) -> Array:
@@ -78,7 +94,7 @@ def integral(time: Array, y: Array) -> Array:
 
 def windows(record: Record, columns: Columns, form: Form) -> Iterator[Array]:
     """Sensor by sensor (n_row, n_term + 1): the integrals of all its terms over each window, and its rise, last."""
-    x, heat = link_factors(record.u, form.powers), integral(record.time, loss_factors(record.u))
+    x, heat = link_factors(record.u, form.shapes), integral(record.time, loss_factors(record.u))
     others = np.column_stack([record.T[:, columns.steady], record.boundary])
     h = record.rows(form.window)
     begin = np.arange(0, len(x) - h, max(h // 4, 1))
@@ -103,7 +119,7 @@ class FreeNetwork:
     def run(self, record: Record) -> Array:
         """(n, n_sensor) degC: from the first reading on, without looking at another."""
         k = self.sources.shape[0]
-        x, y = link_factors(record.u, self.form.powers), loss_factors(record.u)
+        x, y = link_factors(record.u, self.form.shapes), loss_factors(record.u)
         G = np.einsum("tg,njg->tnj", x, self.links)
         A = G[:, :, :k] - np.eye(k) * G.sum(axis=2)[:, :, None]
         s = y @ self.sources.T + np.einsum("tnj,tj->tn", G[:, :, k:], record.boundary)
@@ -148,7 +164,10 @@ class NetworkLessons:
     def fit(self, lessons: Sequence[int]) -> FreeNetwork:
         """The network learnt from some folds."""
         k, steady = len(self.columns.sensors), np.flatnonzero(self.columns.steady)
-        bodies, factors = steady.size + len(self.columns.boundaries), 1 + self.form.powers * len(self.columns.inputs)
+        bodies, factors = (
+            steady.size + len(self.columns.boundaries),
+            1 + len(self.form.shapes) * len(self.columns.inputs),
+        )
         where = np.append(steady, k + np.arange(len(self.columns.boundaries)))
         links, sources = np.zeros((k, k + len(self.columns.boundaries), factors)), []
         for n in range(k):

@@ -16,7 +16,7 @@ MOST_WORK = 1e11  # multiplications of all fits together: some 20 s on one core
 FEWEST_ROWS = 2_000  # of all tests together: fewer would not show what happens within a test
 FEW_SENSORS = 10  # with more of them fewer inputs are looked at: terms grow as their product
 MOST_INPUTS, FEW_INPUTS = 8, 5
-FITS = 5.0  # of every sensor, counted in the longest of them: three powers, and windows that overlap less and less
+FITS = 9.0  # of every sensor, counted in the longest of them: eight laws, and windows that overlap less and less
 MIDDLE = 40  # windows of a test over which an input is held against how fast sensors move
 
 

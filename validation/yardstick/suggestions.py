@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Link, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
-from validation.effects.build import links_between, losses_at
+from validation.effects.input_terms import law_sentence
 from validation.parameters.unknowns import scene_of
+from validation.yardstick.network_terms import follows, input_term, inputs_of, largest_inputs, term_elements
 from validation.yardstick.terms import Term
 
 
@@ -22,7 +22,8 @@ class Suggestion:
 
     other : the link's other end, "" of a loss;  inputs : that it follows and what is declared does not
     rest, most : value where nothing turns or flows, and at the largest inputs;  unit : W/K, W; 1/s, K/s per capacity
-    starts : effect of the catalogue that adds it -> where a fit may begin; empty where the catalogue has none
+    starts : effect that adds it -> where a fit may begin; empty where no capacity is known
+    effects : those of them to be added, more than one where two powers of an input are needed
     share : of all heat that the sensor exchanges
     """
 
@@ -34,6 +35,7 @@ class Suggestion:
     unit: str
     share: float
     starts: Mapping[str, float]
+    effects: tuple[str, ...]
 
     @property
     def words(self) -> str:
@@ -41,13 +43,11 @@ class Suggestion:
         what = f"{self.place} to {self.other}" if self.other else f"a loss at {self.place}"
         if not self.inputs:
             return f"{what}: {self.rest:.3g} {self.unit}"
-        return (
-            f"{what}: {self.rest:.3g} {self.unit} at rest, {self.most:.3g} at the largest {' and '.join(self.inputs)}"
-        )
+        return law_sentence(what, self.rest, self.most, self.unit, f"the largest {' and '.join(self.inputs)}")
 
     def document(self) -> dict:
         """As an entry of `lacking`."""
-        return {**vars(self), "inputs": list(self.inputs), "starts": dict(self.starts), "words": self.words}
+        return {**vars(self), "words": self.words}
 
 
 def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:
@@ -61,34 +61,26 @@ def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ..
 
 def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
     """Of the terms between two places, or at one; None where what is declared can do the same."""
-    first, network = group[0], case.model.network
-    laws = [set(x.law.reads) for x in term_elements(network, first)]
-    lacking = [t for t in group if not any(inputs_of(t) <= reads for reads in laws)]
+    first, network, sizes = group[0], case.model.network, largest_inputs(case.usable)
+    laws = [x.law for x in term_elements(network, first)]
+    lacking = [t for t in group if not any(follows(law, inputs_of(t), sizes) for law in laws)]
     if not lacking:
         return None
     inputs = tuple(dict.fromkeys(name for t in lacking for name in sorted(inputs_of(t))))
-    rest = sum(t.value for t in group if not t.input)
-    missing = sum(t.value for t in lacking)
+    known = first.unit.startswith("W")
+    starts = _starts(first, set(inputs), sum(t.value for t in lacking), case) if known else {}
+    terms = {one.name: t.value for t in lacking if known and (one := input_term(t, network, sizes))}
     return Suggestion(
         first.place,
         first.other,
         inputs,
-        rest,
+        sum(t.value for t in group if not t.input),
         sum(t.value for t in group),
         first.unit,
         sum(t.share for t in lacking),
-        _starts(first, set(inputs), missing, case) if first.unit.startswith("W") else {},
+        starts or terms,
+        tuple(starts)[:1] or tuple(terms),
     )
-
-
-def inputs_of(term: Term) -> set[str]:
-    """The names in "id_A^2 speed_rpm"."""
-    return {re.sub(r"\^[0-9]+$", "", word) for word in term.input.split()}
-
-
-def term_elements(network: Network, term: Term) -> list[Link] | list[Source]:
-    """The links between the two places of a term, or the losses at its place."""
-    return losses_at(network, term.place) if term.kind == "loss" else links_between(network, term.place, term.other)
 
 
 def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str, float]:

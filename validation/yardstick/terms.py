@@ -91,7 +91,7 @@ def _vector(network: FreeNetwork) -> Array:
 
 def _term_names(network: FreeNetwork, columns: Columns) -> list[tuple[str, str, str]]:
     """Kind, other end and input of every term, as `_vector` orders them."""
-    powers = [power_words(of) for of in link_powers(columns.inputs, network.form.powers)]
+    powers = [power_words(of) for of in link_powers(columns.inputs, network.form.shapes)]
     links = [("link", body, of) for body in (*columns.sensors, *columns.boundaries) for of in powers]
     return [*links, *(("loss", "", power_words(of)) for of in loss_powers(columns.inputs))]
 
@@ -100,7 +100,7 @@ def _shares(network: FreeNetwork, records: Sequence[Record]) -> Array:
     """(n_sensor, n_term): mean size of what each term carries, over the sum of a sensor's."""
     size = np.zeros_like(_vector(network))
     for record in records:
-        x, y = link_factors(record.u, network.form.powers), loss_factors(record.u)
+        x, y = link_factors(record.u, network.form.shapes), loss_factors(record.u)
         bodies = np.hstack([record.T, record.boundary])
         for n in range(len(size)):
             flow = np.abs(bodies - record.T[:, [n]])[:, :, None] * x[:, None, :]

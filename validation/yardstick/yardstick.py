@@ -18,14 +18,26 @@ from numpy.typing import NDArray
 from measured.case import Case
 from validation.threads import one_blas_thread
 from validation.yardstick.black_box import BlackBoxLessons
-from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons
+from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
 from validation.yardstick.persistence import usual_rise
 from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
 
 Array = NDArray[np.float64]
 WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
-POWERS = (0, 1, 2)  # of an input that a link follows: not at all, as films in ducts do, as the work of fans
+LINE, SQUARE = (1.0, 0.0), (2.0, 0.0)
+POWERS = (
+    (),
+    (LINE,),
+    (LINE, SQUARE),
+)  # of an input that a link follows: not at all, as films in ducts do, as fans work
+SHAPES = (
+    ((0.5, 0.0),),
+    (SQUARE,),
+    ((1.0, 0.25),),
+    ((1.0, 0.5),),
+    ((1.0, 0.75),),
+)  # in place of a line: two regimes too
 RIDGES = (1e-9, 1e-6, 1e-4, 1e-2)  # over the diagonal: from none to one that shrinks all but what is plain
 THIRDS = 3  # stretches of the only test: two teach, one is predicted
 MOST_FOLDS = 12  # of many tests so many shares are left out in turn: each fit costs as much as that many tests
@@ -155,7 +167,7 @@ def persistence_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
 
 def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
     """The window and powers with which a free network predicts best what was left out."""
-    fit, _ = _best(_free_networks(folds, columns), folds)
+    fit, _ = _best(_free_networks(folds, columns, POWERS), folds)
     whole = fit(range(len(folds)))
     assert isinstance(whole, FreeNetwork)
     return whole.form
@@ -194,9 +206,11 @@ def _black_boxes(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fi
     return [partial(a.fit, ridge=r) for a, r in product(lessons, RIDGES)]
 
 
-def _free_networks(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
-    powers = POWERS if columns.inputs else (0,)
-    return [NetworkLessons.of(folds, columns, Form(h, p)).fit for p, h in product(powers, _windows(folds))]
+def _free_networks(
+    folds: Sequence[Sequence[Record]], columns: Columns, shapes: Sequence[tuple[Shape, ...]] = (*POWERS, *SHAPES)
+) -> list[Fitter]:
+    some = shapes if columns.inputs else ((),)
+    return [NetworkLessons.of(folds, columns, Form(h, s)).fit for s, h in product(some, _windows(folds))]
 
 
 def _best(fitters: Sequence[Fitter], folds: Sequence[Sequence[Record]]) -> tuple[Fitter, list[Array]]:

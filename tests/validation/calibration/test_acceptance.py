@@ -15,7 +15,7 @@ from validation.calibration.staged_fit import fit_stages, measured_in
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.parameters.unknowns import Unknowns, working
-from validation.revision.acceptance import fold_prediction, folds, halves, prediction_checks
+from validation.revision.acceptance import fold_prediction, folds, halves, middle_instant, prediction_checks
 from validation.revision.revise import Change, add, calibrate, judge
 
 BIAS = Parameter(
@@ -142,3 +142,16 @@ def test_an_effect_on_the_measurement_is_free_in_the_fit_of_the_model_that_has_i
     (stage,) = fit_stages(grown, grown.usable, unknowns)
     p = next(p for p in network.parameters if p.name == name)
     assert p.name in stage.free or measured_in(p, stage.tests)
+
+
+def test_the_only_test_that_tells_is_cut_where_half_of_what_the_step_does_has_been_seen():
+    """A lid opened late: in the first half of the record it has done nothing, so that says nothing of it."""
+    tests = [measured("one"), measured("two")]
+    fit = list(both(tests))[1]
+    last = float(tests[1].time[-1])
+    late = replace(fit, parts=tuple(replace(s, J=np.where(s.time[:, None] > 0.8 * last, s.J, 0.0)) for s in fit.parts))
+    middle = middle_instant(late, [LOSS.name], "two")
+    assert middle == pytest.approx(0.9 * last, rel=0.02)
+    (cut,) = folds(tests, ["two"], middle)
+    read = tests[1].time[np.isfinite(cut.fitted[1].channels[0].y)]
+    assert read[-1] == pytest.approx(middle, rel=0.01)

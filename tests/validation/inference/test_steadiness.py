@@ -2,13 +2,22 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from playground import Truth, wind
 
 from validation.effects import effect
-from validation.inference.decide import Decision, Posterior, decide, half_posterior, steady_decision, united_groups
+from validation.inference.decide import (
+    Decision,
+    Posterior,
+    decide,
+    half_posterior,
+    steady_decision,
+    united_groups,
+    without_twins,
+)
 from validation.inference.evidence import calibrated_case, scored, singles
 from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.refit import laplace
@@ -112,3 +121,15 @@ def test_every_hypothesis_is_told_once():
     rows = explanations(posterior())
     assert abs(sum(row.probability for row in rows) - 1.0) < 1e-12
     assert len({row.cause for row in rows}) == len(rows)
+
+
+def test_one_event_with_ends_a_sample_apart_is_one_thing():
+    """The lid is named; a fan at another time and the same lid an hour later are other things."""
+    lid, late, other, fan = (
+        effect(f"convection.constant@{place} in b:{span}s")
+        for place, span in (("a", "100-300"), ("a", "120-300"), ("a", "3700-3900"), ("b", "100-300"))
+    )
+    e = SimpleNamespace(effects=(lid, late, other, fan))
+    assert without_twins(e, Decision("group", ((1, 0),), 1.0), [0]) == Decision("named", ((0,),), 1.0)
+    assert without_twins(e, Decision("group", ((0, 2, 3),), 1.0), ()) == Decision("group", ((0, 2, 3),), 1.0)
+    assert without_twins(e, Decision("group", ((0,),), 1.0), ()).verdict == "group"

@@ -45,12 +45,14 @@ def bench(second="two", pumped=0.0, joint=0.0):
     )
 
 
-def case(truth, model, role="calibrate"):
-    """Three tests of the truth, the last in a role of its own, held against a model."""
+def case(truth, model, role="calibrate", speeds=3):
+    """Three tests of the truth, the last in a role of its own, held against a model; inputs take so many values."""
     rng, tests = np.random.default_rng(0), []
     for name in ("first", "second", "third"):
         time = np.arange(0.0, 4000.0, 40.0)
-        inputs = {n: u * rng.choice([0.0, 0.5, 1.0], 8)[(time / 500.0).astype(int)] for n, u in LEVELS.items()}
+        inputs = {
+            n: u * rng.choice(np.linspace(0.0, 1.0, speeds), 8)[(time / 500.0).astype(int)] for n, u in LEVELS.items()
+        }
         around = {"ambient": np.full_like(time, 20.0)}
         test = Test(name, role if name == "third" else "calibrate", time, inputs, around, (), 20.0)
         rows = [truth.places[p].mean for p in ("one", "two")]
@@ -77,7 +79,7 @@ def test_a_loss_declared_at_another_place_is_found_where_it_is():
 def test_a_film_that_follows_an_input_is_told_at_rest_and_at_most():
     said = diagnose(case(bench(pumped=0.7), bench()), plan=False)
     assert said.named == ("conductance.input@two|ambient|pump at 3000",)
-    assert "two to ambient 0.7" in said.words
+    assert "two to ambient: 0.7" in said.words
     assert "W/K at rest, 1.4" in said.words
 
 

@@ -77,12 +77,14 @@ def test_per_capacity_there_is_no_start(case):
 def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(case):
     """The film that was left out is accepted, with the words of the free network as its evidence."""
     poorer = without(case, ("body", "ambient"))
-    step, evidence, tried = free_network_step(poorer, Supervisor(best, suggest=True), no_progress)
+    step, evidence, tried = free_network_step(poorer, Supervisor(best, suggest=True), 9.0, no_progress)
     assert step is not None, tried
     assert step.accepted
     assert evidence["free network"].startswith("body to ambient: ")
-    assert free_network_step(poorer, Supervisor(best), no_progress) == (None, {}, [])
+    assert free_network_step(poorer, Supervisor(best), 9.0, no_progress) == (None, {}, [])
 
 
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
-    assert free_network_step(case, Supervisor(best, suggest=True), no_progress) == (None, {}, [])
+    step, _, (why,) = free_network_step(case, Supervisor(best, suggest=True), 0.01, no_progress)
+    assert step is None
+    assert why.startswith("left out in turn 0.01 K, of the best yardstick 0.")

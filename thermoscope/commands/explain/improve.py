@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 def improve(
     case: Case,
-    yes: Annotated[bool, typer.Option("--yes", help="Do not ask; add only effects that stand alone.")] = False,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Do not ask; add what stands alone, and what a free network needs.")
+    ] = False,
     most: Annotated[int, typer.Option(min=1, help="Effects to add at most.")] = 6,
     target: Json = None,
 ) -> int:
@@ -43,7 +45,7 @@ def improve(
         folder = open_case_for_writing(case, tell)
         checked_columns(folder)
         ledger = Ledger(folder)
-        supervisor = Supervisor(singletons if yes else user_choice, ledger.keep)
+        supervisor = Supervisor(singletons if yes else user_choice, ledger.keep, suggest=yes)
         result = climb(folder.case, supervisor, most, tell, folder.settings.kinds)
     last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))

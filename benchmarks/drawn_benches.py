@@ -1,0 +1,163 @@
+"""Benches that other people might have: a fan in one test, a lid that is opened, a probe that sat elsewhere; drawn.
+
+    python benchmarks/drawn_benches.py [--cases 100] [--only lid] [--json FILE]
+
+Every case is drawn anew (sizes, losses, films, noise, inputs) with one cause that the model does not have. It is right
+where `diagnose` names it and `add` accepts it: the test of the fan; the lid with begin and end within two samples. A
+probe that sat elsewhere is nothing that a model should explain: right is any verdict but *adequate* whose sentence
+names the sensor or one of its tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from geom.errors import NoSolution
+from lumped.declarations.network import read_network
+from lumped.integration.simulate import Record, simulate
+from lumped.model.network import Network
+from measured.case import Case, Channel, Model, Test
+from validation.diagnosis import diagnose
+from validation.effects import effect
+from validation.effects.during import During
+from validation.inference.result import Diagnosis
+from validation.revision.revise import add
+
+NOISE_K, SIGMA_K = 0.1, 0.3
+CLOSE = 2.0  # samples that the begin and the end of a lid may be off by
+Inputs = Mapping[str, np.ndarray]
+
+
+def network(rng: np.random.Generator, more: Mapping[str, dict]) -> Network:
+    """A heated core in a shell that stands in a room, and what else there is; sizes drawn."""
+    C, G, film, watts = rng.uniform(300, 900), rng.uniform(1, 4), rng.uniform(0.5, 1.5), rng.uniform(20, 60)
+    of = {"input": "load", "at": 1.0, "exponent": 1.0}
+    return read_network(
+        {
+            "network": {"name": "bench", "boundaries": ["ambient"], "settles_s": 1500},
+            "nodes": {n: {"C_J_K": c, "prior_sd": 0.1} for n, c in (("core", C), ("shell", 1.5 * C))},
+            "links": {
+                "joint": {"between": ["core", "shell"], "G_W_K": G, "prior_sd": 0.3},
+                "film": {"between": ["shell", "ambient"], "G_W_K": film, "prior_sd": 0.3},
+                **more,
+            },
+            "losses": {"heat": {"kind": "constant", "at": "core", "P_W": watts, "prior_sd": 0.1, "of": of}},
+        }
+    )
+
+
+def recorded(rng: np.random.Generator, truth: Network, names: str, step: float, more: Callable[[str], Inputs]) -> Case:
+    """One test for each letter, an hour and a half each, with a load that is switched; read with noise."""
+    tests, rows = [], [truth.places[p].mean for p in ("core", "shell")]
+    for name in names:
+        t = np.arange(0.0, 5400.0, step)
+        u = {"load": rng.choice([0.0, 0.3, 0.6, 1.0], 10)[(t / 540.0).astype(int)], **more(name)}
+        around = {"ambient": np.full_like(t, rng.uniform(18, 26))}
+        start = float(around["ambient"][0])
+        test = Test(name, "calibrate", t, u, around, (), start)
+        y = simulate(truth, Record(t, test.signals, around, start), {}, rows).y
+        y = y + NOISE_K * rng.standard_normal(y.shape)
+        channels = [
+            Channel(p, p, r, y[:, i], SIGMA_K) for i, (p, r) in enumerate(zip(("core", "shell"), rows, strict=True))
+        ]
+        seen = {n: v for n, v in u.items() if n == "load"}
+        tests.append(replace(test, inputs=seen, channels=tuple(channels)))
+    return Case("bench", Model(truth), tuple(tests))
+
+
+def switched(conductance: float) -> dict[str, dict]:
+    """What an input that nobody records opens, from the shell to the room."""
+    of = {"input": "open", "at": 1.0, "exponent": 1.0}
+    return {"open": {"between": ["shell", "ambient"], "G_W_K": conductance, "of": of}}
+
+
+def without_cause(case: Case) -> Case:
+    """The same held against the model that has no such link."""
+    links = tuple(x for x in case.model.network.links if x.name != "link:open")
+    parameters = tuple(p for p in case.model.network.parameters if p.targets and p.targets[0][0] != "link:open")
+    return replace(case, model=Model(replace(case.model.network, links=links, parameters=parameters)))
+
+
+def accepted(case: Case, said: Diagnosis) -> tuple[During, ...]:
+    """What the diagnosis puts first, if it holds for a while and `add` accepts it; () else."""
+    first = effect(said.groups[0][0]) if said.groups and said.verdict in ("named", "group", "several") else None
+    return (first,) if isinstance(first, During) and add(case, first.name).accepted else ()
+
+
+def fan(rng: np.random.Generator) -> str:
+    """A fan blew at the shell in one of three tests."""
+    which = str(rng.choice(list("abc")))
+    truth = network(rng, switched(rng.uniform(1.0, 5.0)))
+    case = without_cause(recorded(rng, truth, "abc", 20.0, lambda name: {"open": np.full(270, float(name == which))}))
+    said = diagnose(case, plan=False)
+    found = accepted(case, said)
+    return "right" if found and found[0].tests == (which,) else f"{said.verdict}: {said.words}"
+
+
+def lid(rng: np.random.Generator) -> str:
+    """A lid was open for one to five minutes, once, in one of two tests of a sample every ten seconds."""
+    begin, length = 10.0 * rng.integers(60, 400), 10.0 * rng.integers(6, 30)
+    truth = network(rng, switched(rng.uniform(5.0, 20.0)))
+    t = np.arange(0.0, 5400.0, 10.0)
+    opened = ((t >= begin) & (t < begin + length)).astype(float)
+    case = without_cause(
+        recorded(rng, truth, "ab", 10.0, lambda name: {"open": opened if name == "b" else np.zeros_like(t)})
+    )
+    said = diagnose(case, plan=False)
+    for one in accepted(case, said):
+        spans = one.event.spans.get("b", ()) if one.event else ()
+        if len(spans) == 1 and max(abs(spans[0][0] - begin), abs(spans[0][1] - begin - length)) <= CLOSE * 10.0:
+            return "right"
+    return f"open {begin:.0f}-{begin + length:.0f} s; {said.verdict}: {said.words}"
+
+
+def probe(rng: np.random.Generator) -> str:
+    """In two of four tests the probe of the shell read a share of the room."""
+    share, moved = rng.uniform(0.3, 0.7), set(rng.choice(list("abcd"), 2, replace=False).tolist())
+    case = recorded(rng, network(rng, {}), "abcd", 20.0, lambda name: {})
+    tests = []
+    for t in case.tests:
+        core, shell = t.channels
+        y = (1.0 - share) * shell.y + share * t.boundaries["ambient"]
+        tests.append(replace(t, channels=(core, replace(shell, y=y) if t.name in moved else shell)))
+    said = diagnose(replace(case, tests=tuple(tests)), plan=False)
+    named = "shell" in said.words or any(f" {name}" in said.words for name in moved)
+    return "right" if said.verdict != "adequate" and named else f"{said.verdict}: {said.words}"
+
+
+KINDS = {"fan": fan, "lid": lid, "probe": probe}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=100, help="drawn of each kind")
+    parser.add_argument("--only", nargs="*", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--json", type=Path, help="where every outcome goes")
+    options = parser.parse_args()
+    outcomes: dict[str, list[str]] = {}
+    for seed, kind in product(range(options.cases), options.only):
+        begin = time.process_time()
+        try:
+            word = KINDS[kind](np.random.default_rng(seed))
+        except NoSolution as fault:
+            word = str(fault)
+        outcomes.setdefault(kind, []).append(word)
+        print(f"{kind} {seed}: {word} ({time.process_time() - begin:.0f} s)", file=sys.stderr, flush=True)
+        if options.json:
+            options.json.write_text(json.dumps(outcomes, indent=1), encoding="utf-8")
+    print("| kind | drawn | right |\n|---|---|---|")
+    for kind, words in outcomes.items():
+        print(f"| {kind} | {len(words)} | {sum(w == 'right' for w in words)} |")
+
+
+if __name__ == "__main__":
+    main()
