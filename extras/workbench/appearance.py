@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from thermoscope.plugin import Folder, comparison_of
-
-if TYPE_CHECKING:
-    from thermoscope.plugin import Comparison
+from thermoscope.plugin import Comparison, Folder, comparison_of
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from uuid import uuid4
 
 from aiohttp import BodyPartReader, MultipartReader, web
 
-from thermoscope import InputError
+from thermoscope import InputError, Network
 from thermoscope.plugin import (
     Dialogue,
     Draft,
     Progress,
     Recording,
+    Settings,
     Target,
     assigned,
     cut_short,
@@ -32,10 +33,6 @@ from thermoscope.plugin import (
     test_name,
 )
 from thermoscope.plugin import read_case_recording as read_recording
-
-if TYPE_CHECKING:
-    from thermoscope import Network
-    from thermoscope.plugin import Settings
 
 CHUNK = 2**20  # bytes: little memory, few system calls
 

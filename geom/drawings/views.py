@@ -6,15 +6,13 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from geom.description.machine import Machine
 from geom.description.palette import colour
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Loop, Profile, edges
 from geom.description.roles import Role
-
-if TYPE_CHECKING:
-    from geom.description.machine import Machine
 
 mm = 1e3
 _ASIDE = 7e-4  # m; the section along the axis runs beside the mica between two bars, and within a fin

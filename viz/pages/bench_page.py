@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geom.storage import write_whole
 from geom.table import Table
+from validation.revision.predicted_curves import PredictedCurves
 from validation.tables import currents
 from viz.data import short
 from viz.figures.experiment import SENSORS, predicted
 from viz.pages import html
-
-if TYPE_CHECKING:
-    from validation.revision.predicted_curves import PredictedCurves
 
 BLANK = "\u2007" * 6  # room for a pen
 DECISIVE = 2.0  # one-sigma distances from which a reading speaks for one of two

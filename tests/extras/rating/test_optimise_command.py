@@ -28,22 +28,8 @@ EFFORT = ("--population", "12", "--generations", "4")
 def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
     """Less current is cooler and gives less copper loss: of two variables one stays at its bound."""
     case, out = small_case(tmp_path), tmp_path / "designs"
-    said = thermoscope(
-        "use",
-        "optimise",
-        case,
-        "--limit",
-        "winding=400",
-        "--vary",
-        "current_A=40:90",
-        *EFFORT,
-        "--out",
-        out,
-        "--at",
-        "ambient=20",
-        "--json",
-        "-",
-    )
+    words = ["--limit", "winding=400", "--vary", "current_A=40:90", "--at", "ambient=20", "--json", "-"]
+    said = thermoscope("use", "optimise", case, *words, *EFFORT, "--out", out)
     assert said.code == 0, said.err
     best = said.document["designs"][0]
     assert best["values"]["current_A"] < 50.0

@@ -160,20 +160,8 @@ def test_a_cycle_of_a_cage_machine_multiplies_both_currents(thermoscope, tmp_pat
     network.write_text(network.read_text() + '\n[losses.cage]\nkind = "constant"\nat = "winding"\nP_W = 1\n')
     (case / "cycles").mkdir()
     (case / "cycles" / "hoist.toml").write_text(HOIST)
-    said = thermoscope(
-        "use",
-        "rate",
-        case,
-        "--limit",
-        "winding=120",
-        "--at",
-        "ambient=20",
-        "--cycle",
-        "hoist",
-        "--json",
-        "-",
-        "--no-bands",
-    )
+    words = ["--limit", "winding=120", "--at", "ambient=20", "--cycle", "hoist", "--json", "-", "--no-bands"]
+    said = thermoscope("use", "rate", case, *words)
     assert said.code == 0, said.err
     cycle = said.document["cycle"]
     assert 0.1 < cycle["share"] < 10.0

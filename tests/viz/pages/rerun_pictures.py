@@ -55,20 +55,27 @@ def _patiently(act: Callable[[], None]) -> None:
 
 
 @contextmanager
-def _viewer() -> Iterator[ViewerClient]:
-    """A viewer that listens to this computer only, on a free port, its usage statistics off; ended afterwards."""
-    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
-    if program is None:
+def program() -> Iterator[tuple[str, dict[str, str]]]:
+    """The rerun program, and an environment with a home of its own in which its usage statistics are off."""
+    found = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
+    if found is None:
         raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
+    with TemporaryDirectory() as home:
+        alone = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_RUNTIME_DIR": home}
+        subprocess.run([found, "analytics", "disable"], env=alone, capture_output=True, check=False)
+        yield found, alone
+
+
+@contextmanager
+def _viewer() -> Iterator[ViewerClient]:
+    """A viewer that listens to this computer only, on a free port; ended afterwards."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    with TemporaryDirectory() as home:
-        alone = {"WGPU_BACKEND": "vulkan", **os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_RUNTIME_DIR": home}
-        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
-        command = [program, "--headless", "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
-        null = subprocess.DEVNULL
-        process = subprocess.Popen(command, env=alone, stdout=null, stderr=null, start_new_session=True)
+    with program() as (found, alone):
+        command = [found, "--headless", "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
+        null, vulkan = subprocess.DEVNULL, {"WGPU_BACKEND": "vulkan", **alone}
+        process = subprocess.Popen(command, env=vulkan, stdout=null, stderr=null, start_new_session=True)
         try:
             yield _connected(process, port)
         finally:
@@ -95,15 +102,17 @@ def _connected(process: subprocess.Popen, port: int) -> ViewerClient:
     raise MissingDependency(f"the rerun viewer cannot draw here; a software Vulkan helps: {COMMAND}")
 
 
+def printed(path: str | Path, detail: str) -> str:
+    """What a recording holds, as rerun's own tool prints it.  detail : -v to -vvv"""
+    with program() as (found, alone):
+        command = [found, "rrd", "print", detail, str(path)]
+        return subprocess.run(command, env=alone, capture_output=True, text=True, check=True).stdout
+
+
 def verify(path: str | Path) -> None:
-    """Check a recording with rerun's own tool, its usage statistics switched off for this call."""
-    program = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
-    if program is None:
-        raise MissingDependency("the rerun program is missing; install it with: uv pip install rerun-sdk")
-    with TemporaryDirectory() as home:
-        alone = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home}
-        subprocess.run([program, "analytics", "disable"], env=alone, capture_output=True, check=False)
-        done = subprocess.run([program, "rrd", "verify", str(path)], env=alone, capture_output=True, text=True)
+    """Check a recording with rerun's own tool."""
+    with program() as (found, alone):
+        done = subprocess.run([found, "rrd", "verify", str(path)], env=alone, capture_output=True, text=True)
     if done.returncode:
         raise InputError(
             f"not a valid recording: {done.stderr.strip()[-300:]}", str(path), "a file written by this version"

@@ -1,18 +1,20 @@
-"""The recording: valid to rerun's own checker, complete, and refused when it does not fit."""
+"""The recording: valid to rerun's own checker and shown by its viewer, complete, refused when it does not fit."""
 
+import os
 import re
 import subprocess
-import sys
+import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from fictional import HISTORY, PLACES, POSITIONS, TIME, comparison
-from rerun_pictures import verify
+from PIL import Image
+from rerun_pictures import printed, snapshots, verify
 from small_motor import motor
 
 from geom.errors import InputError
+from thermoscope.check import findings
 from viz.recordings.arrangement import blueprint, in_view, non_overlapping, outside_outline
 from viz.recordings.recording import TIME as TIME_LINE
 from viz.recordings.recording import write_recording
@@ -36,16 +38,14 @@ def recording(tmp_path_factory):
         POSITIONS,
         history=HISTORY,
         revision_fields=np.stack([fields[-1] + k for k in (4.0, 2.0, 0.0)]),
+        revision_residuals=[{"flange.right": K} for K in (-6.0, -6.0, 0.1)],
     )
 
 
-def chunks(path):
+@pytest.fixture(scope="module")
+def chunks(recording):
     """(rows, entity, component) of every chunk, as rerun's own tool lists them."""
-    tool = Path(sys.executable).with_name("rerun")
-    home = {"HOME": str(path.parent), "XDG_CONFIG_HOME": str(path.parent)}
-    subprocess.run([tool, "analytics", "disable"], env=home, capture_output=True, check=True)
-    done = subprocess.run([tool, "rrd", "print", "-v", path], env=home, capture_output=True, text=True, check=True)
-    found = re.findall(r"with (\d+) rows .* - (/\S+) - data columns: \[(.*)\]", done.stdout)
+    found = re.findall(r"with (\d+) rows .* - (/\S+) - data columns: \[(.*)\]", printed(recording, "-v"))
     return [(int(n), entity, columns.rsplit(":", 1)[-1]) for n, entity, columns in found]
 
 
@@ -53,28 +53,35 @@ def test_recording_is_valid(recording):
     verify(recording)
 
 
-def test_recording_holds_every_frame_and_revision(recording):
-    colours = sorted(n for n, entity, column in chunks(recording) if column == "vertex_colors")
+def test_recording_holds_every_frame_and_revision(chunks):
+    colours = sorted(n for n, entity, column in chunks if column == "vertex_colors")
     assert colours == [len(HISTORY) + 1, FRAMES]
 
 
-def test_geometry_is_written_once(recording):
-    positions = [n for n, entity, column in chunks(recording) if column == "vertex_positions"]
+def test_every_revision_has_a_field_sensors_and_errors(recording):
+    """Each of these has rows on the timeline `revision`."""
+    on_revision = [chunk for chunk in printed(recording, "-vvv").split("Chunk") if "revision" in chunk]
+    for entity in ("/machine/field", "/machine/sensors", "/error/road-2", "/step"):
+        assert any(entity in chunk for chunk in on_revision), entity
+
+
+def test_geometry_is_written_once(chunks):
+    positions = [n for n, entity, column in chunks if column == "vertex_positions"]
     assert positions == [1]
 
 
-def test_every_sensor_has_its_curves_and_every_input(recording):
-    series = {entity for n, entity, column in chunks(recording) if column == "scalars" and n == len(TIME)}
+def test_every_sensor_has_its_curves_and_every_input(chunks):
+    series = {entity for n, entity, column in chunks if column == "scalars" and n == len(TIME)}
     assert series == {"/inputs/current_A"} | {
         f"/{kind}" for p in PLACES for kind in (f"curves/{p}/measured", f"curves/{p}/model", f"residual/{p}")
     }
 
 
-def test_colours_and_events_are_explained(recording):
+def test_colours_and_events_are_explained(chunks):
     """A bar with its marks; an event leaves a line where it begins and one where it ends."""
-    entities = {entity for _, entity, _ in chunks(recording)}
+    entities = {entity for _, entity, _ in chunks}
     assert {"/scale/bar", "/scale/marks", "/legend", "/machine/names"} <= entities
-    assert sum(n for n, entity, column in chunks(recording) if entity == "/events" and column == "text") == 2
+    assert sum(n for n, entity, column in chunks if entity == "/events" and column == "text") == 2
 
 
 def views(part):
@@ -123,3 +130,29 @@ def test_fields_and_times_must_pair(tmp_path):
             tmp_path / "x.rrd", NODES, comparison(), (np.arange(3.0), np.full((2, NODES.size), 20.0)), POSITIONS
         )
     assert not (tmp_path / "x.rrd").exists()
+
+
+def ended(group: int, tries: int = 300) -> bool:
+    """Whether no process of a group is left, or soon will be."""
+    for _ in range(tries):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.1)
+    return False
+
+
+@pytest.mark.heavy
+def test_the_viewer_shows_it_and_ends(recording, tmp_path, monkeypatch):
+    started, popen = [], subprocess.Popen
+    monkeypatch.setattr(subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])
+    if not next(f for f in findings() if f.name == "Vulkan driver").present:
+        pytest.skip("needs a Vulkan driver: apt-get install -y libvulkan1 mesa-vulkan-drivers")
+    cold, hot = snapshots(
+        recording, {tmp_path / "0.png": ("test_time", 0.0), tmp_path / "1.png": ("test_time", 3600.0)}
+    )
+    a, b = (np.asarray(Image.open(p).convert("RGB")).astype(int) for p in (cold, hot))
+    assert a.std() > 10
+    assert np.abs(a - b).mean() > 1
+    assert ended(started[-1].pid)  # the program and the viewer it started

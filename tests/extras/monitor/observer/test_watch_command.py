@@ -10,6 +10,8 @@ import pytest
 from command_line import RUN
 from small_case import HEADER, measured, small_case, write_csv
 
+BOTH = ("--sensor", "T_winding", "--sensor", "T_yoke")
+
 
 @pytest.fixture(scope="module")
 def case(tmp_path_factory):
@@ -25,20 +27,7 @@ def rows(case):
 
 @pytest.fixture(scope="module")
 def document(thermoscope, case, rows):
-    done = thermoscope(
-        "use",
-        "watch",
-        case,
-        "--follow",
-        rows,
-        "--sensor",
-        "T_winding",
-        "--sensor",
-        "T_yoke",
-        "--json",
-        "-",
-        cwd=case.parent,
-    )
+    done = thermoscope("use", "watch", case, "--follow", rows, *BOTH, "--json", "-", cwd=case.parent)
     assert done.code == 0, done.err
     return done.document
 
@@ -66,22 +55,8 @@ def test_the_document_says_what_was_estimated(case, rows, document):
 @pytest.mark.heavy
 def test_a_pipe_gives_what_the_file_gives(case, rows, document):
     """A line a minute, and the same temperatures."""
-    command = [
-        sys.executable,
-        "-c",
-        RUN,
-        "use",
-        "watch",
-        str(case),
-        "--follow",
-        "-",
-        "--sensor",
-        "T_winding",
-        "--sensor",
-        "T_yoke",
-        "--json",
-        "pipe.json",
-    ]
+    words = ["use", "watch", case, "--follow", "-", *BOTH, "--json", "pipe.json"]
+    command = [sys.executable, "-c", RUN, *map(str, words)]
     done = subprocess.run(command, cwd=case.parent, input=rows.read_text(), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert sum(" min  winding " in line for line in done.stdout.splitlines()) == 50
@@ -149,22 +124,8 @@ def test_a_wrong_observer_to_export_is_one_message(thermoscope, case, tmp_path, 
 
 
 def test_an_exported_observer_says_what_it_takes(thermoscope, case, tmp_path):
-    done = thermoscope(
-        "use",
-        "export",
-        case,
-        "--as",
-        "observer",
-        "--sensor",
-        "T_winding",
-        "--sensor",
-        "T_yoke",
-        "--out",
-        tmp_path,
-        "--json",
-        "-",
-        cwd=tmp_path,
-    )
+    words = ["--as", "observer", *BOTH, "--out", tmp_path, "--json", "-"]
+    done = thermoscope("use", "export", case, *words, cwd=tmp_path)
     assert done.code == 0, done.err
     assert done.document["sensors"] == ["T_winding", "T_yoke"]
     assert done.document["inputs"] == ["current_A", "ambient"]
