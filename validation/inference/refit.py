@@ -162,7 +162,9 @@ def laplace(
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
-    return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
+    bayes = log_bayes(evidence, best, h.members)
+    loud = evidence.loud.evidence(best, bayes) if evidence.loud else h.loud
+    return replace(h, fit=best, log_bayes=bayes, loud=loud)
 
 
 def fine_refit(evidence: Evidence, h: Weighed) -> Weighed:

@@ -29,7 +29,16 @@ from validation.inference.hypotheses import (
     inclusion,
     probabilities,
 )
-from validation.inference.result import Candidate, Decided, DetectionLimit, Odds, PossibleEvent, Remainder, Verdict
+from validation.inference.result import (
+    Candidate,
+    Decided,
+    DetectionLimit,
+    Odds,
+    PossibleEvent,
+    RecordDoubt,
+    Remainder,
+    Verdict,
+)
 from validation.inference.stretches import ALIKE
 
 Array = NDArray[np.float64]
@@ -303,6 +312,17 @@ def remainder(posterior: Posterior, choice: Decision, single: Mapping[int, Weigh
     return tuple(_remainder(s, posterior, lead, fit, measure) for s in list(rows.values())[:MOST])
 
 
+def record_doubts(fit: Fit) -> tuple[RecordDoubt, ...]:
+    """What the doubts of a model add up to at each record, the largest first."""
+    error, rows = fit.error, []
+    for s in fit.parts if error else ():
+        square = np.mean(error.of(s) ** 2, axis=0)  # type: ignore[union-attr]
+        most = error.names[int(np.argmax(square))]  # type: ignore[union-attr]
+        total = error.sums.get((s.test, s.channel), 0.0)  # type: ignore[union-attr]
+        rows.append(RecordDoubt(s.channel, s.test, total, float(np.sqrt(np.sum(square))), most))
+    return tuple(sorted(rows, key=lambda r: -r.sum_K))
+
+
 def rms(r: Array) -> float:
     return float(np.sqrt(np.mean(r**2)))
 
@@ -341,14 +361,16 @@ def sentence(
     rows: Sequence[Candidate],
     pulls: Pulls,
     broken: PlainFaults,
+    left: Sequence[Remainder] = (),
 ) -> str:
-    """The verdict in words, with its odds."""
+    """The verdict in words, with its odds.  left : what stays off, worst first"""
     hides = "it may hide a missing effect"
     if broken:
-        rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults()) if broken.names else ""
+        rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults(), left) if broken.names else ""
         return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
-        return f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        words = f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
     if verdict == "absorbed":
