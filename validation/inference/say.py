@@ -15,7 +15,7 @@ from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
-from validation.effects.base import ReadingEffect
+from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During
 from validation.effects.time_window import Event
 from validation.inference.decide import Decision, Group, Posterior
@@ -395,12 +395,20 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
             return f"{effect.words(best.value, e.fit.network, (h.fit or e.fit).values)} ({percent(best.probability)})"
         place = effect.words if isinstance(effect, During) else f"at {effect.place}"
         unit = "" if best.unit == "1" else f" {best.unit}"
-        size = "" if effect.whole else f", {best.value:.3g}{unit}"
+        size = "" if effect.whole else f", {best.value:.3g}{unit}{impossible_words(effect, best)}"
         return f"{'fault' if effect.fault else 'missing'}: {best.title} {place}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     likely = [f"{e.names[k]} {percent(p)}" for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
     others = f" or {len(group) - len(likely)} less likely ones" if len(group) > len(likely) else ""
     return f"one of {', '.join(likely)}{others}; these tests and sensors cannot tell them apart"
+
+
+def impossible_words(effect: Effect, row: Candidate) -> str:
+    """That no material has such a size, where it is a property of one and the whole interval lies beside it."""
+    (low, high), (a, b) = effect.typical, row.ci95
+    if not effect.of_material or (a <= high and b >= low):
+        return ""
+    return f" (no physics has that: {low:g} to {high:g} is usual, so something else is in it)"
 
 
 def unsteady_words(posterior: Posterior, choice: Decision) -> str:

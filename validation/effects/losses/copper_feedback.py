@@ -30,6 +30,7 @@ class CopperFeedback(Effect):
     isolating_test = "log the winding resistance during a constant-current run"
     typical = (0.0035, 0.0042)
     prior_sd = ALPHA_CU
+    of_material = True
     high = 0.0125  # 1/K: above, the loss would be negative below -60 degC
     confused_with = ("copper.ac", "loss.winding")
 
