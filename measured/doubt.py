@@ -141,6 +141,7 @@ TEMPER: Mapping[str, Odds] = MappingProxyType(
         "temper per nat": Odds(
             0.01, "a law off by 15 % leaves 2 % of what its effect explains: no rival shall live on it"
         ),
+        "sharpness": Odds(1.25, "power of the odds as stated: what is said too carefully on other kinds of machine"),
     }
 )
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade

@@ -118,11 +118,11 @@ class Evidence:
     whole: Array
     loud: LoudNoise | None = None
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         return tuple(c.name for c in self.causes)
 
-    @property
+    @cached_property
     def effects(self) -> tuple[Effect, ...]:
         return tuple(c.effect for c in self.causes)
 
