@@ -72,6 +72,7 @@ def main() -> None:
                     markdown(table),
                     "\n".join(diagram(reliability(pairs(out)))),
                     "\n".join(temper.markdown(temper.folds(pairs(out)))),
+                    "\n".join(temper.sharpness_folds(pairs(out))),
                 ]
             )
             + "\n"

@@ -15,7 +15,7 @@ import numpy as np
 from measured.case import Case, Test
 from validation.calibration.calibrate import Fit, calibrated
 from validation.comparison.compare import ChannelError, physical, pooled, test_error
-from validation.comparison.linearisation import rmse
+from validation.comparison.linearisation import allowed, rmse
 from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
@@ -23,14 +23,14 @@ from validation.inference.result import Check
 from validation.parameters.unknowns import standing, working
 from validation.yardstick.yardstick import persistence_error
 
-MOST_UNCERTAINTIES = 5.0  # standard uncertainties of a sensor: what inputs and a good model leave is two or three
+MOST_UNCERTAINTIES = 5.0  # standard uncertainties of a sensor and a good model: what inputs leave is two or three
 MOST_DEVIATIONS = 10.0  # deviations between tests: beyond what tangents are wrong by
 SHOWS = 0.1  # of the readings' uncertainty: what a refit must lose in a test to be worse there
 
 
 @dataclass(frozen=True)
 class RecordError:
-    """A sensor in one test, as it reads.  u_K : its standard uncertainty, with the misfit that the case allows"""
+    """A sensor in one test, as it reads.  u_K : its standard uncertainty, with the misfit that a good model has"""
 
     test: str
     error: ChannelError
@@ -88,7 +88,7 @@ def record_errors(
     for test in tests:
         channels = {c.name: c for c in test.channels}
         for row in test_error(network, test, thermal).channels:
-            parts = (row.sigma_K, channels[row.channel].model_K, budget.get(row.channel, 0.0) / COVERAGE)
+            parts = (row.sigma_K, allowed(channels[row.channel]), budget.get(row.channel, 0.0) / COVERAGE)
             out.append(RecordError(test.name, row, float(np.linalg.norm(parts))))
     return sorted(out, key=lambda r: -r.share)
 

@@ -30,12 +30,12 @@ from validation.inference.decide import (
 from validation.inference.events import retimed
 from validation.inference.evidence import (
     Evidence,
+    LoudNoise,
     averaged_noise,
     calibrated_case,
     candidates,
     converged,
     joined,
-    log_evidence,
     pairs,
     quiet,
     recalibrated,
@@ -70,6 +70,7 @@ from validation.inference.say import (
     odds,
     possible_events,
     prior_pulls,
+    record_doubts,
     remainder,
     sentence,
     unsteady_words,
@@ -189,7 +190,8 @@ def weigh(
     prior = {h.place: h.log_prior for h in scan.hypotheses}
     loud, ones = recalibrated(evidence, loudest), singles(evidence)
     every = [*ones, *pairs(evidence, ones), *(Weighed((), w.place, prior[w.place], w.log_bayes) for w in heat)]
-    every = averaged_noise(every, loud, log_evidence(loud.fit) - log_evidence(fit))
+    evidence = replace(evidence, loud=LoudNoise.create(evidence, loud))
+    every = averaged_noise(every, loud, evidence.loud.over)
     return refitted(evidence, with_answers(evidence, every, case.answers), progress, warm_fits, again), heat
 
 
@@ -211,7 +213,8 @@ def tabulate(
     rivals = competing_models(e, choice, single) if plan and verdict in ("group", "several") else None
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
-    words = sentence(verdict, posterior, choice, rows, pulls, broken) + unsteady_words(posterior, choice)
+    left = remainder(posterior, choice, single)
+    words = sentence(verdict, posterior, choice, rows, pulls, broken, left) + unsteady_words(posterior, choice)
     return Diagnosis(
         verdict=verdict,
         words="; ".join(filter(None, [scope.words(case.odds), words])),
@@ -232,7 +235,8 @@ def tabulate(
         explanations=explanations(posterior),
         p_nothing=0.0 if broken.names else 1.0 - choice.sure,
         events=possible_events(posterior),
-        remainder=remainder(posterior, choice, single),
+        remainder=left,
+        doubts=record_doubts(e.fit),
         contradiction=posterior.against,
         question=best_question(posterior),
         checks=choice.checks,

@@ -78,6 +78,7 @@ def diagnosis_tables(document: Document) -> tuple[Table, ...]:
         candidates,
         events,
         contradiction_table(document.get("contradiction") or {}),
+        doubts_table(document.get("doubts", [])),
         offers_table(offers(document)),
         limits_table(document["cannot_see"]),
     )
@@ -156,6 +157,15 @@ def contradiction_table(contradiction: Document) -> Table:
         ["no"],
         unit=unit_of,
         sd=lambda d: abs(d["sd"]),
+    )
+
+
+def doubts_table(doubts: Iterable[Document]) -> Table:
+    """What the table of doubt adds up to at each record."""
+    return Table.of(
+        "Doubts of the model in sum (one sigma)",
+        doubts,
+        "sensor=channel | test=record | *sum (K)=sum_K | *counted (K)=counted_K | largest",
     )
 
 

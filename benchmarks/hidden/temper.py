@@ -14,14 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from hidden.odds import brier, in_set, nats, surely_another
+from hidden.odds import brier, calibration_error, in_set, nats, surely_another
 from measured.doubt import TEMPER
 
+SHARPNESS = TEMPER["sharpness"].share
+SHARPER: Sequence[float] = (0.8, 1.0, 1.1, 1.25, 1.4, 1.6, 2.0)
 Pair = tuple[Mapping[str, Any], Mapping[str, Any]]
 Temper = tuple[float, float]
 TRIED: Sequence[Temper] = tuple(product((1.0, 1.25, 1.5, 2.0, 2.5, 3.0), (0.0, 0.003, 0.01, 0.02, 0.04)))
 USED: Temper = (TEMPER["temper"].share, TEMPER["temper per nat"].share)
 NONE: Temper = (1.0, 0.0)
+LEAST = 1e-4  # of odds that an answer lists
 
 
 def divisor(temper: Temper, most: float) -> float:
@@ -32,7 +35,7 @@ def tempered(answer: Mapping[str, Any], temper: Temper, asked: Temper = USED) ->
     """The answer with its odds under another temper than the one it was asked with; "others" go with the median."""
     known = [o["log_evidence"] for o in answer["odds"] if o.get("log_evidence") is not None]
     middle, most = (float(np.median(known)), max(known)) if known else (0.0, 0.0)
-    turn = 1.0 / divisor(temper, most) - 1.0 / divisor(asked, most)
+    turn = SHARPNESS * (1.0 / divisor(temper, most) - 1.0 / divisor(asked, most))
     evidence = [middle if (b := o.get("log_evidence")) is None else b for o in answer["odds"]]
     top = max(turn * x for x in evidence) if evidence else 0.0
     rows = [
@@ -42,6 +45,46 @@ def tempered(answer: Mapping[str, Any], temper: Temper, asked: Temper = USED) ->
     whole = sum(o["probability"] for o in rows)
     rows = [{**o, "probability": o["probability"] / whole} for o in rows]
     return {**answer, "odds": rows, "p_nothing": sum(o["probability"] for o in rows if o["hypothesis"] == "nothing")}
+
+
+def sharpened(answer: Mapping[str, Any], power: float, asked: float = SHARPNESS) -> dict[str, Any]:
+    """The answer with another power of its odds than the one it was asked with; "others" are as many as are just too
+    improbable to be listed."""
+    rows = [o for o in answer["odds"] if o["probability"] > 0.0]
+    least = 0.5 * LEAST
+    many = [o["probability"] / least if o["hypothesis"] == "others" else 1.0 for o in rows]
+    each = [least if o["hypothesis"] == "others" else o["probability"] for o in rows]
+    whole = sum(n * p ** (power / asked) for n, p in zip(many, each, strict=True))
+    rows = [{**o, "probability": n * p ** (power / asked) / whole} for o, n, p in zip(rows, many, each, strict=True)]
+    return {**answer, "odds": rows, "p_nothing": sum(o["probability"] for o in rows if o["hypothesis"] == "nothing")}
+
+
+def sharpness_folds(cases: Sequence[Pair]) -> list[str]:
+    """One line per kind: the power that all others ask for, and the scores of this kind at one and at that power."""
+    lines = [
+        "| kind left out | cases | power of the others | log score at 1 | at that power | calibration error at 1 "
+        "| at that power |",
+        "|---|---|---|---|---|---|---|",
+    ]
+
+    def score(own: Sequence[Pair], power: float) -> float:
+        return float(np.mean([nats(label, sharpened(answer, power)) for label, answer in own]))
+
+    every: dict[bool, list[Pair]] = {True: [], False: []}
+    for kind in sorted({label["machine"] for label, _ in cases}):
+        own, others = ([c for c in cases if (c[0]["machine"] == kind) is mine] for mine in (True, False))
+        power = max(SHARPER, key=lambda x: score(others, x)) if others else 1.0
+        plain, then = ([(label, sharpened(answer, x)) for label, answer in own] for x in (1.0, power))
+        every[False] += plain
+        every[True] += then
+        lines.append(_row(kind, f"{power:g}", plain, then))
+    return [*lines, _row("all", "", every[False], every[True])]
+
+
+def _row(kind: str, power: str, plain: Sequence[Pair], then: Sequence[Pair]) -> str:
+    logs = [f"{np.mean([nats(*c) for c in cases]):.2f}" for cases in (plain, then)]
+    errors = [f"{calibration_error(cases):.2f}" for cases in (plain, then)]
+    return "| " + " | ".join([kind, str(len(plain)), power, *logs, *errors]) + " |"
 
 
 def log_score(cases: Sequence[Pair], temper: Temper) -> float:

@@ -8,8 +8,8 @@ sensors and tests included, without a draw: Bayesian approximation error (Kaipio
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations
+from dataclasses import dataclass, field, replace
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +22,11 @@ from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperat
 from measured.case import Channel, Test
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import lag, setting
-from validation.comparison.linearisation import Segment, segments
+from validation.comparison.linearisation import Segment, largest_rise, segments
 from validation.comparison.predict import heat_model, record
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
 from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
+from validation.parameters.reference import mean_factor
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
@@ -64,7 +65,8 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
 
     tests : whose largest load is that at which losses are in doubt; without any they follow their laws
     """
-    before = len(network.parameters)
+    before, bridges = len(network.parameters), lumping_errors(network, doubt["bridge"])
+    past = bypasses(network, doubt["bridge"], tests)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
     for loss, square in _under_load(network, tests):
         name = f"{loss.name}*{'*'.join(square.inputs)}"
@@ -74,12 +76,33 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
         name = f"{link.name}^dT?"
         network = copy_link(network, link, name, WithTemperature(link.law, LOGARITHM))
         new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
-    for a, b, G in lumping_errors(network, doubt["bridge"]):
+    for a, b, G in bridges:
         name = f"beside:{a}|{b}"
         network = network.extended(links=[exchange(network, name, a, b, Fixed(1.0))])
         new.append(_amplitude(f"doubt:{name}", name, G, "W/K"))
+    for name, films, sd in past:
+        network = network.extended(links=films)
+        new.append(replace(_amplitude(f"doubt:{name}", "", sd, "1"), targets=tuple((x.name, 1.0) for x in films)))
     network = replace(network, parameters=(*network.parameters, *new))
     return network, network.parameters[before:]
+
+
+def bypasses(network: Network, share: float, tests: Sequence[Test]) -> list[tuple[str, list[Link], float]]:
+    """Heat that passes from a body beside its neighbour through that one's films to a boundary, as bodies that are not
+    of one temperature let it: name, films of the same laws, and the part of them (one sigma)."""
+    out = []
+    for body, ends in stars(network).items():
+        washed: dict[str, list[Link]] = {}
+        for x in [x for x in network.links if x.places[0] == body and x.places[1] in network.boundaries]:
+            if is_film(network, x) and x.kind != "stream" and not x.origin:
+                washed.setdefault(x.places[1], []).append(x)
+        for (outside, films), (other, G) in product(washed.items(), ends.items()):
+            name, area = f"past:{other}|{body}|{outside}", {x.name: float(np.max(np.abs(x.vals))) for x in films}
+            new = [exchange(network, f"{name}:{x.name}", other, outside, x.law) for x in films]
+            new = [replace(n, vals=n.vals * area[x.name]) for n, x in zip(new, films, strict=True)]
+            washes = sum(area[x.name] * mean_factor([x.law], tests) for x in films)  # W/K
+            out.append((name, new, share * G / (G + washes)))
+    return out
 
 
 def _constant_film(network: Network, link: Link) -> bool:
@@ -162,12 +185,13 @@ def lumping_errors(network: Network, share: float) -> list[tuple[str, str, float
     """Pairs of nodes and the conductance (W/K) that passes between them beside the nodes that join them, one sigma.
 
     A part that is not of one temperature joins its neighbours a little more, or less, than the star through its mean.
+    It has one field however many neighbours it has: what passes beside it is shared over these.
     """
     square: dict[tuple[str, str], float] = {}
     for ends in stars(network).values():
         for (a, Ga), (b, Gb) in combinations(ends.items(), 2):
             pair = (a, b) if (b, a) not in square else (b, a)
-            square[pair] = square.get(pair, 0.0) + (share * Ga * Gb / (Ga + Gb)) ** 2
+            square[pair] = square.get(pair, 0.0) + (share * Ga * Gb / (Ga + Gb)) ** 2 / (len(ends) - 1)
     return [(a, b, float(np.sqrt(v))) for (a, b), v in square.items()]
 
 
@@ -234,11 +258,13 @@ class ModelError:
     """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt;  names (d,)
 
     law : share of itself (one sigma) that an effect's amplitude is wrong by because its law is
+    sums : (test, channel) -> K, one sigma of all doubts together before they were scaled down
     """
 
     columns: Mapping[tuple[str, str], Array]
     names: tuple[str, ...]
     law: float = USUAL["law"]
+    sums: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     def of(self, segment: Segment) -> Array:
         return self.columns[segment.test, segment.channel]
@@ -261,6 +287,9 @@ def model_error(
 ) -> ModelError:
     """The model error of a network at some values of its parameters, over the instants of its tests' segments.
 
+    Where the doubts of a record add up to more than a share of the machine's largest rise, they are scaled down
+    together; of its own rise would not do, for beside a hot part a cool one is off by what the hot one makes.
+
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
     larger, doubts = with_doubts(network, doubt, sensed or tests)
@@ -271,34 +300,47 @@ def model_error(
         parts = segments(with_core, [test], values, every)
         scale = np.array([p.prior_sd for p in every])
         beside = placements(network, test, values, doubt, sensed or tests)
-        flow = of_inputs(network, test, values, doubt, parts)
+        here = np.array([float(t.name == test.name) for t in sensed or tests])
+        flow = of_inputs(network, test, values, doubt, parts, here)
         columns = {s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
         return every, {(s.test, s.channel): columns[s.channel] for s in parts}
 
     each = side_by_side(of_test, tests, lambda test: len(test.time))
     names = named(network, each[-1][0], doubt, sensed or tests)
-    return ModelError({key: x for _, columns in each for key, x in columns.items()}, names, doubt["law"])
+    columns = {key: x for _, of in each for key, x in of.items()}
+    sums = {key: total_sd(x) for key, x in columns.items()}
+    most = doubt["total"] * max(largest_rise(c) for t in sensed or tests for c in t.channels if np.isfinite(c.y).any())
+    scaled = {key: x * min(1.0, most / max(sums[key], 1e-12)) for key, x in columns.items()}
+    return ModelError(scaled, names, doubt["law"], sums)
+
+
+def total_sd(columns: Array) -> float:
+    """Standard deviation (K, rms over a record) of all doubts together."""
+    return float(np.sqrt(np.mean(np.sum(columns**2, axis=1))))
 
 
 def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]) -> tuple[str, ...]:
     """What each column stands for."""
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
-    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples")
+    once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
+    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once)
 
 
 def of_inputs(
-    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment]
+    network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment], here: Array
 ) -> dict[str, Array]:
-    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests; what jumps between samples.
+    """Channel -> (n, k): each kind of flow, as its meter may be off in all tests; what jumps between samples; each kind
+    of flow in one test after the other, as the meter may be off there alone.
 
-    plain : the test as recorded
+    plain : the test as recorded;  here : (n_test,) 1 for this test among those whose meters are in doubt, 0 for others
     """
     columns = []
     for scale in (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt)):
         more = segments(network, [test.scaled(scale)], values) if scale else plain
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
-    return {s.channel: np.column_stack([c[i] for c in columns]) for i, s in enumerate(plain)}
+    every = [np.column_stack([c[i] for c in columns]) for i, _ in enumerate(plain)]
+    return {s.channel: np.hstack([x, np.kron(x[:, :2], here)]) for s, x in zip(plain, every, strict=True)}
 
 
 def _flow(network: Network, test: Test, doubt: Doubt, quantity: str) -> dict[str, float]:

@@ -99,9 +99,13 @@ def stretch(channels: int, tangents: int, numbers: int = NUMBERS) -> int:
 def allowed(c: Channel) -> float:
     """Slow misfit (K) that a model of this kind may have at a channel: what the sensor wanders, or what the case says,
     and a share of the rise."""
+    return float(np.hypot(max(c.model_K, USUAL["wander"] * c.sigma_K), USUAL["slow"] * largest_rise(c)))
+
+
+def largest_rise(c: Channel) -> float:
+    """How far (K) a channel's readings ever are from the first."""
     first = c.y[np.argmax(np.isfinite(c.y))]
-    rise = max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
-    return float(np.hypot(max(c.model_K, USUAL["wander"] * c.sigma_K), USUAL["slow"] * rise))
+    return max(float(np.nanmax(c.y) - first), float(first - np.nanmin(c.y)))
 
 
 def stacked(parts: Sequence[Segment]) -> Array:

@@ -45,6 +45,7 @@ class Effect(ABC):
     fault : True when it is a fault of the measurement, not heat
     whole : True when it happens entirely or not at all, with parameter 1 (two plugs exchanged)
     of_tests : True when it may be off in whole tests alone, though it is an offset
+    of_material : True when its amplitude is a property of a material, which is never far from `typical`
     empirical : True when it follows a correlation that scatters, as films and losses do; not conduction, nor a sensor
     """
 
@@ -69,6 +70,7 @@ class Effect(ABC):
     fault: ClassVar[bool] = False
     whole: ClassVar[bool] = False
     of_tests: ClassVar[bool] = False
+    of_material: ClassVar[bool] = False
     empirical: ClassVar[bool] = False
 
     @property

@@ -180,7 +180,7 @@ def retimed(
 
     Parameters: `reach_s` test -> how far (s) an end may move at once; `refit` fits a hypothesis anew, to its end.
     """
-    P = probabilities(hypotheses)
+    P = probabilities(hypotheses, 1.0)
     order = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED]
     few = [h for h in order if h.fit and h.members][:FITTED]
     for _ in range(MOVES):

@@ -27,7 +27,15 @@ from lumped.model.multipliers import parameter_values, values_of
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
 from measured.doubt import PRIOR, SIZES, USUAL, nats_worth
-from validation.calibration.calibrate import CachedSegments, Fit, calibrated, minimise, no_progress, with_model_error
+from validation.calibration.calibrate import (
+    CachedSegments,
+    Fit,
+    InnerProduct,
+    calibrated,
+    minimise,
+    no_progress,
+    with_model_error,
+)
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.base import Effect
 from validation.effects.registry import catalogue, extended
@@ -66,6 +74,29 @@ FARTHEST = 1e4  # prior deviations: beyond them an effect is never seen
 
 
 @dataclass(frozen=True)
+class LoudNoise:
+    """The noise that nothing asks for: what a refit under the noise of the evidence is worth under that one.
+
+    over : log evidence (nats) of nothing under it over that under the other, both fitted anew
+    gap : objective of nothing under it over that under the other
+    """
+
+    noise: Noise
+    over: float
+    gap: float
+
+    @classmethod
+    def create(cls, evidence: Evidence, loud: Evidence) -> LoudNoise:
+        over = log_evidence(loud.fit) - log_evidence(evidence.fit)
+        return cls(loud.fit.noise, over, loud.fit.objective - evidence.fit.objective)
+
+    def evidence(self, fit: Fit, bayes: float) -> float:
+        """Of a refit as it stands, over that of nothing under the other noise.  bayes : under the other, by itself"""
+        here, there = (InnerProduct(fit.parts, x, fit.error).square(fit.parts) for x in (fit.noise, self.noise))
+        return self.over + self.gap + bayes - 0.5 * (there - here)
+
+
+@dataclass(frozen=True)
 class Evidence:
     """The score of K causes at one calibrated state; calibrated parameters and model error are projected out.
 
@@ -73,6 +104,7 @@ class Evidence:
     jumps : name of a cause -> its large amplitude and what that does, where a tangent says too little
     grams : per test, of [nuisances and model error, causes, residual] under the fit's noise
     whole : (K,) evidence (nats) of a finite amplitude where a tangent says too little, -inf elsewhere
+    loud : the larger noise under which refits are weighed as well
     """
 
     tests: tuple[Test, ...]
@@ -84,12 +116,13 @@ class Evidence:
     grams: Mapping[str, Gram]
     score: Score
     whole: Array
+    loud: LoudNoise | None = None
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         return tuple(c.name for c in self.causes)
 
-    @property
+    @cached_property
     def effects(self) -> tuple[Effect, ...]:
         return tuple(c.effect for c in self.causes)
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from lumped.model.network import Network, Parameter
-from measured.doubt import PRIOR, RARE, temper
+from measured.doubt import PRIOR, RARE, TEMPER, temper
 from validation.effects.base import Effect
 from validation.effects.registry import extended
 from validation.inference.columns import Linearised
@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
+SHARPNESS = TEMPER["sharpness"].share
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 
@@ -205,9 +206,12 @@ def weights(hypotheses: Sequence[Weighed]) -> Array:
     return np.array([h.log_prior + h.nats / share for h in hypotheses])
 
 
-def probabilities(hypotheses: Sequence[Weighed]) -> Array:
-    """(n,) posterior probabilities; they sum to one."""
-    x = weights(hypotheses)
+def probabilities(hypotheses: Sequence[Weighed], sharpness: float = SHARPNESS) -> Array:
+    """(n,) posterior probabilities as they are stated; they sum to one.
+
+    sharpness : power of what prior and evidence say, 1 for that itself: what is only looked at further is not stated
+    """
+    x = sharpness * weights(hypotheses)
     return np.asarray(np.exp(x - logsumexp(x)))
 
 

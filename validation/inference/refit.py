@@ -162,7 +162,9 @@ def laplace(
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
-    return replace(h, fit=best, log_bayes=log_bayes(evidence, best, h.members))
+    bayes = log_bayes(evidence, best, h.members)
+    loud = evidence.loud.evidence(best, bayes) if evidence.loud else h.loud
+    return replace(h, fit=best, log_bayes=bayes, loud=loud)
 
 
 def fine_refit(evidence: Evidence, h: Weighed) -> Weighed:
@@ -227,7 +229,7 @@ def neighbours(evidence: Evidence, hypotheses: Sequence[Weighed], due: Sequence[
 
 def shares(hypotheses: Sequence[Weighed]) -> Array:
     """Probabilities; of what has a name those without heat of unknown cause, which is not refitted and may hide it."""
-    P, with_cause = probabilities(hypotheses), np.array([not h.heat for h in hypotheses])
+    P, with_cause = probabilities(hypotheses, 1.0), np.array([not h.heat for h in hypotheses])
     return np.where(with_cause, P / max(float(P[with_cause].sum()), 1e-300), P)
 
 
@@ -280,7 +282,7 @@ def _pairs_corrected(
 
 def rivals(hypotheses: Sequence[Weighed]) -> list[int]:
     """Where evidence is too great for tangents to be trusted: single effects that come near the most probable."""
-    P = probabilities(hypotheses)
+    P = probabilities(hypotheses, 1.0)
     alone = sorted((-P[i], i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[:MOST]
     best = hypotheses[alone[0][1]].log_bayes if alone else 0.0
     if best < GREAT:
@@ -332,7 +334,7 @@ def pulled_twins(evidence: Evidence, hypotheses: Sequence[Weighed]) -> list[int]
 
 def fine_refits(evidence: Evidence, hypotheses: Sequence[Weighed]) -> list[Weighed]:
     """The hypotheses, those that will be told refitted to their end: sizes are read off them."""
-    out, P = list(hypotheses), probabilities(hypotheses)
+    out, P = list(hypotheses), probabilities(hypotheses, 1.0)
     due = [i for i in np.argsort(-P) if P[i] > REPORTED and out[i].fit and fitted_members(evidence, out[i].members)]
     for i, h in zip(due, side_by_side(lambda i: fine_refit(evidence, out[i]), due), strict=True):
         out[i] = h

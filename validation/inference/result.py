@@ -205,6 +205,20 @@ class Check(TableRow):
 
 
 @dataclass(frozen=True)
+class RecordDoubt(TableRow):
+    """What the table of doubt adds up to at one record (K, one sigma).
+
+    sum_K : of all its lines;  counted_K : after the bound on their sum;  largest : the line that is most of it
+    """
+
+    channel: str
+    record: str
+    sum_K: float
+    counted_K: float
+    largest: str
+
+
+@dataclass(frozen=True)
 class Remainder:
     """A record that stays off with what is named in the model.
 
@@ -221,6 +235,14 @@ class Remainder:
     probability: float
     brought_K: float
     test: str
+
+    @property
+    def forgiven(self) -> str:
+        """What the doubts of the model take, where that is most of the error."""
+        if self.model_K <= 0.5 * self.error_K:
+            return ""
+        where = f"{self.channel} in {self.record}"
+        return f"{self.model_K:.1f} of the {self.error_K:.1f} K at {where} are forgiven as {self.doubt}"
 
     @property
     def words(self) -> str:
@@ -247,6 +269,7 @@ class Diagnosis:
     explanations : the same by leading cause, as it is shown
     events : when something may have been different for a while, most probable first
     remainder : what is still off with what is named in the model
+    doubts : what the table of doubt adds up to at each record, the largest first
     contradiction : what would have to differ between the tests
     question : what to ask the user, where an answer would tell more than a guess
     checks : what the verdict was held against; what contradicts one has changed it
@@ -274,6 +297,7 @@ class Diagnosis:
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()
     remainder: tuple[Remainder, ...] = ()
+    doubts: tuple[RecordDoubt, ...] = ()
     contradiction: Contradiction | None = None
     question: Question | None = None
     checks: tuple[Check, ...] = ()
@@ -313,6 +337,7 @@ class Diagnosis:
             "p_nothing": self.p_nothing,
             "events": [e.document() for e in self.events],
             "remainder": [r.document() for r in self.remainder],
+            "doubts": [d.document() for d in self.doubts],
             "question": None if self.question is None else self.question.document(),
             "contradiction": None if self.contradiction is None else self.contradiction.document(),
             "checks": [c.document() for c in self.checks],

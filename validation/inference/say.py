@@ -15,7 +15,7 @@ from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
-from validation.effects.base import ReadingEffect
+from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During, effect_words
 from validation.effects.time_window import Event
 from validation.inference.decide import Decision, Group, Posterior
@@ -36,6 +36,7 @@ from validation.inference.result import (
     Explanation,
     Odds,
     PossibleEvent,
+    RecordDoubt,
     Remainder,
     Verdict,
 )
@@ -340,6 +341,17 @@ def remainder(posterior: Posterior, choice: Decision, single: Mapping[int, Weigh
     return tuple(_remainder(s, posterior, lead, fit, measure) for s in list(rows.values())[:MOST])
 
 
+def record_doubts(fit: Fit) -> tuple[RecordDoubt, ...]:
+    """What the doubts of a model add up to at each record, the largest first."""
+    error, rows = fit.error, []
+    for s in fit.parts if error else ():
+        square = np.mean(error.of(s) ** 2, axis=0)  # type: ignore[union-attr]
+        most = error.names[int(np.argmax(square))]  # type: ignore[union-attr]
+        total = error.sums.get((s.test, s.channel), 0.0)  # type: ignore[union-attr]
+        rows.append(RecordDoubt(s.channel, s.test, total, float(np.sqrt(np.sum(square))), most))
+    return tuple(sorted(rows, key=lambda r: -r.sum_K))
+
+
 def rms(r: Array) -> float:
     return float(np.sqrt(np.mean(r**2)))
 
@@ -378,14 +390,16 @@ def sentence(
     rows: Sequence[Candidate],
     pulls: Pulls,
     broken: PlainFaults,
+    left: Sequence[Remainder] = (),
 ) -> str:
-    """The verdict in words, with its odds."""
+    """The verdict in words, with its odds.  left : what stays off, worst first"""
     hides = "it may hide a missing effect"
     if broken:
-        rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults()) if broken.names else ""
+        rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults(), left) if broken.names else ""
         return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
-        return f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        words = f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
     if verdict == "absorbed":
@@ -410,13 +424,21 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
             said = effect.words(best.value, e.fit.network, (h.fit or e.fit).values, best.ci95)
             return f"{said} ({percent(best.probability)})"
         unit = "" if best.unit == "1" else f" {best.unit}"
-        size = "" if effect.whole else f", {best.value:.3g}{unit}"
+        size = "" if effect.whole else f", {best.value:.3g}{unit}{impossible_words(effect, best)}"
         return f"{'fault' if effect.fault else 'missing'}: {effect_words(effect)}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
     likely = [f"{effect_words(e.effects[k])} ({percent(p)})" for k, p in members]
     likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
+
+
+def impossible_words(effect: Effect, row: Candidate) -> str:
+    """That no material has such a size, where it is a property of one and the whole interval lies beside it."""
+    (low, high), (a, b) = effect.typical, row.ci95
+    if not effect.of_material or (a <= high and b >= low):
+        return ""
+    return f" (no physics has that: {low:g} to {high:g} is usual, so something else is in it)"
 
 
 def unsteady_words(posterior: Posterior, choice: Decision) -> str:

@@ -90,11 +90,11 @@ def effect_sizes(network: Network, effects: Collection[str], tests: Sequence[Tes
     """Effect that puts in watts -> mean of what its laws multiply its amplitude by; none where no test records it."""
     laws = {s.name: s.law for s in network.sources}
     watts = [p for p in network.parameters if p.name in effects and p.unit.split(" at ")[0] == "W"]
-    size = {p.name: _mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
+    size = {p.name: mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
     return {name: _rounded(f) for name, f in size.items() if f > 0}
 
 
-def _mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
+def mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
     """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
     factors = [np.abs(law.size(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
     return float(np.mean([np.mean(f) for f in factors])) if factors else 0.0

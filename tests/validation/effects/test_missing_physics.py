@@ -37,6 +37,18 @@ def test_a_winding_declared_without_coefficient_can_be_told_so(loss, missing):
     assert kinds()["copper.feedback"].places(Scene(motor(loss))) == (("heat",) if missing else ())
 
 
+def test_losses_of_one_parameter_are_one_winding():
+    """Slot and end turns that calibration moves together: one effect, which heats both as copper does."""
+    half = '{}\n[losses.end]\nat = "winding"\nkind = "copper"\ncurrents = ["current_A"]\nR20_ohm = 0.5\nalpha_1_K = 0\n'
+    shared = '[parameters.copper]\nacts_on = ["loss:heat", "loss:end"]\n'
+    text = MOTOR + half.format(f'[losses.heat]\nat = "winding"\n{LOSS["copper, no coefficient"]}')
+    one, two = (read_network(tomllib.loads(text + more)) for more in (shared, ""))
+    assert kinds()["copper.feedback"].places(Scene(one)) == ("heat",)
+    assert kinds()["copper.feedback"].places(Scene(two)) == ("heat", "end")
+    both, single = (effect("copper.feedback@heat", Scene(n)).extend(n).parameters[-1] for n in (one, two))
+    assert len(both.targets) == 2 * len(single.targets)
+
+
 def test_heat_of_iron_is_no_copper():
     assert kinds()["copper.feedback"].places(Scene(motor("constant", at="stator"))) == ()
 

@@ -8,7 +8,7 @@ import pytest
 from two_bodies import bench
 
 from validation import diagnose
-from validation.comparison.linearisation import Segment
+from validation.comparison.linearisation import Segment, allowed
 from validation.consistency import persistence_check, record_errors, refit_check
 from validation.inference.decide import Decision, consistent_decision
 from validation.inference.result import Check
@@ -46,7 +46,8 @@ def test_the_document_lists_what_was_checked(found):
     rows = {row["kind"]: row for row in found.document()["checks"]}
     assert set(rows) == {"record", "tests", "persistence"}
     assert rows["record"]["where"] == "core in dusk"
-    assert rows["record"]["limit"] == pytest.approx(5 * 0.3)
+    core = next(c for t in moved_probe(0.5).tests if t.name == "dusk" for c in t.channels if c.name == "core")
+    assert rows["record"]["limit"] == pytest.approx(5 * np.hypot(0.3, allowed(core)))
     assert rows["tests"]["limit"] == 10.0
     assert [rows[kind]["contradicts"] for kind in ("record", "tests", "persistence")] == [True, True, False]
     assert all(row["contradicts"] == (row["number"] > row["limit"]) for row in rows.values())

@@ -5,7 +5,8 @@ import pytest
 from geom.constants import NORMAL_95
 from measured.doubt import TABLE
 from validation.effects.registry import kinds
-from validation.inference.say import interval
+from validation.inference.result import Candidate
+from validation.inference.say import impossible_words, interval
 
 
 def test_what_is_exact_is_as_wide_as_the_refit_says():
@@ -39,3 +40,17 @@ def test_what_is_not_there_has_no_scatter():
 )
 def test_films_and_losses_follow_correlations_and_conduction_does_not(kind, empirical):
     assert kinds()[kind].empirical is empirical
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "half", "told"),
+    [
+        ("copper.feedback", 0.0077, 0.0010, True),
+        ("copper.feedback", 0.0077, 0.0040, False),  # copper's 0.0039 is within it
+        ("copper.feedback", 0.0039, 0.0001, False),
+        ("convection", 400.0, 1.0, False),  # a film is no property of a material
+    ],
+)
+def test_a_size_that_no_material_has_is_told(kind, value, half, told):
+    row = Candidate(f"{kind}@x", 50.0, 6.0, value, "1/K", (value - half, value + half), "named")
+    assert bool(impossible_words(kinds()[kind]("x"), row)) is told

@@ -13,10 +13,12 @@ from validation.calibration.calibrate import minimise
 from validation.comparison.linearisation import segments
 from validation.effects import effect, extended
 from validation.inference.evidence import (
+    LoudNoise,
     averaged_noise,
     calibrated_case,
     calibration_evidence,
     pairs,
+    recalibrated,
     scored,
     sharpened,
     singles,
@@ -27,6 +29,7 @@ from validation.inference.refit import (
     WEIGHT,
     continued_refit,
     exchanging_pairs,
+    laplace,
     larger_sets,
     neighbour_tangents,
     refit,
@@ -99,6 +102,17 @@ def test_a_larger_noise_can_only_help_what_explains_less(evidence):
     assert wide[0].nats == pytest.approx(np.logaddexp(0.0, -10.0))
     same = next(h for h in wide if h.members == best.members)
     assert same.nats - wide[0].nats == pytest.approx(best.log_bayes, rel=1e-6)  # the same noise twice changes nothing
+
+
+def test_a_refit_is_weighed_under_the_larger_noise_by_what_it_leaves_there(evidence):
+    """As a refit under that noise would be; by its tangents about nothing it would keep what they promised too much."""
+    best = max(singles(evidence)[1:], key=lambda h: h.log_bayes)
+    levels = {n: replace(x, white=2.0 * x.white, slow=2.0 * x.slow) for n, x in evidence.fit.noise.levels.items()}
+    loud = recalibrated(evidence, replace(evidence.fit.noise, levels=levels))
+    known = LoudNoise.create(evidence, loud)
+    direct, found = laplace(loud, best), laplace(replace(evidence, loud=known), best)
+    assert found.loud == pytest.approx(known.over + direct.log_bayes, rel=0.05)
+    assert LoudNoise.create(evidence, evidence).evidence(found.fit, found.log_bayes) == pytest.approx(found.log_bayes)
 
 
 @pytest.mark.heavy

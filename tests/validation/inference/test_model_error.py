@@ -13,8 +13,8 @@ from measured.case import Test
 from measured.doubt import USUAL
 from measured.sensors.operators import lag
 from validation.calibration.calibrate import InnerProduct, minimise
-from validation.calibration.model_error import alone, joints, jumps, lumping_errors, model_error, with_doubts
-from validation.comparison.linearisation import segments
+from validation.calibration.model_error import alone, joints, jumps, lumping_errors, model_error, total_sd, with_doubts
+from validation.comparison.linearisation import largest_rise, segments
 from validation.noise import first_noise
 from validation.parameters.unknowns import working
 
@@ -39,10 +39,22 @@ def test_a_column_is_what_the_doubt_does(case):
     a, b, G = lumping_errors(plain, USUAL["bridge"])[0]
     grown, doubts = with_doubts(plain, USUAL, case.tests)
     k = [p.name for p in doubts].index(f"doubt:beside:{a}|{b}")
-    error = model_error(plain, case.tests, {}, USUAL)
+    error = model_error(plain, case.tests, {}, {**USUAL, "total": 1.0})
     with_it = segments(grown, case.tests, {doubts[k].name: 0.1 * G})
     for s, t in zip(segments(plain, case.tests, {}), with_it, strict=True):
         np.testing.assert_allclose(s.r - t.r, 0.1 * error.of(s)[:, k], atol=0.01 + 0.03 * np.abs(s.r - t.r).max())
+
+
+def test_doubts_of_a_record_are_bounded_in_sum_and_scaled_together(case):
+    """A bound of a hundredth of the largest rise: the columns keep their proportions, and the sum before is told."""
+    most = 0.01 * max(largest_rise(c) for t in case.tests for c in t.channels)
+    free, tight = (model_error(network(), case.tests, {}, {**USUAL, "total": x}) for x in (1.0, 0.01))
+    for test in case.tests:
+        for c in test.channels:
+            whole, scaled = free.columns[test.name, c.name], tight.columns[test.name, c.name]
+            assert total_sd(scaled) == pytest.approx(min(most, total_sd(whole)))
+            assert tight.sums[test.name, c.name] == pytest.approx(total_sd(whole))
+            np.testing.assert_allclose(scaled * total_sd(whole), whole * total_sd(scaled), atol=1e-9)
 
 
 def test_what_a_parameter_moves_is_doubted_once_also_where_its_exponents_are_free(case):
@@ -74,6 +86,34 @@ def test_contacts_and_bearings_of_one_parameter_differ_more_than_films_of_one():
     lines = {"seats": "joint", "gap": "group", "films": "group", "friction": "bearing", "iron": "split"}
     for group, line in lines.items():
         assert {size[t] for t in shared[group]} == {USUAL[line]}
+
+
+def test_what_passes_a_neighbour_to_its_wind_is_doubted():
+    """The shell has a film of the wind, the flange behind it none: a tenth of it may reach the flange."""
+    net = bare_network("end", {"flange": 2000.0, "shell": 4000.0}, ("air",))
+    wind = node_link(net, "wind", "film", "shell", "air", InputPower(8.0, (("speed", 10.0, 1.0),)))
+    net = net.extended([node_link(net, "joint", "link", "flange", "shell", Fixed(12.0)), wind], (), ())
+    time = np.arange(0.0, 100.0, 10.0)
+    test = Test("run", "calibrate", time, {"speed": np.full(time.size, 5.0)}, {"air": np.full(time.size, 20.0)}, ())
+    grown, doubts = with_doubts(net, USUAL, [test])
+    (past,) = (p for p in doubts if p.name.startswith("doubt:past:"))
+    assert past.name == "doubt:past:flange|shell|air"
+    assert past.prior_sd == pytest.approx(USUAL["bridge"] * 12.0 / (12.0 + 4.0))
+    (link,) = (x for x in grown.links if x.name == past.targets[0][0])
+    assert (link.places, link.law) == (("flange", "air"), wind.law)
+
+
+def test_a_flow_meter_may_be_off_in_one_test_alone(case):
+    """The kinds of flow come once for all tests, then for each test, where the others have nothing."""
+    error, names = model_error(network(), case.tests, {}), [t.name for t in case.tests]
+    first = error.names.index(f"flow of air in {names[0]}")
+    assert error.names[first:] == tuple(f"flow of {x} in {n}" for x in ("air", "liquid") for n in names)
+    for s in segments(network(), case.tests, {}):
+        columns, k = error.of(s), names.index(s.test)
+        own = columns[:, first + k]
+        np.testing.assert_allclose(own, columns[:, error.names.index("flow of air")])
+        assert np.abs(own).max() > 0.01
+        assert not columns[:, first + 1 - k].any()
 
 
 def test_a_core_follows_its_node():

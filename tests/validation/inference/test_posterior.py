@@ -79,7 +79,15 @@ def test_probabilities_follow_bayes_with_tempered_evidence():
     nats = nats_worth(np.log(20.0))
     assert nats / (first + more * nats) == pytest.approx(np.log(20.0))
     hypotheses = [Weighed(log_prior=np.log(0.5)), Weighed((0,), "", np.log(0.1), nats)]
-    np.testing.assert_allclose(probabilities(hypotheses), [0.5 / 2.5, 2.0 / 2.5])
+    np.testing.assert_allclose(probabilities(hypotheses, 1.0), [0.5 / 2.5, 2.0 / 2.5])
+
+
+def test_stated_odds_are_a_power_of_what_bayes_gives():
+    """One monotone recalibration: the order stays, and two odds as far apart as the power makes them."""
+    hypotheses = [Weighed(log_prior=np.log(p)) for p in (0.5, 0.3, 0.2)]
+    plain, stated = probabilities(hypotheses, 1.0), probabilities(hypotheses)
+    assert stated.sum() == pytest.approx(1.0)
+    np.testing.assert_allclose(np.log(stated[0] / stated), TEMPER["sharpness"].share * np.log(plain[0] / plain))
 
 
 def test_what_an_effect_of_another_shape_leaves_names_no_second_one():
@@ -117,7 +125,8 @@ def test_a_pair_never_outweighs_its_better_half_without_a_reason():
 
 def test_inclusion_adds_up_over_hypotheses():
     hypotheses = [Weighed((0,), "", np.log(0.2)), Weighed((0, 1), "", np.log(0.3)), Weighed(log_prior=np.log(0.5))]
-    np.testing.assert_allclose(inclusion(hypotheses, 3), [0.5, 0.3, 0.0])
+    first, both, _ = probabilities(hypotheses)
+    np.testing.assert_allclose(inclusion(hypotheses, 3), [first + both, both, 0.0])
 
 
 @pytest.mark.parametrize(

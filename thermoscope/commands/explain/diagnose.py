@@ -94,7 +94,8 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         hidden_words,
         question(document, case),
     ]
-    rest = [tables.events_table(events, likely=False), *budget(budgets or {}, steps or {}), *hidden]
+    doubts = tables.doubts_table(document.get("doubts", []))
+    rest = [tables.events_table(events, likely=False), doubts, *budget(budgets or {}, steps or {}), *hidden]
     return Summary(sentence, parts, f"Next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
 
 

@@ -18,7 +18,8 @@ UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes abo
 class CopperFeedback(Effect):
     """Missing temperature feedback of a copper loss: P = P0 (1 + a (T - T0)), a in 1/K.
 
-    T0 is the temperature at which the loss was declared, 20 degC where it says none.
+    T0 is the temperature at which the loss was declared, 20 degC where it says none. Losses that one parameter moves
+    are one winding: their copper is of one kind, so that the first of them stands for all.
     """
 
     kind = "copper.feedback"
@@ -29,27 +30,42 @@ class CopperFeedback(Effect):
     isolating_test = "log the winding resistance during a constant-current run"
     typical = (0.0035, 0.0042)
     prior_sd = ALPHA_CU
+    of_material = True
     high = 0.0125  # 1/K: above, the loss would be negative below -60 degC
     confused_with = ("copper.ac", "loss.winding")
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        wound = set(windings(scene.network))
-        copper = [s for s in scene.network.sources if not s.origin and _copper(s, wound)]
-        return [s.name.split(":", 1)[-1] for s in copper if _reference(s) is not None]
+        copper = [s.name for s in _constant_copper(scene.network)]
+        first = [c for c in copper if _winding(scene.network, c)[0] == c]
+        return [c.split(":", 1)[-1] for c in first]
 
     def extend(self, network: Network) -> Network:
-        mine = {s.name.split(":", 1)[-1]: s for s in network.sources}
-        source, names = mine[self.place], []
-        reference = _reference(source) or REFERENCE
-        # Eddy currents fall as the resistance rises: to first order in a, what is copied turns its sign.
-        parts = [(source, 1.0, ""), *((s, -1.0, EDDY) for s in [mine.get(f"{self.place}{EDDY}")] if s is not None)]
-        for part, sign, end in parts:
-            names += [f"{self.name}:rise{end}", f"{self.name}:base{end}"]
-            law = WithTemperature(Scaled(part.law, sign), Linear(1.0, reference))
-            network = copy_source(network, part, names[-2], law)
-            network = copy_source(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
+        mine, names = {s.name: s for s in network.sources}, []
+        place = next(n for n in mine if n.split(":", 1)[-1] == self.place)
+        for source in (mine[n] for n in _winding(network, place)):
+            reference, end = _reference(source) or REFERENCE, "" if source.name == place else f":{source.name}"
+            # Eddy currents fall as the resistance rises: to first order in a, what is copied turns its sign.
+            eddy = [(s, -1.0, f"{end}{EDDY}") for s in [mine.get(f"{source.name}{EDDY}")] if s is not None]
+            for part, sign, tail in [(source, 1.0, end), *eddy]:
+                names += [f"{self.name}:rise{tail}", f"{self.name}:base{tail}"]
+                law = WithTemperature(Scaled(part.law, sign), Linear(1.0, reference))
+                network = copy_source(network, part, names[-2], law)
+                network = copy_source(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
         return with_parameter(network, self.parameter(*names))
+
+
+def _constant_copper(network: Network) -> list[Source]:
+    """Declared copper losses that do not follow their temperature."""
+    wound = set(windings(network))
+    declared = [s for s in network.sources if not s.origin and not s.name.endswith(EDDY)]
+    return [s for s in declared if _copper(s, wound) and _reference(s) is not None]
+
+
+def _winding(network: Network, name: str) -> list[str]:
+    """The copper losses that one parameter moves with this one; itself where none does."""
+    moved = next(({t for t, _ in p.targets} for p in network.parameters if name in {t for t, _ in p.targets}), {name})
+    return [s.name for s in _constant_copper(network) if s.name in moved] or [name]
 
 
 def _copper(source: Source, wound: set[str]) -> bool:
