@@ -87,13 +87,12 @@ def row(
 
 
 def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior | None) -> float | None:
-    """Half the 95 % band of a load; none where bands are not wanted or no load reaches a limit."""
-    determinate = of is not None and np.isfinite(r.load) and r.slope > 0.0
-    return _half95(folder, op, r, of) if of is not None and determinate else None
+    """Half the 95 % band of a load; none where bands are not wanted or no load reaches a limit.
 
-
-def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) -> float:
-    """Half the 95 % band of a load. Duties take that of rest: their mean heat is what counts."""
+    Duties take that of rest: their mean heat is what counts.
+    """
+    if of is None or not (np.isfinite(r.load) and r.slope > 0.0):
+        return None
     network, bare = of.network, thermal(of.network)
     (spot,) = hot_spots(network, named_rows(network, folder), {r.at: 0.0})
     values = parameter_values(bare, of.values)
@@ -103,7 +102,7 @@ def _half95(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior) ->
         return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, place_row) / r.slope
     span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
-    load = r.load if r.form == "S1" or r.form in TIMES else r.load * 0.4**0.5
+    load = r.load if r.form in TIMES else r.load * 0.4**0.5
     inputs = {n: np.full(time.size, u) for n, u in op.at(load, r.speed).items()}
     if r.form in TIMES and op.warm is not None:  # the run comes to rest there first
         before = np.linspace(0.0, STEADY_TIME_CONSTANTS * network.settles_s, time.size)

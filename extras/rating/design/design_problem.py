@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -208,15 +207,7 @@ def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: M
 def _of_machine(network: Network, file: MachineFile, space: Space, inputs: Mapping[str, float]) -> dict[str, Any]:
     names = {v.name for v in space.variables}
     from_machine = tuple(n for key, n in FLOWS.items() if key in names and n in inputs)
-    return {
-        "machine_at": partial(_machine_at, file),
-        "scaling": Scaling(network, file.machine),
-        "from_machine": from_machine,
-    }
-
-
-def _machine_at(file: MachineFile, values: Mapping[str, float]) -> Machine:
-    return file.at(values)
+    return {"machine_at": file.at, "scaling": Scaling(network, file.machine), "from_machine": from_machine}
 
 
 def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
