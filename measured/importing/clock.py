@@ -25,8 +25,10 @@ INSTANT = re.compile(
     r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"
     r"(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
-    r"\s*(?P<zone>Z|UTC|GMT|CET|CEST|MEZ|MESZ|(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?)?"
+    r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
+ZONES = {"CET": 1, "MEZ": 1, "CEST": 2, "MESZ": 2, "BST": 1, "JST": 9, "EST": -5, "EDT": -4, "CST": -6, "CDT": -5}
+ZONES |= {"MST": -7, "MDT": -6, "PST": -8, "PDT": -7, "EET": 2, "EEST": 3, "WEST": 1}  # h; what is not here counts as UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
@@ -150,9 +152,10 @@ def _guessed_clock(source: Source) -> Clock | None:
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock) and c not in dates]
     with_time = [c for c in dates if _has_time(source.cells[c])]
-    if with_time:
-        result = _instants(source.cells[with_time[0]], (with_time[0],), source.labels[with_time[0]])
-        return _with_ms(source, result)
+    for c in with_time:
+        result = _instants(source.cells[c], (c,), source.labels[c])
+        if np.isfinite(result.seconds).sum() >= LEAST or c == with_time[-1]:
+            return _with_ms(source, result)
     if dates and clocks:
         texts = [f"{_day(d)} {t}" for d, t in zip(source.cells[dates[0]], source.cells[clocks[0]], strict=True)]
         result = _instants(texts, (dates[0], clocks[0]), source.labels[dates[0]])
@@ -321,7 +324,7 @@ def _unix(m: re.Match[str], day_first: bool) -> float:
         whole = datetime(year, month, day, hour % 24, int(m["minute"] or 0), int(m["second"] or 0), tzinfo=UTC)
     except ValueError:
         return float("nan")
-    offset = 3600 * int(m["hours"] or 0) + 60 * int(m["minutes"] or 0)
+    offset = 3600 * int(m["hours"] or ZONES.get(m["zone"] or "", 0)) + 60 * int(m["minutes"] or 0)
     next_day = DAY_S if hour == 24 else 0.0
     return whole.timestamp() + next_day + float(f"0.{m['fraction'] or 0}") - (-offset if m["east"] == "-" else offset)
 

@@ -183,6 +183,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     of_unit = [q for q in FIRST if unit and (unit in QUANTITIES[q].units or unit in OTHER_UNITS.get(q, ()))]
     by_name = quantities_of(label)
     both = [q for q in by_name if q in of_unit]
+    if unit == "1" and not both:
+        return "", "", ""  # a state or a counter as well as a share
     if of_unit:
         unsure = len(of_unit) > 1 and not both
         return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""

@@ -119,8 +119,9 @@ def _of_table(
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once(_plain(plan.names))
-    if beside := side_by_side(names, columns, str(file)):
-        return _source(file, list(beside), list(beside.values()), {}, notes)
+    beside, doubts = side_by_side(names, columns, str(file))
+    if beside:
+        return _source(file, list(beside), list(beside.values()), {}, [*doubts, *notes])
     doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])

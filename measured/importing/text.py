@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -41,8 +42,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     text, notes = decoded(b"".join(chunks(file)), file), []
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
-    if text.startswith("{"):  # an object of JSON on every line
-        text = re.sub('[{}"]', "", text)
+    if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
+        return *table, notes, None
     lines = text.splitlines(keepends=True)
     if sum(line.count('"') for line in lines) % 2:
         at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
@@ -67,6 +68,24 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     return plan, columns, notes, _interval("".join(lines[: plan.first]))
+
+
+def _objects(text: str) -> tuple[Layout, Columns] | None:
+    """Of JSON: an object on every line, or a list of them; what stands inside another is called outer.inner."""
+    try:
+        every = json.loads(text) if text.lstrip().startswith("[") else [json.loads(t) for t in text.splitlines() if t.strip()]
+    except ValueError:
+        return None
+    rows = [_flat(one) for one in every]
+    names = tuple(dict.fromkeys(name for row in rows for name in row))
+    return Layout(names, ("",) * len(names), 0, len(names), 0), [[row.get(name) for row in rows] for name in names]
+
+
+def _flat(one: Any, name: str = "") -> dict[str, Any]:
+    """Values of an object and of those inside it, by the names that lead to them."""
+    if isinstance(one, dict):
+        return {n: v for key, value in one.items() for n, v in _flat(value, f"{name}.{key}".strip(".")).items()}
+    return {name: one}
 
 
 def _interval(preamble: str) -> float | None:

@@ -92,7 +92,9 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 
 
 def is_time(label: str) -> bool:
-    """Is it a name for time?  A small t is one, a large T a temperature."""
+    """Is it a name for time?  A small t is one, a large T a temperature; "temps" of a part are temperatures."""
     words = re.split(r"[^a-zäöüé\u3040-\u9fff]+", label.lower().strip())
+    if "temps" in words and roles_of(label):
+        return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
     return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or starts
