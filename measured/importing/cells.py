@@ -163,7 +163,7 @@ def split_unit(header: str) -> tuple[str, str]:
         return before[2], unit_of(before[1]) or before[1]
     if (inner := INNER.match(header)) and is_unit(inner[2]):
         return f"{inner[1]} {SERIAL.sub('', inner[3])}", unit_of(inner[2]) or inner[2]
-    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]) and header.count("(") == last[1].count("("):
+    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]) and last[1].count("(") == last[1].count(")"):
         return last[1].strip(), unit_of(last[2])
     return header.strip(), ""
 

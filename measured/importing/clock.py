@@ -28,7 +28,15 @@ INSTANT = re.compile(
     r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
 ZONES = {"CET": 1, "MEZ": 1, "CEST": 2, "MESZ": 2, "BST": 1, "JST": 9, "EST": -5, "EDT": -4, "CST": -6, "CDT": -5}
-ZONES |= {"MST": -7, "MDT": -6, "PST": -8, "PDT": -7, "EET": 2, "EEST": 3, "WEST": 1}  # h; what is not here counts as UTC
+ZONES |= {
+    "MST": -7,
+    "MDT": -6,
+    "PST": -8,
+    "PDT": -7,
+    "EET": 2,
+    "EEST": 3,
+    "WEST": 1,
+}  # h; what is not here counts as UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
@@ -51,6 +59,7 @@ LEAST = 3  # rows with a time
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
 MANY = 100  # from one row to the next: more often ms than seconds, but for the steps of buildings
+MANY_MS = 1e6  # likewise: who writes ms reads more often than every quarter of an hour
 USUAL_STEPS_S = frozenset({120.0, 180.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, DAY_S})
 SINCE_1904_S, LATEST_S = 2082844800.0, 3e9  # some programs count from 1904: what would be after 2065 is that
 
@@ -464,6 +473,8 @@ def _scaled(source: Source, column: str) -> Clock:
     if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
         return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")
     if bool((finite == np.round(finite)).all()) and step >= MANY and step not in USUAL_STEPS_S:
-        return Clock(values * 1e-3, None, (column,), "numbers, taken as ms", f"no unit of '{column}': ms are assumed")
+        unit = "ms" if step < MANY_MS else "us"
+        doubt = f"no unit of '{column}': {unit} are assumed"
+        return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
     doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""
     return Clock(values, None, (column,), "numbers, taken as seconds", doubt)

@@ -30,7 +30,7 @@ from measured.importing.words import (
     tokens,
 )
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
-from measured.recordings.tables import LARGEST
+from measured.recordings.tables import LARGEST, SWITCHED
 from measured.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
 
 Array = NDArray[np.float64]
@@ -108,6 +108,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
         assumed = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    if quantity not in SWITCHED and source.is_switch(column):
+        return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
     values = source.numbers(column)
     codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
     if quantity != "temperature" and codes.size:

@@ -10,17 +10,20 @@ from typing import Any
 
 from geom.errors import InputError
 from measured.importing.cells import is_date, is_reading, number
-from measured.importing.words import VOCABULARY, is_time, tokens
+from measured.importing.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
 LEAST = 3  # readings of a signal, on average
 
 
-def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: str) -> tuple[dict[str, list[Any]], list[str]]:
+def side_by_side(
+    names: Sequence[str], columns: Sequence[Sequence[Any]], where: str
+) -> tuple[dict[str, list[Any]], list[str]]:
     """The time and a column for every signal of such a table, and doubts; empty for a table of any other kind.
 
-    Signals with times of their own hold from each of them to the next, as homes and controllers log what changes.
+    Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
+    temperatures go on between them.
     InputError where such times cannot be put in order.
     """
     key = next((j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])), None)
@@ -46,8 +49,10 @@ def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: 
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         instants = _in_order(dict.fromkeys(clocks), what, where)
-        notes = [f"{Path(where).name}: {what}; each reading holds until the next of its signal"]
-        for readings in series.values():
+        notes = [f"{Path(where).name}: {what}; all but temperatures hold until the next reading of their signal"]
+        for signal, readings in series.items():
+            if roles_of(signal) or "temperature" in quantities_of(signal):
+                continue
             last = None
             for instant in instants:
                 last = readings.setdefault(instant, last)

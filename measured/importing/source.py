@@ -60,6 +60,13 @@ class Source(DataTable):
         """Does it hold anything but ways to write that nothing was read?"""
         return _any(self.cells[column])
 
+    def is_switch(self, column: str) -> bool:
+        """Does it hold on and off, or true and false, in words?"""
+        cells = self.cells[column]
+        if isinstance(cells, np.ndarray) and cells.dtype.kind != "O":
+            return cells.dtype.kind == "b"
+        return all(_empty(c) or str(c).strip().lower() in SWITCH for c in set(cells))
+
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
         finite = np.isfinite(self.numbers(column))

@@ -55,9 +55,15 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
-    columns = _plain(file, lines[plan.first :], sign, plan)
+    again = sign.join(plan.names)  # a header and remarks may come again
+    body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
+    columns = _plain(file, body, sign, plan)
     if columns is None:
-        rows = _split(lines, sign)[plan.first :]
+        rows = [
+            r
+            for r in _split(lines, sign)[plan.first :]
+            if r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")
+        ]
         long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         columns = _raw([row for row in rows if any(row)], plan.width)
@@ -73,7 +79,11 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
 def _objects(text: str) -> tuple[Layout, Columns] | None:
     """Of JSON: an object on every line, or a list of them; what stands inside another is called outer.inner."""
     try:
-        every = json.loads(text) if text.lstrip().startswith("[") else [json.loads(t) for t in text.splitlines() if t.strip()]
+        every = (
+            json.loads(text)
+            if text.lstrip().startswith("[")
+            else [json.loads(t) for t in text.splitlines() if t.strip()]
+        )
     except ValueError:
         return None
     rows = [_flat(one) for one in every]

@@ -22,7 +22,7 @@ from measured.recordings.units import converted
 from measured.sensors.faults import longest_run
 
 Array = NDArray[np.float64]
-GAP = 3.5  # times the usual step
+GAP, USUAL = 3.5, 95  # times the usual step; percentile of all: rows of up to twenty signals may come in bursts
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
@@ -175,7 +175,7 @@ def _seconds(table: DataTable, sheet: Sheet, file: Path) -> Array:
 
 def _gaps(time: Array) -> tuple[tuple[float, float], ...]:
     step = np.diff(time)
-    long = np.flatnonzero(step > GAP * np.median(step))
+    long = np.flatnonzero(step > GAP * np.percentile(step, USUAL, method="lower"))
     return tuple((float(time[i]), float(time[i + 1])) for i in long)
 
 

@@ -271,7 +271,7 @@ def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
     rows += [f"{stamp(s)},I_motor,{value}" for s, value in ((1, 0), (51, 9), (121, 2))]
     (tmp_path / "a.csv").write_text("\n".join(["time,sensor,value", *rows]) + "\n")
     source = read_source(tmp_path / "a.csv")
-    assert "each at its own times; each reading holds until the next" in " ".join(source.notes)
+    assert "each at its own times; all but temperatures hold until the next reading" in " ".join(source.notes)
     t, current = clock_of(source).seconds, source.numbers("I_motor")
     assert t[[0, 1, 2, -1]] == pytest.approx([0, 1, 5, 145])
     assert np.array_equal(current[1:], np.select([t[1:] < 51, t[1:] < 121], [0.0, 9.0], 2.0))
