@@ -17,7 +17,7 @@ use_commands = typer.Typer(name="use")
 @use_commands.command()
 def watch(
     case: Case,
-    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A recording, or - for rows from a pipe.")],
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
     like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
     out: Out = None,

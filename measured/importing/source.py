@@ -162,7 +162,7 @@ def _source(
         if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
             unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(cells, unit_texts, start, tuple(notes), file, labels)
+    return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:

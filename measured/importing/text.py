@@ -113,7 +113,7 @@ def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | N
     if sign != ",":
         content = content.replace(",", ".").replace(sign, ",")
     try:
-        return Body(file, [str(j) for j in range(plan.width)], strict=False).columns(content.encode(), 0)
+        return Body(file, plan.width).columns(content.encode())
     except csv.Error:
         return None
 

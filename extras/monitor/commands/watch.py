@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
-from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, open_stream, table_of, together
+from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, table_of
 from extras.monitor.rows.observing import chosen, designed, joined, record_of, started
 from thermoscope import InputError, Record
 from thermoscope.plugin import (
@@ -44,20 +44,18 @@ MINUTE = 60.0
 
 def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: Path | None, target: str | None) -> int:
     """Rows from a file or a pipe.  names : sensors to use, by default all;  like : test whose sheet the rows have"""
-    with open_stream(follow) as stream:
-        with progress() as tell:
-            folder = open_case(case, tell)
-            sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
-            network = folder.case.model.network
-            name, table, lines = table_of(stream, follow, sheets, network, like)
-            channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
-            here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = chosen(here, names, follow)
-            design = designed(folder, tell)
-        session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
-        with suppress(KeyboardInterrupt):
-            for part in together(lines, 1 if follow == PIPE else TOGETHER):
-                session.take(table.rows(part))
+    with progress() as tell:
+        folder = open_case(case, tell)
+        sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
+        name, table, parts = table_of(follow, TOGETHER, sheets, folder.case.model.network, like)
+        channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+        here = [c for n, c in channels.items() if n in table.sensors()]
+        sensors = chosen(here, names, follow)
+        design = designed(folder, tell)
+    session = Session(folder, design, sensors, [c for c in here if c not in sensors], target != STDOUT)
+    with suppress(KeyboardInterrupt):
+        for part in parts:
+            session.take(table.rows(part))
     if session.one is None:
         raise InputError("holds no row", follow, "rows of numbers under the header")
     where = out or (Path("out") / folder.settings.path.name if _shipped(folder) else folder.settings.out)
