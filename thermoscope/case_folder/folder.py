@@ -163,6 +163,9 @@ def load_case(
 
 
 READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
+LARGE = (
+    2**22
+)  # cells of a recording that no process keeps (32 MB): a million rows would stay beside all that is made of them
 _read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
 
 
@@ -173,9 +176,12 @@ def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patie
     key = (pickle.dumps(sheet), *(_stamp(file) for file in files))
     if key not in _read:
         progress(f"reading {entry.name}")
+        samples = load_table(entry.file, sheet)
+        if samples.time.size * len(samples.values) > LARGE:
+            return Patient(entry.name, sheet, samples)
         while len(_read) >= READ:
             _read.pop(next(iter(_read)))
-        _read[key] = load_table(entry.file, sheet)
+        _read[key] = samples
     return Patient(entry.name, sheet, _read[key])
 
 
