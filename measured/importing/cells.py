@@ -170,7 +170,7 @@ def split_unit(header: str) -> tuple[str, str]:
 
 def _surely(word: str) -> bool:
     """A word that is a unit and hardly the name of a phase, a winding or a sensor (A, C, K, V, W, 1)."""
-    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in (
+    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in [
         "s",
         "A",
         "V",
@@ -179,4 +179,4 @@ def _surely(word: str) -> bool:
         "C",
         "F",
         "h",
-    )
+    ]

@@ -27,16 +27,7 @@ INSTANT = re.compile(
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
     r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
-ZONES = {"CET": 1, "MEZ": 1, "CEST": 2, "MESZ": 2, "BST": 1, "JST": 9, "EST": -5, "EDT": -4, "CST": -6, "CDT": -5}
-ZONES |= {
-    "MST": -7,
-    "MDT": -6,
-    "PST": -8,
-    "PDT": -7,
-    "EET": 2,
-    "EEST": 3,
-    "WEST": 1,
-}  # h; what is not here counts as UTC
+ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
@@ -59,7 +50,7 @@ LEAST = 3  # rows with a time
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
 MANY = 100  # from one row to the next: more often ms than seconds, but for the steps of buildings
-MANY_MS = 1e6  # likewise: who writes ms reads more often than every quarter of an hour
+MANY_MS, MANY_US = 1e6, 1e9  # likewise: who writes ms, or us, reads more often than every quarter of an hour
 USUAL_STEPS_S = frozenset({120.0, 180.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, DAY_S})
 SINCE_1904_S, LATEST_S = 2082844800.0, 3e9  # some programs count from 1904: what would be after 2065 is that
 
@@ -88,7 +79,8 @@ class Clock:
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
     clock = None if period_s is not None else _guessed_clock(source)
-    if clock is None or not _runs(clock.seconds):
+    finite = clock.seconds[np.isfinite(clock.seconds)] if clock else np.empty(0)
+    if clock is None or (finite.size >= LEAST and np.ptp(finite) == 0):
         step = period_s or source.period_s or 1.0
         seconds = step * np.arange(source.rows, dtype=np.float64)
         still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
@@ -98,12 +90,6 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
-
-
-def _runs(seconds: Array) -> bool:
-    """Do the times differ at all?"""
-    finite = seconds[np.isfinite(seconds)]
-    return finite.size < LEAST or bool(np.ptp(finite) > 0)
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -404,7 +390,8 @@ def _numeric(source: Source) -> Clock | None:
     by_name = [c for c in numeric if _is_named(source, c)]
     by_unit = [c for c in numeric if rises(source, c) and (_unit_of_time(source, c) or _since_1970(source, c))]
     candidates = sorted(dict.fromkeys(c for c in (*by_name, *by_unit) if c != TIME), key=lambda c: not rises(source, c))
-    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name
+    is_count = is_count and np.array_equal(source.numbers(TIME), np.arange(source.rows))
     if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
@@ -450,10 +437,6 @@ def _since_1970(source: Source, column: str) -> bool:
     return any(size <= first < 2 * size for size in UNIX)
 
 
-def _counts(values: Array) -> bool:
-    return bool(np.array_equal(values, np.arange(values.size)))
-
-
 def _scaled(source: Source, column: str) -> Clock:
     """Seconds by the unit of the file; without one by size and step: what is likely is taken and doubted aloud."""
     values, unit = source.numbers(column), _unit_of_time(source, column)
@@ -473,7 +456,7 @@ def _scaled(source: Source, column: str) -> Clock:
     if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
         return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")
     if bool((finite == np.round(finite)).all()) and step >= MANY and step not in USUAL_STEPS_S:
-        unit = "ms" if step < MANY_MS else "us"
+        unit = "us" if MANY_MS <= step < MANY_US else "ms"
         doubt = f"no unit of '{column}': {unit} are assumed"
         return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
     doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""

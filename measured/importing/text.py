@@ -151,12 +151,9 @@ def decoded(raw: bytes, file: Path) -> str:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
         odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
-        return raw.decode(max(PAGES, key=lambda page: _worth(odd.decode(page, "ignore"))), "replace")
-
-
-def _worth(text: str) -> int:
-    """How many letters in it are those of headers, and degrees above all."""
-    return len(LETTERS.findall(text)) + DEGREE * len(re.findall("[°º][CFK]|℃", text))
+        letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
+        worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
+        return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
 
 
 def delimiter(lines: list[str]) -> str:

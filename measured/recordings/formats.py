@@ -94,7 +94,7 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
         ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
         ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
         **{
-            f".{n}": partial(_table, file, f"a .{n} file", n, partial(_foreign, file, read))
+            f".{n}": partial(_table, file, f"a .{n} file", n, lambda read=read: (read(file).items(), {}))  # type: ignore[misc]
             for n, read in READERS.items()
         },
     }
@@ -131,10 +131,6 @@ def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) ->
 
     read_whole: DataTable = guarded(file, kind, package, table)
     return read_whole
-
-
-def _foreign(file: Path, read: Reader) -> Contents:
-    return read(file).items(), {}
 
 
 def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:

@@ -140,7 +140,8 @@ def load_case(
     findings = examined(list(patients.values()), network)
     notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
-    tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
+    channels = {r.test.name: tuple(replace(c, model_K=settings.model_K) for c in r.test.channels) for r in read}
+    tests = tuple(replace(r.test, channels=channels[r.test.name], frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests, history.reference)
     low = None
@@ -218,11 +219,6 @@ def _assumed_reference(case: Case, settings: Settings) -> list[str]:
         f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
         f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
     ]
-
-
-def _allowing(test: Test, model_K: float) -> Test:
-    """The test with the model's own expected error on every channel."""
-    return replace(test, channels=tuple(replace(c, model_K=model_K) for c in test.channels))
 
 
 def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:

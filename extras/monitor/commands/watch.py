@@ -58,7 +58,8 @@ def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: P
             session.take(table.rows(part))
     if session.one is None:
         raise InputError("holds no row", follow, "rows of numbers under the header")
-    where = out or (Path("out") / folder.settings.path.name if _shipped(folder) else folder.settings.out)
+    shipped = PACKAGE in folder.settings.path.resolve().parents
+    where = out or (Path("out") / folder.settings.path.name if shipped else folder.settings.out)
     label = "pipe" if follow == PIPE else stem_of(Path(follow))
     file = write_whole(where / f"watch-{label}.csv", session.csv())
     document = {
@@ -71,10 +72,6 @@ def watch(case: str, follow: str, names: Sequence[str], like: str | None, out: P
     }
     give(document, target, lambda: watch_summary(document))
     return 0
-
-
-def _shipped(folder: Folder) -> bool:
-    return PACKAGE in folder.settings.path.resolve().parents
 
 
 @dataclass
@@ -241,7 +238,13 @@ def watch_summary(document: dict[str, Any]) -> Summary:
     )
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
     events = [
-        [_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+        [
+            _alarm_text(
+                e["kind"], e["where"], float("nan") if e["amplitude"] is None else e["amplitude"], e["probability"]
+            ),
+            e["from_s"],
+            e["to_s"],
+        ]
         for e in document["events"]
     ]
     withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
@@ -251,7 +254,3 @@ def watch_summary(document: dict[str, Any]) -> Summary:
         Table("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
     ]
     return Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value

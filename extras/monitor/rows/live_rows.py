@@ -88,8 +88,9 @@ class LiveTable:
     def rows(self, table: DataTable) -> Rows:
         """Some rows, checked and converted; inputs and boundaries hold where nothing was read."""
         columns, file = self._columns(), Path(self.where)
+        outside = [c for c in columns if not c.is_temperature or c.place in self.network.boundaries]
         values = {c.name: _values(c, table, file) for c in columns}
-        values |= {c.name: self._forward_fill(c.name, values[c.name], table.line) for c in columns if self._outside(c)}
+        values |= {c.name: self._forward_fill(c.name, values[c.name], table.line) for c in outside}
         time = self._times(table, file)
         inputs = {n: np.full(time.size, v) for n, v in self.sheet.inputs.items()}
         inputs |= {n: events.mean(time, 0.0) for n, events in self.sheet.events.items()}
@@ -104,10 +105,6 @@ class LiveTable:
         means = [m for m in self.sheet.means if m.name in self.sensors()]
         readings |= {m.name: np.mean([values[n] for n in m.of], axis=0) for m in means}
         return Rows(time, inputs, air, readings)
-
-    def _outside(self, c: Column) -> bool:
-        """Is it an input or a boundary?"""
-        return c.place in self.network.boundaries if c.is_temperature else True
 
     def _forward_fill(self, name: str, values: Array, first: int) -> Array:
         if not np.isfinite(values[0]):
