@@ -167,10 +167,23 @@ from measured.importing.draft import (
 from measured.importing.guess import assigned as assigned, guesses as guesses
 from measured.importing.target import Target as Target, target_of as target_of
 from measured.recordings.csv_file import read_csv as read_csv
-from measured.recordings.data_table import as_number as as_number, pairs as pairs
+from measured.recordings.data_table import (
+    HEADER as HEADER,
+    DataTable as DataTable,
+    as_number as as_number,
+    numbers as numbers,
+    pairs as pairs,
+)
 from measured.recordings.electrical import meter_of as meter_of, saturation_of as saturation_of
-from measured.recordings.formats import read_recording as read_recording, recording as recording, stem_of as stem_of
+from measured.recordings.formats import (
+    SUFFIXES as SUFFIXES,
+    read_recording as read_recording,
+    recording as recording,
+    recording_pieces as recording_pieces,
+    stem_of as stem_of,
+)
 from measured.recordings.sheet import Column as Column, Sheet as Sheet, load_sheet as load_sheet
+from measured.recordings.tables import seconds_of as seconds_of
 from measured.recordings.units import QUANTITIES as QUANTITIES, converted as converted
 from measured.sensors.operators import head as head
 from validation.bands.at_rest import AtRest as AtRest

@@ -1,7 +1,8 @@
 """How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
 
-    python benchmarks/console/progress.py [--only CASE ...] [--json FILE]
+    python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE]
 
+Every shipped case by default, and the four commands that may take long; the first run builds what comes from a machine.
 After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
 which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
 """
@@ -14,18 +15,20 @@ import os
 import pty
 import re
 import select
+import shutil
 import struct
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-CASES = ("tclab", "hust-ipmsm", "pmsm-bases", "road-test")
-COLUMNS, SHORT_S, FIFTH = 80, 10.0, 0.2
+CASES = tuple(sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml")))
+COMMANDS = {"compare": "test", "calibrate": "model", "diagnose": "explain", "improve": "explain"}
+COLUMNS, SHORT_S, FIFTH, STOOD_S = 80, 10.0, 0.2, 20.0
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 LINE = re.compile(r"(\d+) %, about (\d+) (s|min) left")
 
@@ -34,6 +37,7 @@ LINE = re.compile(r"(\d+) %, about (\d+) (s|min) left")
 class Row:
     """ratio : time left as shown over as it was, after a fifth of the work;  stood_s : longest without a new share"""
 
+    command: str
     case: str
     run: str
     took_s: float
@@ -63,32 +67,42 @@ def shown(command: list[str], environment: dict[str, str]) -> Iterator[tuple[flo
     os.waitpid(pid, 0)
 
 
-def measured(case: str, run: str, cache: str) -> Row:
-    """One command."""
-    command = [sys.executable, "-m", "thermoscope", "test", "compare", str(ROOT / "cases" / case)]
+def measured(name: str, case: str, run: str, cache: str) -> Row:
+    """One command, on a copy of a shipped case."""
+    copy = Path(cache) / case
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(ROOT / "cases" / case, copy, ignore=shutil.ignore_patterns("out"))
+    command = [sys.executable, "-m", "thermoscope", COMMANDS[name], name, str(copy)]
     lines = list(shown(command, {**os.environ, "THERMOSCOPE_CACHE": cache, "TERM": "xterm"}))
     took, widest = lines[-1][0], max(len(line) for _, line in lines)
     found = [(t, m) for t, line in lines if (m := LINE.search(line))]
     later = [(t, float(m[2]) * (60.0 if m[3] == "min" else 1.0)) for t, m in found if t >= FIFTH * took]
     if not later or took < SHORT_S:
-        return Row(case, run, took, None, None, widest)
+        return Row(name, case, run, took, None, None, widest)
     changes = [t for (_, a), (t, b) in pairwise(found) if a[1] != b[1]]
     stood = max(b - a for a, b in pairwise([found[0][0], *changes, took]))
-    return Row(case, run, took, later[0][1] / (took - later[0][0]), stood, widest)
+    return Row(name, case, run, took, later[0][1] / (took - later[0][0]), stood, widest)
 
 
 def main() -> None:
     """A row per case and run."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="+", default=CASES)
+    parser.add_argument("--commands", nargs="+", default=COMMANDS, choices=COMMANDS)
     parser.add_argument("--json", type=Path)
     options, rows = parser.parse_args(), []
-    for case in options.only:
+    for command, case in product(options.commands, options.only):
         with tempfile.TemporaryDirectory() as cache:
-            rows += [measured(case, run, cache) for run in ("first", "second")]
+            rows += [measured(command, case, run, cache) for run in ("first", "second")]
         for row in rows[-2:]:
             told = "short" if row.ratio is None else f"{row.ratio:5.2f} of what was left, stood {row.stood_s:.0f} s"
-            print(f"{row.case:12s} {row.run:7s} {row.took_s:6.1f} s  {told}, {row.widest} columns", flush=True)
+            print(
+                f"{command:9s} {row.case:13s} {row.run:7s} {row.took_s:6.1f} s  {told}, {row.widest} columns",
+                flush=True,
+            )
+    long = [row for row in rows if row.ratio is not None and row.stood_s is not None]
+    good = sum(0.5 <= (row.ratio or 0.0) <= 2.0 and (row.stood_s or 0.0) <= STOOD_S for row in long)
+    print(f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s")
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
 

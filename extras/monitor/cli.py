@@ -17,7 +17,7 @@ use_commands = typer.Typer(name="use")
 @use_commands.command()
 def watch(
     case: Case,
-    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A CSV file, or - for rows from a pipe.")],
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A recording, or - for rows from a pipe.")],
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
     like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
     out: Out = None,
@@ -27,24 +27,23 @@ def watch(
     from contextlib import suppress
 
     from extras.monitor.commands.watch import Session, watch_summary, watched_file
-    from extras.monitor.rows.live_rows import PIPE, TOGETHER, open_stream, table_of, together
+    from extras.monitor.rows.live_rows import TOGETHER, table_of
     from extras.monitor.rows.observing import chosen, designed
     from thermoscope import InputError
     from thermoscope.plugin import STDOUT, give, load_sheet, open_case, progress, write_whole
 
-    with open_stream(follow) as stream:
-        with progress() as tell:
-            folder = open_case(case, tell)
-            sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
-            name, table, lines = table_of(stream, follow, sheets, folder.case.model.network, like)
-            channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
-            here = [c for n, c in channels.items() if n in table.sensors()]
-            sensors = chosen(here, sensor or (), follow)
-            withheld = [c for c in here if c not in sensors]
-            session = Session(folder, designed(folder, tell), sensors, withheld, json != STDOUT)
-        with suppress(KeyboardInterrupt):
-            for part in together(lines, 1 if follow == PIPE else TOGETHER):
-                session.take(table.rows(part))
+    with progress() as tell:
+        folder = open_case(case, tell)
+        sheets = {e.name: load_sheet(e.sheet) for e in folder.settings.tests}
+        name, table, parts = table_of(follow, TOGETHER, sheets, folder.case.model.network, like)
+        channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+        here = [c for n, c in channels.items() if n in table.sensors()]
+        sensors = chosen(here, sensor or (), follow)
+        withheld = [c for c in here if c not in sensors]
+        session = Session(folder, designed(folder, tell), sensors, withheld, json != STDOUT)
+    with suppress(KeyboardInterrupt):
+        for part in parts:
+            session.take(table.rows(part))
     if session.one is None:
         raise InputError("holds no row", follow, "rows of numbers under the header")
     file = write_whole(watched_file(folder, follow, out), session.csv())

@@ -13,6 +13,7 @@ from measured.importing.guess import Guess
 from measured.importing.source import Source
 from measured.recordings.alignment import column_onset
 
+ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
 WHOLE_S = 10.0  # from where on a test is cut at whole seconds
 
 
@@ -108,7 +109,7 @@ def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> li
     """
     groups: list[list[int]] = []
     for i, kind in enumerate(kinds):
-        home = next((g for g in groups if _alike(kinds[g[0]], kind)), None)
+        home = next((g for g in groups if len(kinds[g[0]] & kind) > ALIKE * min(len(kinds[g[0]]), len(kind))), None)
         if home is None:
             groups.append([i])
         else:
@@ -122,8 +123,3 @@ def grouped(records: Sequence[Recording], kinds: Sequence[frozenset[str]]) -> li
             "one file of each recorder for every test",
         )
     return [[records[g[k]] for g in groups] for k in range(counts.pop())]
-
-
-def _alike(a: frozenset[str], b: frozenset[str]) -> bool:
-    """Do two files have mostly the same columns?"""
-    return len(a & b) > 0.5 * min(len(a), len(b))

@@ -141,6 +141,8 @@ def is_unit(text: str) -> bool:
 BRACKETS = re.compile(r"\[([^\[\]]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
 INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N: 1, LBL: winding)
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is no bearing
+BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
+BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
 
 
@@ -155,16 +157,20 @@ def split_unit(header: str) -> tuple[str, str]:
             return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
                 inside
             ) or inside.strip()
+    if (bars := BARS.match(header)) and is_unit(bars[2]):
+        return bars[1].strip(), unit_of(bars[2]) or bars[2]
+    if (before := BEFORE.match(header)) and is_unit(before[1]):
+        return before[2], unit_of(before[1]) or before[1]
     if (inner := INNER.match(header)) and is_unit(inner[2]):
         return f"{inner[1]} {SERIAL.sub('', inner[3])}", unit_of(inner[2]) or inner[2]
-    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]) and header.count("(") == last[1].count("("):
+    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]) and last[1].count("(") == last[1].count(")"):
         return last[1].strip(), unit_of(last[2])
     return header.strip(), ""
 
 
 def _surely(word: str) -> bool:
     """A word that is a unit and hardly the name of a phase, a winding or a sensor (A, C, K, V, W, 1)."""
-    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in (
+    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in [
         "s",
         "A",
         "V",
@@ -173,4 +179,4 @@ def _surely(word: str) -> bool:
         "C",
         "F",
         "h",
-    )
+    ]

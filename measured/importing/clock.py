@@ -25,8 +25,9 @@ INSTANT = re.compile(
     r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"
     r"(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
-    r"\s*(?P<zone>Z|UTC|GMT|CET|CEST|MEZ|MESZ|(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?)?"
+    r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
+ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
@@ -49,6 +50,7 @@ LEAST = 3  # rows with a time
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
 MANY = 100  # from one row to the next: more often ms than seconds, but for the steps of buildings
+MANY_MS, MANY_US = 1e6, 1e9  # likewise: who writes ms, or us, reads more often than every quarter of an hour
 USUAL_STEPS_S = frozenset({120.0, 180.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, DAY_S})
 SINCE_1904_S, LATEST_S = 2082844800.0, 3e9  # some programs count from 1904: what would be after 2065 is that
 
@@ -77,7 +79,8 @@ class Clock:
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""
     clock = None if period_s is not None else _guessed_clock(source)
-    if clock is None or not _runs(clock.seconds):
+    finite = clock.seconds[np.isfinite(clock.seconds)] if clock else np.empty(0)
+    if clock is None or (finite.size >= LEAST and np.ptp(finite) == 0):
         step = period_s or source.period_s or 1.0
         seconds = step * np.arange(source.rows, dtype=np.float64)
         still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
@@ -87,12 +90,6 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
-
-
-def _runs(seconds: Array) -> bool:
-    """Do the times differ at all?"""
-    finite = seconds[np.isfinite(seconds)]
-    return finite.size < LEAST or bool(np.ptp(finite) > 0)
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -150,9 +147,10 @@ def _guessed_clock(source: Source) -> Clock | None:
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock) and c not in dates]
     with_time = [c for c in dates if _has_time(source.cells[c])]
-    if with_time:
-        result = _instants(source.cells[with_time[0]], (with_time[0],), source.labels[with_time[0]])
-        return _with_ms(source, result)
+    for c in with_time:
+        result = _instants(source.cells[c], (c,), source.labels[c])
+        if np.isfinite(result.seconds).sum() >= LEAST or c == with_time[-1]:
+            return _with_ms(source, result)
     if dates and clocks:
         texts = [f"{_day(d)} {t}" for d, t in zip(source.cells[dates[0]], source.cells[clocks[0]], strict=True)]
         result = _instants(texts, (dates[0], clocks[0]), source.labels[dates[0]])
@@ -321,7 +319,7 @@ def _unix(m: re.Match[str], day_first: bool) -> float:
         whole = datetime(year, month, day, hour % 24, int(m["minute"] or 0), int(m["second"] or 0), tzinfo=UTC)
     except ValueError:
         return float("nan")
-    offset = 3600 * int(m["hours"] or 0) + 60 * int(m["minutes"] or 0)
+    offset = 3600 * int(m["hours"] or ZONES.get(m["zone"] or "", 0)) + 60 * int(m["minutes"] or 0)
     next_day = DAY_S if hour == 24 else 0.0
     return whole.timestamp() + next_day + float(f"0.{m['fraction'] or 0}") - (-offset if m["east"] == "-" else offset)
 
@@ -392,7 +390,8 @@ def _numeric(source: Source) -> Clock | None:
     by_name = [c for c in numeric if _is_named(source, c)]
     by_unit = [c for c in numeric if rises(source, c) and (_unit_of_time(source, c) or _since_1970(source, c))]
     candidates = sorted(dict.fromkeys(c for c in (*by_name, *by_unit) if c != TIME), key=lambda c: not rises(source, c))
-    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name and _counts(source.numbers(TIME))
+    is_count = source.file.suffix.lower() == ".tdms" and TIME in by_name
+    is_count = is_count and np.array_equal(source.numbers(TIME), np.arange(source.rows))
     if TIME in by_name and source.file.suffix.lower() in BINARY and not (candidates and is_count):
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
@@ -438,10 +437,6 @@ def _since_1970(source: Source, column: str) -> bool:
     return any(size <= first < 2 * size for size in UNIX)
 
 
-def _counts(values: Array) -> bool:
-    return bool(np.array_equal(values, np.arange(values.size)))
-
-
 def _scaled(source: Source, column: str) -> Clock:
     """Seconds by the unit of the file; without one by size and step: what is likely is taken and doubted aloud."""
     values, unit = source.numbers(column), _unit_of_time(source, column)
@@ -461,6 +456,8 @@ def _scaled(source: Source, column: str) -> Clock:
     if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
         return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")
     if bool((finite == np.round(finite)).all()) and step >= MANY and step not in USUAL_STEPS_S:
-        return Clock(values * 1e-3, None, (column,), "numbers, taken as ms", f"no unit of '{column}': ms are assumed")
+        unit = "us" if MANY_MS <= step < MANY_US else "ms"
+        doubt = f"no unit of '{column}': {unit} are assumed"
+        return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
     doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""
     return Clock(values, None, (column,), "numbers, taken as seconds", doubt)

@@ -30,7 +30,7 @@ from measured.importing.words import (
     tokens,
 )
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
-from measured.recordings.tables import LARGEST
+from measured.recordings.tables import LARGEST, SWITCHED
 from measured.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
 
 Array = NDArray[np.float64]
@@ -108,6 +108,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
         assumed = f"unit '{match[1]}' unknown: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    if quantity not in SWITCHED and source.is_switch(column):
+        return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
     values = source.numbers(column)
     codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
     if quantity != "temperature" and codes.size:
@@ -183,6 +185,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     of_unit = [q for q in FIRST if unit and (unit in QUANTITIES[q].units or unit in OTHER_UNITS.get(q, ()))]
     by_name = quantities_of(label)
     both = [q for q in by_name if q in of_unit]
+    if unit == "1" and not both:
+        return "", "", ""  # a state or a counter as well as a share
     if of_unit:
         unsure = len(of_unit) > 1 and not both
         return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""

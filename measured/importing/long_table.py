@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
-from measured.importing.cells import is_date, is_reading
-from measured.importing.words import VOCABULARY, is_time, tokens
+from measured.importing.cells import is_date, is_reading, number
+from measured.importing.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
-LEAST = 3  # readings of a signal
+LEAST = 3  # readings of a signal, on average
 
 
-def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: str) -> dict[str, list[Any]]:
-    """The time and a column for every signal of such a table; empty for a table of any other kind.
+def side_by_side(
+    names: Sequence[str], columns: Sequence[Sequence[Any]], where: str
+) -> tuple[dict[str, list[Any]], list[str]]:
+    """The time and a column for every signal of such a table, and doubts; empty for a table of any other kind.
 
-    InputError where signals have times of their own, which one table of rows cannot hold.
+    Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
+    temperatures go on between them.
+    InputError where such times cannot be put in order.
     """
     key = next((j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])), None)
     if key is None:
-        return {}
+        return {}, []
     values = [j for j, name in enumerate(names) if j != key and set(tokens(name)) & VALUES]
     times = [
         j
@@ -31,7 +37,7 @@ def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: 
     ]
     rest = [j for j in range(len(names)) if j != key and j not in times]
     if not times or not (values or len(rest) == 1):
-        return {}
+        return {}, []
     value, unit = (values[0], "") if values else (rest[0], f" {names[rest[0]]}")
     series: dict[str, dict[Any, Any]] = {}
     clocks = list(zip(*(columns[j] for j in times), strict=True))
@@ -39,11 +45,29 @@ def side_by_side(names: Sequence[str], columns: Sequence[Sequence[Any]], where: 
         if signal is not None and str(signal).strip():
             series.setdefault(f"{signal}{unit}", {})[instant] = reading
     instants: list[tuple[Any, ...]] = max((list(readings) for readings in series.values()), key=len)
+    notes = []
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
-        raise InputError(what, where, "a column for each signal, with common times")
+        instants = _in_order(dict.fromkeys(clocks), what, where)
+        notes = [f"{Path(where).name}: {what}; all but temperatures hold until the next reading of their signal"]
+        for signal, readings in series.items():
+            if roles_of(signal) or "temperature" in quantities_of(signal):
+                continue
+            last = None
+            for instant in instants:
+                last = readings.setdefault(instant, last)
     common = {names[j]: [instant[i] for instant in instants] for i, j in enumerate(times)}
-    return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}
+    return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
+
+
+def _in_order(instants: Iterable[tuple[Any, ...]], what: str, where: str) -> list[tuple[Any, ...]]:
+    """Instants by their first cell: a number, or a date as ISO has it."""
+    try:
+        plain = {t: number(t[0]) for t in instants}
+        plain |= {t: datetime.fromisoformat(str(t[0])).timestamp() for t, value in plain.items() if value != value}
+    except ValueError:
+        raise InputError(what, where, "dates as ISO has them, or a column for each signal, with common times") from None
+    return sorted(plain, key=lambda t: plain[t])
 
 
 def _is_key(cells: Sequence[Any]) -> bool:
@@ -51,4 +75,5 @@ def _is_key(cells: Sequence[Any]) -> bool:
     if any(map(is_reading, cells[:LEAST])):
         return False
     counts = Counter(str(c).strip() for c in cells if c is not None and str(c).strip())
-    return 1 < len(counts) <= MOST and min(counts.values()) >= LEAST and not any(map(is_reading, counts))
+    repeated = sum(counts.values()) >= LEAST * len(counts)
+    return 1 < len(counts) <= MOST and repeated and not any(map(is_reading, counts))

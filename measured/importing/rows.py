@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.errors import InputError
-from measured.importing.cells import is_reading, is_unit, number, split_unit
+from measured.importing.cells import is_date, is_reading, is_unit, number, split_unit
 from measured.importing.words import is_time, quantities_of, roles_of
 
 SAMPLE = 2000  # rows that are enough to find the table
@@ -69,20 +69,29 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         groups = _forward_filled(above[-1])
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
-        names = [names[0], *(f"{name} {remark}".strip() for name, remark in zip(names[1:], remarks[1:], strict=True))]
+        labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
+        late = next((labels.index(c) - j for row in above for j, c in enumerate(row) if c and c in labels), 0)
+        remarks = _padded(["", *[""] * late, *remarks[1:]], width)
+        names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     return Layout(
         tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width, block[0]
     )
 
 
 def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
-    """The rows over the readings that may be names, units, or groups of names: those that fill half of the table."""
+    """The rows over the readings that may be names, units, or groups of names: those that fill half of the table.
+
+    A row with its label alone ("Comment:", "trace_values") or with dates may stand between them, and is neither.
+    """
     block: list[int] = []
     for i in reversed(range(max(0, first - TALLEST), first)):
-        count = sum(bool(str(c).strip()) for c in rows[i] if c is not None)
-        if count and (count < 0.5 * width or all(is_reading(c) for c in rows[i] if c is not None and str(c).strip())):
+        cells = [str(c).strip() for c in rows[i] if c is not None and str(c).strip()]
+        alone = len(cells) == 1 < 0.5 * width <= len(rows[i]) and not cells[0].startswith("***")
+        if alone or any(map(is_date, cells)):
+            continue
+        if cells and (len(cells) < 0.5 * width or all(map(is_reading, cells))):
             break
-        if count:
+        if cells:
             block.insert(0, i)
     return block
 

@@ -60,6 +60,13 @@ class Source(DataTable):
         """Does it hold anything but ways to write that nothing was read?"""
         return _any(self.cells[column])
 
+    def is_switch(self, column: str) -> bool:
+        """Does it hold on and off, or true and false, in words?"""
+        cells = self.cells[column]
+        if isinstance(cells, np.ndarray) and cells.dtype.kind != "O":
+            return cells.dtype.kind == "b"
+        return all(_empty(c) or str(c).strip().lower() in SWITCH for c in set(cells))
+
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
         finite = np.isfinite(self.numbers(column))
@@ -121,8 +128,9 @@ def _of_table(
     """Named columns of a table that was found in the file."""
     unnamed = not any(plan.names)
     names = _once(_plain(plan.names))
-    if beside := side_by_side(names, columns, str(file)):
-        return _source(file, list(beside), list(beside.values()), {}, notes)
+    beside, doubts = side_by_side(names, columns, str(file))
+    if beside:
+        return _source(file, list(beside), list(beside.values()), {}, [*doubts, *notes])
     doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])
@@ -156,7 +164,7 @@ def _source(
         if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
             unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    return Source(cells, unit_texts, start, tuple(notes), file, labels)
+    return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:

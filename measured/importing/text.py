@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -41,8 +42,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     text, notes = decoded(b"".join(chunks(file)), file), []
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
-    if text.startswith("{"):  # an object of JSON on every line
-        text = re.sub('[{}"]', "", text)
+    if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
+        return *table, notes, None
     lines = text.splitlines(keepends=True)
     if sum(line.count('"') for line in lines) % 2:
         at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
@@ -54,9 +55,15 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
-    columns = _plain(file, lines[plan.first :], sign, plan)
+    again = sign.join(plan.names)  # a header and remarks may come again
+    body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
+    columns = _plain(file, body, sign, plan)
     if columns is None:
-        rows = _split(lines, sign)[plan.first :]
+        rows = [
+            r
+            for r in _split(lines, sign)[plan.first :]
+            if r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")
+        ]
         long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         columns = _raw([row for row in rows if any(row)], plan.width)
@@ -67,6 +74,28 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     return plan, columns, notes, _interval("".join(lines[: plan.first]))
+
+
+def _objects(text: str) -> tuple[Layout, Columns] | None:
+    """Of JSON: an object on every line, or a list of them; what stands inside another is called outer.inner."""
+    try:
+        every = (
+            json.loads(text)
+            if text.lstrip().startswith("[")
+            else [json.loads(t) for t in text.splitlines() if t.strip()]
+        )
+    except ValueError:
+        return None
+    rows = [_flat(one) for one in every]
+    names = tuple(dict.fromkeys(name for row in rows for name in row))
+    return Layout(names, ("",) * len(names), 0, len(names), 0), [[row.get(name) for row in rows] for name in names]
+
+
+def _flat(one: Any, name: str = "") -> dict[str, Any]:
+    """Values of an object and of those inside it, by the names that lead to them."""
+    if isinstance(one, dict):
+        return {n: v for key, value in one.items() for n, v in _flat(value, f"{name}.{key}".strip(".")).items()}
+    return {name: one}
 
 
 def _interval(preamble: str) -> float | None:
@@ -84,7 +113,7 @@ def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | N
     if sign != ",":
         content = content.replace(",", ".").replace(sign, ",")
     try:
-        return Body(file, [str(j) for j in range(plan.width)], strict=False).columns(content.encode(), 0)
+        return Body(file, plan.width).columns(content.encode())
     except csv.Error:
         return None
 
@@ -122,12 +151,9 @@ def decoded(raw: bytes, file: Path) -> str:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
         odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
-        return raw.decode(max(PAGES, key=lambda page: _worth(odd.decode(page, "ignore"))), "replace")
-
-
-def _worth(text: str) -> int:
-    """How many letters in it are those of headers, and degrees above all."""
-    return len(LETTERS.findall(text)) + DEGREE * len(re.findall("[°º][CFK]|℃", text))
+        letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
+        worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
+        return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
 
 
 def delimiter(lines: list[str]) -> str:

@@ -30,7 +30,7 @@ IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
-OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
+OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
 AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:current|strom)[_ .]?(d|q)(?![a-z])")
 
 
@@ -92,7 +92,9 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 
 
 def is_time(label: str) -> bool:
-    """Is it a name for time?  A small t is one, a large T a temperature."""
+    """Is it a name for time?  A small t is one, a large T a temperature; "temps" of a part are temperatures."""
     words = re.split(r"[^a-zäöüé\u3040-\u9fff]+", label.lower().strip())
+    if "temps" in words and roles_of(label):
+        return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
     return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or starts

@@ -7,9 +7,11 @@ import gzip
 import io
 import re
 import zlib
-from collections.abc import Iterator, Sequence
+from codecs import getincrementaldecoder
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import IO, Any, cast
 
@@ -23,46 +25,69 @@ from measured.recordings.data_table import Column, DataTable, as_number, is_miss
 
 COMMA, QUOTE, LF, CR = b',"\n\r'
 NAN = np.frombuffer(b"nan", np.uint8)
+MANY = "as many as names: decimal commas become points"
 BLOCK = 2**20  # bytes that are read at once; csv takes ten times as long for one as NumPy
 
 
 def read_csv(file: Path) -> DataTable:
     """The table of a CSV file under its own header."""
-    content = _content(file)
-    if not content.strip():
-        raise InputError("the file is empty", str(file), "a header line and rows of numbers")
+    names, parts = csv_pieces(file)
+    columns = [*parts]
+    return DataTable.of(((name, _joined([part[j] for part in columns])) for j, name in enumerate(names)), file)
+
+
+def csv_pieces(file: Path, size: int = BLOCK) -> tuple[list[str], Iterator[Sequence[Any]]]:
+    """The names of the columns of a CSV file, and its cells column by column, so many bytes at once."""
+    blocks = cut_blocks(_checked(file, size), size)
+    first = next(blocks, b"").removeprefix(b"\xef\xbb\xbf")
+    if not first.strip():
+        raise InputError("the file is empty: it holds no row", str(file), "a header line and rows of numbers")
+    with _readable(file):
+        header, start, line = _header(file, first)
+    named = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
+
+    def pieces() -> Iterator[Sequence[Any]]:
+        with _readable(file):
+            yield from Body(file, len(header), named).pieces(chain([first[start:]], blocks), line)
+
+    return header, pieces()
+
+
+@contextmanager
+def _readable(file: Path) -> Iterator[None]:
     try:
-        header, start = _header(file, content)
-        columns = Body(file, header).columns(content, start)
-    except (csv.Error, UnicodeError) as fault:
+        yield
+    except csv.Error as fault:
         right = "commas between columns, one header line, quotation marks in pairs"
         raise InputError(f"not readable as CSV: {fault}", str(file), right) from None
-    return DataTable.of(zip(header, columns, strict=True), file)
 
 
 @dataclass
 class Body:
-    """The rows under a header, read block by block; words : columns that hold words;  gaps : there are empty cells
+    """The rows under a header, read block by block.
 
-    strict : a row that is cut off is refused, else its end is empty
-
+    width : columns;  least : cells of a row that is whole, 0 where its end may be empty
+    words : columns that hold words;  gaps : there are empty cells
     Both are learnt from the block that NumPy's reader cannot take as it is, so that it takes those that follow.
     """
 
     file: Path
-    header: list[str]
+    width: int
+    least: int = 0
     words: set[int] = field(default_factory=set)
     gaps: bool = False
-    strict: bool = True
 
-    def columns(self, content: bytes, start: int) -> list[Any]:
-        """The cells from a byte on, column by column: numbers, or all cells of a column that has a word in it."""
-        parts: list[Sequence[Any]] = []
-        for at, block in timed(_blocks(content, start), self.file):
-            if (part := self._quick(block)) is None and (part := self._slow(block, content, at)) is None:
-                return _parsed(content[start:], len(self.header))
-            parts.append(part)
-        return [_joined([part[j] for part in parts]) for j in range(len(self.header))]
+    def columns(self, content: bytes) -> list[Any]:
+        """All cells, column by column: numbers, or every cell of a column that has a word in it."""
+        parts = [*self.pieces(cut_blocks([content]), 1)]
+        return [_joined([part[j] for part in parts]) for j in range(self.width)]
+
+    def pieces(self, blocks: Iterator[bytes], line: int) -> Iterator[Sequence[Any]]:
+        """The cells of whole lines.  line : that of the first of them"""
+        for block in timed(blocks, self.file):
+            part = self._quick(block) or self._slow(block, line) or _parsed(b"".join([block, *blocks]), self.width)
+            line += block.count(b"\n")
+            yield part
 
     def _quick(self, block: bytes) -> Sequence[Any] | None:
         """By NumPy's reader; None where it meets anything that is not as it was so far."""
@@ -70,34 +95,55 @@ class Body:
         return self._loaded(plain) if plain and plain.strip() else None
 
     def _loaded(self, block: bytes) -> Sequence[Any] | None:
-        width = len(self.header)
-        kinds = np.dtype([(f"{j}", object if j in self.words else float) for j in range(width)])
+        kinds = np.dtype([(f"{j}", object if j in self.words else float) for j in range(self.width)])
         try:
             rows = np.loadtxt(io.BytesIO(block), kinds, comments=None, delimiter=",", ndmin=1, encoding="utf-8")
         except ValueError:
             return None
-        return [_numeric(rows[f"{j}"].tolist()) if j in self.words else rows[f"{j}"] for j in range(width)]
+        return [_numeric(rows[f"{j}"].tolist()) if j in self.words else rows[f"{j}"] for j in range(self.width)]
 
-    def _slow(self, block: bytes, content: bytes, at: int) -> Sequence[Any] | None:
+    def _slow(self, block: bytes, line: int) -> Sequence[Any] | None:
         """With its rows looked at one by one; None where quotation marks hold commas or line ends."""
-        if self.strict and b'"' not in block:
-            _complete(self.file, block, self.header, content.count(b"\n", 0, at) + 1)
+        if self.least and b'"' not in block:
+            self._complete(block, line)
         if (plain := _plain(block)) is None:
             return None
         self.gaps |= plain != block
         if plain.strip() and (part := self._loaded(plain)) is not None:
             return part
-        columns = _parsed(plain, len(self.header))
+        columns = _parsed(plain, self.width)
         self.words |= {j for j, column in enumerate(columns) if isinstance(column, list)}
         return columns
 
+    def _complete(self, block: bytes, first: int) -> None:
+        """InputError for a row that was cut off or has more cells than names: what were readings would be others.
 
-def _blocks(content: bytes, start: int) -> Iterator[tuple[int, bytes]]:
-    """Whole lines, so many at once, each with the byte at which they begin."""
-    while start < len(content):
-        end = content.find(b"\n", start + BLOCK) + 1 or len(content)
-        yield start, content[start:end]
-        start = end
+        first : line at which the block begins
+        """
+        for number, line in enumerate(io.BytesIO(block), first):
+            columns = line.count(b",") + 1
+            where = f"{self.file} line {number}"
+            if columns < self.least and line.strip():
+                raise InputError(
+                    f"{columns} values under {self.least} names: the row was cut off",
+                    where,
+                    "a whole row (commas where nothing was read), or none: delete it",
+                )
+            if columns > self.width and any(cell.strip() for cell in line.split(b",")[self.width :]):
+                raise InputError(f"{columns} values under {self.width} names", where, MANY)
+
+
+def cut_blocks(parts: Iterable[bytes], size: int = BLOCK) -> Iterator[bytes]:
+    """Whole lines of a text, so many bytes at once."""
+    rest = b""
+    for part in parts:
+        rest, start = rest + part, 0
+        while end := rest.find(b"\n", start + size) + 1:
+            yield rest[start:end]
+            start = end
+        rest = rest[start:]
+    if rest:
+        yield rest
 
 
 def _plain(block: bytes) -> bytes | None:
@@ -149,8 +195,20 @@ def _joined(parts: Sequence[Any]) -> Any:
     return np.concatenate(parts) if parts else np.empty(0)
 
 
-def _header(file: Path, content: bytes) -> tuple[list[str], int]:
-    """The names of the columns and the byte after them.
+def in_rows(pieces: Iterator[Sequence[Any]], most: int) -> Iterator[Sequence[Any]]:
+    """Cells column by column, so many rows at once; the last time what is left."""
+    rest = next(pieces, [()])
+    for part in chain(pieces, [None]):
+        while len(rest[0]) >= most:
+            yield [column[:most] for column in rest]
+            rest = [column[most:] for column in rest]
+        rest = rest if part is None else [_joined(both) for both in zip(rest, part, strict=True)]
+    if len(rest[0]):
+        yield rest
+
+
+def _header(file: Path, content: bytes) -> tuple[list[str], int, int]:
+    """The names of the columns, the byte after them, and the line that begins there.
 
     InputError where the first row has more values than there are names.
     """
@@ -167,43 +225,18 @@ def _header(file: Path, content: bytes) -> tuple[list[str], int]:
             raise InputError(f"columns are separated by {name}", str(file), "commas between columns, points in numbers")
     COLUMNS.check(len(header), f"{file} line 1", "holds")
     if any(cell.strip() for cell in first[len(header) :]):
-        raise InputError(
-            f"{len(first)} values under {len(header)} names",
-            f"{file} line 2",
-            "as many as names: decimal commas become points, the header is line 1",
-        )
-    return header, start
+        what = f"{len(first)} values under {len(header)} names"
+        raise InputError(what, f"{file} line 2", f"{MANY}, the header is line 1")
+    return header, start, lines + 1
 
 
-def _complete(file: Path, block: bytes, header: list[str], first: int) -> None:
-    """InputError for a row that was cut off or has more cells than names: what were readings would be others.
-
-    first : line at which the block begins
-    """
-    least = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
-    for number, line in enumerate(io.BytesIO(block), first):
-        columns = line.count(b",") + 1
-        if columns < least and line.strip():
-            raise InputError(
-                f"{columns} values under {least} names: the row was cut off",
-                f"{file} line {number}",
-                "a whole row (commas where nothing was read), or none: delete it",
-            )
-        if columns > len(header) and any(cell.strip() for cell in line.split(b",")[len(header) :]):
-            raise InputError(
-                f"{columns} values under {len(header)} names",
-                f"{file} line {number}",
-                "as many as names: decimal commas become points",
-            )
-
-
-def chunks(file: Path) -> Iterator[bytes]:
-    """All of a file, unpacked, piece by piece; InputError where it is not whole, or too large to be a test."""
+def chunks(file: Path, size: int = CHUNK) -> Iterator[bytes]:
+    """All of a file, unpacked, so many bytes at once; InputError where it is not whole, or too large to be a test."""
     try:
         with _opened(file) as source:
             check_text(source, file)
         with _opened(file) as source:
-            while part := source.read(CHUNK):
+            while part := source.read(size):
                 yield part
     except (OSError, EOFError, zlib.error) as fault:
         kind = "gzip" if file.name.lower().endswith(".gz") else "text"
@@ -214,18 +247,16 @@ def _opened(file: Path) -> IO[bytes]:
     return cast("IO[bytes]", gzip.open(file)) if file.name.lower().endswith(".gz") else file.open("rb")
 
 
-def _content(file: Path) -> bytes:
-    """The whole of a CSV file; nothing that is no UTF-8 text."""
-    parts: list[bytes] = []
-    for part in chunks(file):
+def _checked(file: Path, size: int) -> Iterator[bytes]:
+    """The bytes of a CSV file, piece by piece; nothing that is no UTF-8 text."""
+    decode, start = getincrementaldecoder("utf-8")().decode, 0
+    for part in chain(chunks(file, size), [b""]):
         if b"\0" in part:
             raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
-        parts.append(part)
-    content = b"".join(parts).removeprefix(b"\xef\xbb\xbf")
-    try:
-        content.decode("utf-8")
-    except UnicodeDecodeError as fault:
-        raise InputError(
-            f"is no UTF-8 text: {fault.reason} at byte {fault.start}", str(file), "CSV saved as UTF-8"
-        ) from None
-    return content
+        try:
+            decode(part, not part)
+        except UnicodeDecodeError as fault:
+            what = f"is no UTF-8 text: {fault.reason} at byte {start + fault.start}"
+            raise InputError(what, str(file), "CSV saved as UTF-8") from None
+        start += len(part)
+        yield part

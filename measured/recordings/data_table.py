@@ -6,8 +6,8 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from decimal import Decimal
 from numbers import Real
@@ -38,13 +38,14 @@ class DataTable:
     any kind with None where nothing was read
 
     units : column -> unit as the file keeps it, apart from the name;  start : of its clock (s since 1970), if known
-    notes : what is doubtful in the file
+    notes : what is doubtful in the file;  line : of its first row
     """
 
     cells: Mapping[str, Any]
     units: Mapping[str, str] = field(default_factory=dict)
     start: float | None = None
     notes: tuple[str, ...] = ()
+    line: int = HEADER
 
     @classmethod
     def of(cls, columns: Iterable[tuple[object, Any]], file: Path, **about: Any) -> DataTable:
@@ -73,6 +74,12 @@ class DataTable:
         for name in names:
             if name not in self.cells:
                 raise InputError(f"column '{name}' is not in the file", where, suggestion(name, self.columns))
+
+    def cut(self, most: int) -> Iterator[DataTable]:
+        """Parts of so many rows."""
+        for i in range(0, self.rows, most):
+            part = {name: column[i : i + most] for name, column in self.cells.items()}
+            yield replace(self, cells=part, line=self.line + i)
 
     def with_columns(self, **columns: Column) -> DataTable:
         """With these columns, in place of those of the same name."""
@@ -135,15 +142,16 @@ def as_number(cell: object) -> float | None:
 def numbers(table: DataTable, name: str, file: Path) -> Array:
     """A column as numbers, NaN where nothing was read; InputError with the line of what is no finite number."""
     column = table[name]
-    values = np.asarray(column, float) if column.dtype.kind in "fb" else _numbers(column, name, file)
+    values = np.asarray(column, float) if column.dtype.kind in "fb" else _numbers(table, name, file)
     endless = np.flatnonzero(np.isinf(values))
     if endless.size:
-        raise InputError("the value is infinite", cell(file, name, int(endless[0])), "a finite number")
+        raise InputError("the value is infinite", cell(file, name, int(endless[0]), table.line), "a finite number")
     return values
 
 
-def _numbers(column: Column, name: str, file: Path) -> Array:
+def _numbers(table: DataTable, name: str, file: Path) -> Array:
     """Of a column of words or instants."""
+    column = table[name]
     if column.dtype.kind in "mM":
         raise InputError("holds instants, no numbers", f"{file} column '{name}'", "numbers, or another column")
     values = [as_number(word) for word in column]
@@ -151,7 +159,7 @@ def _numbers(column: Column, name: str, file: Path) -> Array:
         row = values.index(None)
         raise InputError(
             f"'{column[row]}' is no number",
-            cell(file, name, row),
+            cell(file, name, row, table.line),
             "a number with a decimal point, or nothing where nothing was read",
         )
     return np.array(values, float)
@@ -162,9 +170,9 @@ def is_switch(column: Column) -> bool:
     return column.dtype.kind == "b" or (column.dtype.kind == "O" and any(isinstance(word, bool) for word in column))
 
 
-def cell(file: Path, column: str, row: int) -> str:
-    """Where a reading stands."""
-    return f"{file} column '{column}' line {row + HEADER}"
+def cell(file: Path, column: str, row: int, first: int = HEADER) -> str:
+    """Where a reading stands.  first : line of the first row"""
+    return f"{file} column '{column}' line {row + first}"
 
 
 def pairs(table: DataTable, time: str, column: str, file: Path) -> Array:

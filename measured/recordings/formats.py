@@ -22,14 +22,16 @@ from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
 from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows, timed
 from lumped.schemas.reader import suggestion
-from measured.recordings.csv_file import read_csv
-from measured.recordings.data_table import DataTable
+from measured.recordings.csv_file import csv_pieces, in_rows, read_csv
+from measured.recordings.data_table import HEADER, DataTable
 
 Array = NDArray[np.float64]
 Columns = Iterable[tuple[object, Any]]  # pairs of a name and its values
 Reader = Callable[[Path], Mapping[str, Any]]  # name -> values; a pandas DataFrame is one too
 READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader
-SUFFIXES = (".csv", ".csv.gz", ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+PLAIN = (".csv", ".csv.gz")
+PIECE = 2**16  # bytes of a CSV file of which no more than a piece is kept: about a thousand rows
+SUFFIXES = (*PLAIN, ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
 TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
@@ -92,7 +94,7 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
         ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
         ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
         **{
-            f".{n}": partial(_table, file, f"a .{n} file", n, partial(_foreign, file, read))
+            f".{n}": partial(_table, file, f"a .{n} file", n, lambda read=read: (read(file).items(), {}))  # type: ignore[misc]
             for n, read in READERS.items()
         },
     }
@@ -110,6 +112,16 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     return table
 
 
+def recording_pieces(file: Path, most: int, worksheet: str = "") -> Iterator[DataTable]:
+    """A recording, at most so many rows at once: of a CSV file no more is in memory. What has another ending is one."""
+    if _suffix(file) not in ("", *PLAIN):
+        yield from read_recording(file, worksheet, 0).cut(most)
+        return
+    names, pieces = csv_pieces(file, PIECE)
+    for i, columns in enumerate(in_rows(pieces, most)):
+        yield DataTable.of(zip(names, columns, strict=True), file, line=HEADER + i * most)
+
+
 def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) -> DataTable:
     check_size(file)
 
@@ -119,10 +131,6 @@ def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) ->
 
     read_whole: DataTable = guarded(file, kind, package, table)
     return read_whole
-
-
-def _foreign(file: Path, read: Reader) -> Contents:
-    return read(file).items(), {}
 
 
 def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any:

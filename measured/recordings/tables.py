@@ -15,14 +15,14 @@ from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.recordings.alignment import clock_shift, merged
 from measured.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
-from measured.recordings.formats import TIME, read_recording, recording
+from measured.recordings.formats import EPOCH, TIME, read_recording, recording
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from measured.recordings.sheet import Column, Recorder, Sheet
 from measured.recordings.units import converted
 from measured.sensors.faults import longest_run
 
 Array = NDArray[np.float64]
-GAP = 3.5  # times the usual step
+GAP, USUAL = 3.5, 95  # times the usual step; percentile of all: rows of up to twenty signals may come in bursts
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
@@ -130,7 +130,7 @@ def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, 
 def _times(table: DataTable, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
         return np.arange(table.rows, dtype=np.float64) * sheet.period_s
-    t = _seconds(table, sheet, file)
+    t = seconds_of(table, sheet, file)
     _rising(t, table[sheet.time], sheet.time, file)
     return np.asarray(t - t[0], float)
 
@@ -159,11 +159,11 @@ def _text(time: Any) -> str:
     return f"{time:.15g}" if isinstance(time, float) else str(time)
 
 
-def _seconds(table: DataTable, sheet: Sheet, file: Path) -> Array:
-    """Of the column of times: numbers in its unit, or instants where the format has such."""
+def seconds_of(table: DataTable, sheet: Sheet, file: Path) -> Array:
+    """Of the column of times: numbers in its unit, or instants (since 1970) where the format has such."""
     column = table[sheet.time]
     if column.dtype.kind == "M":
-        column = column - column[0]
+        column = column - EPOCH
     if column.dtype.kind == "m":
         return np.asarray(column / np.timedelta64(1, "s"))
     try:
@@ -175,7 +175,7 @@ def _seconds(table: DataTable, sheet: Sheet, file: Path) -> Array:
 
 def _gaps(time: Array) -> tuple[tuple[float, float], ...]:
     step = np.diff(time)
-    long = np.flatnonzero(step > GAP * np.median(step))
+    long = np.flatnonzero(step > GAP * np.percentile(step, USUAL, method="lower"))
     return tuple((float(time[i]), float(time[i + 1])) for i in long)
 
 

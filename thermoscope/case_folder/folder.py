@@ -140,7 +140,8 @@ def load_case(
     findings = examined(list(patients.values()), network)
     notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
-    tests = tuple(replace(_allowing(r.test, settings.model_K), frees=frees[r.test.name]) for r in read)
+    channels = {r.test.name: tuple(replace(c, model_K=settings.model_K) for c in r.test.channels) for r in read}
+    tests = tuple(replace(r.test, channels=channels[r.test.name], frees=frees[r.test.name]) for r in read)
     sheets = [one.sheet for one in patients.values()]
     network = with_quantities(network, sheets, tests, history.reference)
     low = None
@@ -163,6 +164,9 @@ def load_case(
 
 
 READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
+LARGE = (
+    2**22
+)  # cells of a recording that no process keeps (32 MB): a million rows would stay beside all that is made of them
 _read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
 
 
@@ -173,9 +177,12 @@ def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patie
     key = (pickle.dumps(sheet), *(_stamp(file) for file in files))
     if key not in _read:
         progress(f"reading {entry.name}")
+        samples = load_table(entry.file, sheet)
+        if samples.time.size * len(samples.values) > LARGE:
+            return Patient(entry.name, sheet, samples)
         while len(_read) >= READ:
             _read.pop(next(iter(_read)))
-        _read[key] = load_table(entry.file, sheet)
+        _read[key] = samples
     return Patient(entry.name, sheet, _read[key])
 
 
@@ -212,11 +219,6 @@ def _assumed_reference(case: Case, settings: Settings) -> list[str]:
         f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
         f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
     ]
-
-
-def _allowing(test: Test, model_K: float) -> Test:
-    """The test with the model's own expected error on every channel."""
-    return replace(test, channels=tuple(replace(c, model_K=model_K) for c in test.channels))
 
 
 def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:

@@ -165,6 +165,7 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
 
 
 def _revision(table: Table) -> Revision:
+    evidence = _inner(table, "evidence")
     out = Revision(
         int(table.number("number")),
         table.word("action", None, ACTIONS),
@@ -174,7 +175,7 @@ def _revision(table: Table) -> Revision:
         _pairs(_inner(table, "intervals")),
         _before_after(_inner(table, "rmse_K")),
         table.word("why", ""),
-        _evidence(_inner(table, "evidence")),
+        {k: v if isinstance(v, str) else evidence.number(k, of="value") for k, v in evidence.data.items()},
         _answers(_inner(table, "answers")),
         _reference(_inner(table, "reference")),
     )
@@ -235,10 +236,6 @@ def _error(table: Table) -> tuple[float, str]:
 
 def _inner(table: Table, key: str) -> Table:
     return Table(table.raw(key, {}), f"{table.where} {key}")
-
-
-def _evidence(table: Table) -> dict[str, float | str]:
-    return {k: v if isinstance(v, str) else table.number(k, of="value") for k, v in table.data.items()}
 
 
 def _answers(table: Table) -> dict[str, bool | float]:

@@ -19,7 +19,7 @@ def read_pairs(
         if name in out:
             raise InputError(f"'{name}' is given twice", option, f"one {what} for each")
         try:
-            value = float(text)
+            value = float(text.replace(",", "."))
         except ValueError:
             value = nan
         if not name or not low < value < high:

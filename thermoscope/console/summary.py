@@ -154,7 +154,9 @@ def _fitting(table: Table, body: list[list[str]], widths: list[int], width: int)
     columns = [j for j in range(len(table.columns)) if j == 0 or any(row[j] not in ("", "-") for row in body)]
     important = [j for j in columns if table.columns[j] in table.keep]
     order = [*reversed([j for j in columns[1:] if j not in important]), *reversed([j for j in important if j != 0])]
-    floor = [w if _numbers(body, j) else min(w, 3 * LEAST) for j, w in enumerate(widths)]
+    lines = [LEAST if name == table.folded else 3 * LEAST for name in table.columns]
+    floor = [w if _numbers(body, j) else min(w, lines[j]) for j, w in enumerate(widths)]
+    order = [j for j in order if table.columns[j] != table.folded]
     for j in order:
         if _total(floor, columns) <= width:
             break

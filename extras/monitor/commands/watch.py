@@ -205,7 +205,13 @@ def watch_summary(document: dict[str, Any]) -> Summary:
     )
     rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
     events = [
-        [_alarm_text(e["kind"], e["where"], _number(e["amplitude"]), e["probability"]), e["from_s"], e["to_s"]]
+        [
+            _alarm_text(
+                e["kind"], e["where"], float("nan") if e["amplitude"] is None else e["amplitude"], e["probability"]
+            ),
+            e["from_s"],
+            e["to_s"],
+        ]
         for e in document["events"]
     ]
     withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
@@ -215,7 +221,3 @@ def watch_summary(document: dict[str, Any]) -> Summary:
         Table("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
     ]
     return Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value

@@ -64,18 +64,14 @@ def of_doubt(of: ParameterPosterior, tests: Sequence[Test], bodies: Sequence[str
 def _in_test(of: ParameterPosterior, test: Test, bodies: Sequence[str]) -> Array:
     network, free, size = acting(of, test)
     look = _Flows(network, of.values, test, bodies)
-    columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if not _outside(p)}
+    beside = ("boundary", "initial")  # which `moved_boundaries` has, and what is no heat
+    columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if head(p) not in beside}
     responses = {name: look.driven(other) for name, other in moved_inputs(network, test, of.doubt)}
     responses |= {name: look.beside(other) for name, other in moved_boundaries(test, of.doubt)}
     sd = [p.prior_sd / s for p, s in zip(free, size, strict=True) if p.name in columns]
     Sigma = of.of([*columns, *responses], np.array([*sd, *np.ones(len(responses))]))
     A = np.stack([*columns.values(), *responses.values()], axis=2)
     return np.asarray(np.einsum("tik,kl,tjl->ij", A, Sigma, A) / len(A))
-
-
-def _outside(p: Parameter) -> bool:
-    """Is it a boundary, which `moved_boundaries` has, or a start, which is no heat?"""
-    return head(p) in ("boundary", "initial")
 
 
 class _Flows:

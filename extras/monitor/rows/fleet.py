@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from extras.monitor.fleet import Statistics, UnitHistory, statistics
-from extras.monitor.rows.live_rows import Rows, open_stream, table_of, together
+from extras.monitor.rows.live_rows import Rows, table_of
 from thermoscope import InputError, Network
 from thermoscope.plugin import LAW_RUNNING as RUNNING
-from thermoscope.plugin import Array, Channel, Ints, Sheet, Test, stem_of
+from thermoscope.plugin import SUFFIXES, Array, Channel, Ints, Sheet, Test, stem_of
 from thermoscope.plugin import CaseProgress as Progress
 from thermoscope.plugin import MeasuredCase as Case
 
@@ -23,7 +23,6 @@ PIECE = 20_000  # rows that are in memory at once: five hours at 1 Hz
 LEAST = 60  # rows worth a fit
 STEP_S = 20.0  # between the instants that a fit looks at, where the case does not say
 DATED = re.compile(r"(?P<unit>.+)@(?P<year>\d{4})-(?P<month>\d\d)(-(?P<day>\d\d))?")
-ENDINGS = (".csv", ".csv.gz")
 
 
 @dataclass(frozen=True)
@@ -54,12 +53,11 @@ class Reader:
         """All pieces of a recording together."""
         total: Statistics | None = None
         network = self.case.model.network
-        with open_stream(str(recording.file)) as stream:
-            _, table, lines = table_of(stream, str(recording.file), {self.test.name: self.sheet}, network, None)
-            for part in together(lines, self.piece):
-                if total is None or len(part) >= LEAST:
-                    one = statistics(self.case, self._test(table.rows(part), recording, network))
-                    total = one if total is None else total + one
+        _, table, parts = table_of(str(recording.file), self.piece, {self.test.name: self.sheet}, network, None)
+        for part in parts:
+            if total is None or part.rows >= LEAST:
+                one = statistics(self.case, self._test(table.rows(part), recording, network))
+                total = one if total is None else total + one
         if total is None:
             raise InputError("holds no row", str(recording.file), "rows of numbers under the header")
         return total
@@ -114,15 +112,15 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
 
 
 def _inside(folder: Path) -> list[Path]:
-    files = sorted(f for ending in ENDINGS for f in folder.glob(f"[!.]*{ending}"))
+    files = sorted(f for ending in SUFFIXES for f in folder.glob(f"[!.]*{ending}"))
     if not files:
-        raise InputError("no recording in the folder", str(folder), "CSV files named UNIT.csv or UNIT@2026-03.csv")
+        raise InputError("no recording in the folder", str(folder), "recordings named UNIT.csv or UNIT@2026-03.csv")
     return files
 
 
 def _recording(file: Path) -> Recording:
     if not file.is_file():
-        raise InputError("no such file", str(file), "CSV files or folders of them")
+        raise InputError("no such file", str(file), "recordings or folders of them")
     match = DATED.fullmatch(stem_of(file))
     if match is None:
         return Recording(file, stem_of(file), 0.0)

@@ -5,15 +5,24 @@ from __future__ import annotations
 import csv
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import Array, Column, Sheet, as_number, converted, suggestion
+from thermoscope.plugin import (
+    HEADER,
+    Array,
+    Column,
+    DataTable,
+    Sheet,
+    numbers,
+    recording_pieces,
+    seconds_of,
+    suggestion,
+)
 
 TOGETHER = 500  # rows of a file that are read at once
 PIPE = "-"
@@ -29,21 +38,23 @@ class Rows:
     readings: dict[str, Array]
 
 
-@contextmanager
-def open_stream(name: str) -> Iterator[TextIO]:
-    """A file, or stdin for "-"."""
-    if name == PIPE:
-        yield sys.stdin
+def tables_in(name: str, most: int, worksheet: str = "") -> Iterator[DataTable]:
+    """Rows of a recording of any format, at most so many at once; of stdin ("-") every row as it comes."""
+    if name != PIPE:
+        if not Path(name).is_file():
+            raise InputError("no such file", name, "a recording, or - for rows from a pipe")
+        yield from recording_pieces(Path(name), most, worksheet)
         return
-    path = Path(name)
-    if not path.is_file():
-        raise InputError("no such file", name, "a CSV file, or - for rows from a pipe")
-    with path.open("rb") as raw:
-        packed = raw.read(2) == b"\x1f\x8b"
-    import gzip
-
-    with gzip.open(path, "rt", encoding="utf-8-sig") if packed else path.open(encoding="utf-8-sig") as stream:
-        yield stream
+    lines = csv.reader(sys.stdin, skipinitialspace=True)
+    try:
+        header = next(lines, [])
+        yield DataTable.of(((cell, ()) for cell in header), Path(name))
+        for line, cells in enumerate(lines, HEADER):
+            if cells:
+                row = [*cells, *[""] * len(header)]
+                yield DataTable.of(((c, [row[j]]) for j, c in enumerate(header)), Path(name), line=line)
+    except (csv.Error, UnicodeError) as fault:
+        raise InputError(f"not readable as CSV: {fault}", name, "commas between columns, one header line") from None
 
 
 @dataclass
@@ -54,7 +65,6 @@ class LiveTable:
     network: Network
     header: Sequence[str]
     where: str
-    line: int = 1
     last: dict[str, float] = field(default_factory=dict)
     time: float = -np.inf
 
@@ -83,13 +93,13 @@ class LiveTable:
     def _columns(self) -> list[Column]:
         return [c for c in self.sheet.columns if c.header in self.header]
 
-    def rows(self, lines: Sequence[Sequence[str]]) -> Rows:
-        """Some lines, checked and converted; inputs and boundaries hold where nothing was read."""
-        columns, first = self._columns(), self.line + 1
-        self.line += len(lines)
-        values = {c.name: self._values(c, lines, first) for c in columns}
-        values |= {c.name: self._forward_fill(c.name, values[c.name], first) for c in columns if self._outside(c)}
-        time = self._times(lines, first)
+    def rows(self, table: DataTable) -> Rows:
+        """Some rows, checked and converted; inputs and boundaries hold where nothing was read."""
+        columns, file = self._columns(), Path(self.where)
+        outside = [c for c in columns if not c.is_temperature or c.place in self.network.boundaries]
+        values = {c.name: _values(c, table, file) for c in columns}
+        values |= {c.name: self._forward_fill(c.name, values[c.name], table.line) for c in outside}
+        time = self._times(table, file)
         inputs = {n: np.full(time.size, v) for n, v in self.sheet.inputs.items()}
         inputs |= {n: events.mean(time, 0.0) for n, events in self.sheet.events.items()}
         inputs |= {c.feeds: values[c.name] for c in columns if not c.is_temperature}
@@ -104,23 +114,6 @@ class LiveTable:
         readings |= {m.name: np.mean([values[n] for n in m.of], axis=0) for m in means}
         return Rows(time, inputs, air, readings)
 
-    def _outside(self, c: Column) -> bool:
-        """Is it an input or a boundary?"""
-        return c.place in self.network.boundaries if c.is_temperature else True
-
-    def _values(self, c: Column, lines: Sequence[Sequence[str]], first: int) -> Array:
-        at = self.header.index(c.header)
-        raw = np.array([self._number(line, at, c.header, first + i) for i, line in enumerate(lines)])
-        read = c.in_memory(raw)
-        return np.asarray(read if c.electrical is None else c.electrical.temperature(read), float)
-
-    def _number(self, line: Sequence[str], at: int, name: str, number: int) -> float:
-        value = as_number(line[at]) if at < len(line) else np.nan
-        if value is None:
-            where = f"{self.where} line {number}, column '{name}'"
-            raise InputError(f"'{line[at].strip()[:40]}' is no number", where, "a number, or nothing")
-        return value
-
     def _forward_fill(self, name: str, values: Array, first: int) -> Array:
         if not np.isfinite(values[0]):
             if name not in self.last:
@@ -134,55 +127,42 @@ class LiveTable:
         self.last[name] = float(values[at[-1]])
         return np.asarray(values[at], float)
 
-    def _times(self, lines: Sequence[Sequence[str]], first: int) -> Array:
+    def _times(self, table: DataTable, file: Path) -> Array:
         if not self.sheet.time:
-            return np.asarray((first - 2.0 + np.arange(len(lines))) * self.sheet.period_s, float)
-        at = self.header.index(self.sheet.time)
-        raw = np.array([self._number(line, at, self.sheet.time, first + i) for i, line in enumerate(lines)])
-        time = np.asarray(converted(raw, "time", self.sheet.time_unit), float)
+            return np.asarray((table.line - HEADER + np.arange(table.rows)) * self.sheet.period_s, float)
+        time = seconds_of(table, self.sheet, file)
         wrong = np.flatnonzero(~(np.diff(time, prepend=self.time) > 0.0))
         if wrong.size:
             raise InputError(
-                f"time {raw[wrong[0]]:g} does not come after the one before",
-                f"{self.where} line {first + wrong[0]}",
+                f"time {table[self.sheet.time][wrong[0]]:g} does not come after the one before",
+                f"{self.where} line {table.line + wrong[0]}",
                 "times that rise from row to row",
             )
         self.time = float(time[-1])
         return time
 
 
+def _values(c: Column, table: DataTable, file: Path) -> Array:
+    read = c.in_memory(numbers(table, c.header, file))
+    return np.asarray(read if c.electrical is None else c.electrical.temperature(read), float)
+
+
 def table_of(
-    stream: TextIO, where: str, sheets: Mapping[str, Sheet], network: Network, like: str | None
-) -> tuple[str, LiveTable, Iterator[list[str]]]:
-    """The test whose sheet fits a stream, the stream's columns under it, and the lines that follow."""
-    lines = csv.reader(stream, skipinitialspace=True)
-    try:
-        header = [cell.strip() for cell in next(lines, [])]
-    except (csv.Error, UnicodeError) as fault:
-        raise InputError(f"not readable as CSV: {fault}", where, "commas between columns, one header line") from None
-    if not header:
-        raise InputError("holds no row", where, "a header line and rows of numbers")
+    follow: str, most: int, sheets: Mapping[str, Sheet], network: Network, like: str | None
+) -> tuple[str, LiveTable, Iterator[DataTable]]:
+    """The test whose sheet fits a recording, its columns under it, and its rows, at most so many at once."""
     if like is not None and like not in sheets:
         raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
-    tables = {n: LiveTable(s, network, header, where) for n, s in sheets.items() if like in (None, n)}
-    for name, one in tables.items():
+    name = like or next(iter(sheets))
+    parts = tables_in(follow, most, sheets[name].worksheet)
+    first = next(parts, DataTable({}))
+    if not first.columns:
+        raise InputError("holds no row", follow, "a header line and rows of numbers")
+    tables = {n: LiveTable(s, network, first.columns, follow) for n, s in sheets.items() if like in (None, n)}
+    for fitting, one in tables.items():
         if not one.missing():
-            return name, one, lines
-    name = next(iter(tables))
+            return fitting, one, (part for part in chain([first], parts) if part.rows)
     lacks = tables[name].missing()[0]
     raise InputError(
-        f"column '{lacks}' is not in the header", f"{where} (read as test '{name}')", suggestion(lacks, header)
+        f"column '{lacks}' is not in the header", f"{follow} (read as test '{name}')", suggestion(lacks, first.columns)
     )
-
-
-def together(lines: Iterator[list[str]], most: int) -> Iterator[list[list[str]]]:
-    """Lines some at a time; empty ones are left out."""
-    part: list[list[str]] = []
-    for line in lines:
-        if line:
-            part.append(line)
-        if len(part) >= most:
-            yield part
-            part = []
-    if part:
-        yield part

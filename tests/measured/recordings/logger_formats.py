@@ -600,4 +600,64 @@ FORMATS: dict[str, Format] = {
     "names for statistics programs": Format(
         "xtIWA", ["time_s", "I_A", "T_winding", "T_room"], " ", cells={"x": lambda k: k + 1}
     ),
+    "labels alone over the readings": Format(
+        "etIWA",
+        ["Channel name:", "Time 1", "I_rms", "Winding DE", "Ambient"],
+        "\t",
+        ",",
+        before="bench 4\tAP 5.5\n",
+        units=["Unit:", "s", "A", "°C", "°C\nComment:\t\t\t\t"],
+    ),
+    "remarks beside a clock": Format(
+        "xtWHI",
+        ["Date", "Time", "U1-1[C]", "U1-2[C]", "U2-1[A]"],
+        before='"Trigger","\'26-03-28 12:00:10"\n"CH","U1-1","U1-2","U2-1"\n"Comment","Winding","Frame","Shunt"\n',
+        cells={"x": at("'%y-%m-%d")},
+        stamp=at("%H:%M:%S.0"),
+    ),
+    "units before names": Format(
+        "xtWHI",
+        ["DATUM:", "ZEIT:", "M00: °C  Wicklung", "°C Gehaeuse", "M10: A  Strom"],
+        ";",
+        ",",
+        cells={"x": at("%d.%m.%y")},
+        stamp=at("%H:%M:%S"),
+        encoding="cp1252",
+    ),
+    "names and units between bars": Format(
+        "tWAI",
+        ['"Interval"|"ms"|0|5', '"MotorTemp"|"C"|0|5', '"Ambient"|"C"|0|5', '"Current"|"A"|0|5'],
+        stamp=lambda k: str(5000 * k),
+    ),
+    "a phone": Format(
+        "tyWAI",
+        ["GPS Time", "Device Time", "Motor(°C)", "Ambient(°C)", "Current(A)"],
+        stamp=at("%a %b %d %H:%M:%S GMT+01:00 2026"),
+        cells={"y": at("%d-%b-%Y %H:%M:%S.000")},
+    ),
+    "objects in an object": Format(
+        "tIWA",
+        [],
+        row=lambda c: (
+            f'{{"ts": {UNIX + 5 * int(float(c[0])) // 5}, "current_a": {c[1]}, "temps": '
+            f'{{"winding": {c[2]}, "ambient": {c[3]}}}}}'
+        ),
+    ),
+    "states without a unit": Format(
+        "tIWAxz",
+        ["time", "iPh", "tWndg", "tAmb", "stFlt", "xFanOn"],
+        "\t",
+        units=["s", "A", "deg C", "deg C", "-", ""],
+        cells={"z": lambda k: "TRUE" if k > 9 else "FALSE"},
+    ),
+    "turns in danish": Format("tnWA", ["Tid", "Omdrejningstal (o/min)", "Vikling (°C)", "T_a (°C)"], ";", ","),
+    "microseconds unsaid": Format(
+        "tIWA", ["Timestamp", *IWA], stamp=lambda k: str(5000000 * k), doubt="us are assumed"
+    ),
+    "a header that comes again": Format(
+        "tIWA",
+        row=lambda c: (
+            ",".join(c) + ("\n#note\nTime [s],Current [A],T_winding [°C],T_ambient [°C]" if c[0] == "445" else "")
+        ),
+    ),
 }

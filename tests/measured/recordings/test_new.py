@@ -20,7 +20,7 @@ from measured.importing.source import read_source
 from measured.importing.target import target_of
 from measured.recordings.alignment import column_onset
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.test.new import Wishes, settings
+from thermoscope.commands.test.new import Wishes
 from thermoscope.commands.test.new import new_case as new
 from validation.comparison.compare import compare
 
@@ -250,7 +250,7 @@ def test_the_columns_of_a_published_test_bench(root):
 def test_a_published_board_and_its_case(root, tmp_path, capsys):
     """TCLab: three files of one recorder are three tests, in the order given."""
     files = [root / f"cases/tclab/tests/{n}.csv" for n in ("steps", "random-1", "random-2")]
-    case = made(tmp_path, *files, network=root / "cases/tclab/network.toml", constants=settings(["ambient=20.4"]))
+    case = made(tmp_path, *files, network=root / "cases/tclab/network.toml", constants={"ambient": 20.4})
     assert [t.role for t in case.tests] == ["calibrate", "validate", "hold-out"]
     assert {c.name: c.place for t in case.tests[:1] for c in t.channels} == {
         "Temperature 1 (degC)": "heater1",

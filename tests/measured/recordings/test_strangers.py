@@ -264,8 +264,21 @@ def test_a_row_for_every_reading_becomes_a_column_for_every_signal(tmp_path, hea
         assert source.numbers(name) == pytest.approx(values, abs=0.006)
 
 
-def test_signals_with_times_of_their_own_are_refused(tmp_path):
-    rows = [f"{5 * k + (name == 'I')},{name},{k}" for k in range(30) for name in ("T_winding", "I")]
+@pytest.mark.parametrize("stamp", [lambda s: f"{s}", lambda s: f"2026-03-28T12:{s // 60:02d}:{s % 60:02d}.500Z"])
+def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
+    """As homes log what changes: a current with two changes in all is a step, no ramp."""
+    rows = [f"{stamp(5 * k)},T_winding,{20 + k}" for k in range(30)]
+    rows += [f"{stamp(s)},I_motor,{value}" for s, value in ((1, 0), (51, 9), (121, 2))]
+    (tmp_path / "a.csv").write_text("\n".join(["time,sensor,value", *rows]) + "\n")
+    source = read_source(tmp_path / "a.csv")
+    assert "each at its own times; all but temperatures hold until the next reading" in " ".join(source.notes)
+    t, current = clock_of(source).seconds, source.numbers("I_motor")
+    assert t[[0, 1, 2, -1]] == pytest.approx([0, 1, 5, 145])
+    assert np.array_equal(current[1:], np.select([t[1:] < 51, t[1:] < 121], [0.0, 9.0], 2.0))
+
+
+def test_signals_whose_times_have_no_order_are_refused(tmp_path):
+    rows = [f"28.03.26 12:00:{2 * k + (name == 'I'):02d},{name},{k}" for k in range(29) for name in ("T_winding", "I")]
     (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value", *rows]) + "\n")
     with pytest.raises(InputError, match=r"2 signals .'sensor'., each at its own times"):
         read_source(tmp_path / "a.csv")

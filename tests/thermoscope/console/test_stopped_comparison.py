@@ -68,3 +68,29 @@ def test_a_stopped_fit_shows_the_values_it_reached_and_goes_on_from_them(tmp_pat
     assert ((case / "model.toml").read_bytes() if (case / "model.toml").exists() else None) == before
     monkeypatch.undo()
     assert "going on with the calibration" in answered("model", "calibrate", case).err
+
+
+def interrupted(*_, **__):
+    raise KeyboardInterrupt
+
+
+def test_a_stopped_diagnosis_shows_the_comparison_and_keeps_the_one_before(tmp_path, monkeypatch):
+    case = small_case(tmp_path)
+    answered("test", "compare", case)
+    monkeypatch.setattr("validation.diagnose", interrupted)
+    done = answered("explain", "diagnose", case, "--json", tmp_path / "a.json")
+    assert done.code == 130
+    assert "sensor records" in done.out
+    assert "stopped: a verdict weighs all hypotheses" in " ".join(done.err.split())
+    assert not (tmp_path / "a.json").exists()
+
+
+def test_a_stopped_improvement_shows_the_steps_that_stay(tmp_path, monkeypatch):
+    case = small_case(tmp_path)
+    monkeypatch.setattr("validation.revision.improvement.diagnose", interrupted)
+    done = answered("explain", "improve", case, "--yes", "--json", tmp_path / "a.json")
+    assert done.code == 130
+    assert "Stopped after 1 steps" in done.out
+    assert "1 revisions were written to" in " ".join(done.err.split())
+    assert (case / "model.toml").exists()
+    assert not (tmp_path / "a.json").exists()

@@ -77,3 +77,15 @@ def test_results_give_their_tables(tmp_path):
     before_after, values = case.calibrate().steps[-1].tables()
     assert {row[0] for row in before_after.rows} == set(case.tests)
     assert all(row[3] <= row[1] <= row[4] for row in values.rows)
+
+
+@pytest.mark.parametrize("width", [80, 60, 40])
+def test_a_folded_column_is_wrapped_and_never_left_out(width):
+    from thermoscope.console.summary import Summary, lay_out
+
+    rows = [["PLC_PRG.rMotorCurrent", "current_A", "A", "no unit: A is assumed, and that is a guess"]]
+    columns = ["column", "goes to", "unit", "doubt"]
+    table = Table("", columns, rows, keep=columns, folded="doubt")
+    lines = [line for line, _ in lay_out(Summary("x", [table]), width, 25)]
+    assert max(map(len, lines)) <= width
+    assert set(rows[0][3].split()) <= set(" ".join(lines).split())

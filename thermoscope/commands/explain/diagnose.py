@@ -14,7 +14,7 @@ from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagno
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.options import Case, Json, Only, Without
 from thermoscope.console.summary import Summary
-from thermoscope.console.terminal import Progress, give, progress
+from thermoscope.console.terminal import Progress, give, notes, progress
 from validation import tables
 
 if TYPE_CHECKING:
@@ -28,9 +28,23 @@ EXPLANATIONS, ROWS = 5, 10  # shown of them and of candidates
 def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None) -> int:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     with progress() as tell:
-        diagnosis, document = diagnosed(open_case(case, tell), tell, without or (), only or ())
+        folder = open_case(case, tell)
+        try:
+            diagnosis, document = diagnosed(folder, tell, without or (), only or ())
+        except KeyboardInterrupt:
+            _stopped(folder, case)
+            raise
     give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
+
+
+def _stopped(folder: Folder, called: str) -> None:
+    """What is known of a diagnosis that the user stopped: the comparison, where it is at hand or quick."""
+    if folder.built is None or folder.stored is not None:
+        document = folder.compared.document()
+        first, more = tables.comparison_tables(document)[0], f"thermoscope test compare {quote(called)}"
+        give({}, None, lambda: Summary(document["words"], [first], more))
+    notes(["stopped: a verdict weighs all hypotheses, so there is none yet; a diagnosis of before stays in out/"])
 
 
 def diagnosed(

@@ -21,7 +21,7 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
-from thermoscope.console.terminal import give, progress
+from thermoscope.console.terminal import give, notes, progress
 from validation.tables import next_tests, offers
 
 if TYPE_CHECKING:
@@ -46,7 +46,11 @@ def improve(
         checked_columns(folder)
         ledger = Ledger(folder)
         supervisor = Supervisor(singletons if yes else user_choice, ledger.keep, suggest=yes)
-        result = climb(folder.case, supervisor, most, tell, folder.settings.kinds)
+        try:
+            result = climb(folder.case, supervisor, most, tell, folder.settings.kinds)
+        except KeyboardInterrupt:
+            ledger.show(case)
+            raise
     last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     plain = yardstick_document(folder.yardstick, result.stairs[-1].comparison, result.case)
@@ -66,6 +70,16 @@ class Ledger:
         self.history = save_history(self.file, self.history.and_then(recorded(step, evidence)), self.history)
         self.written += 1
         write_columns(self.folder, self.history.last.effects)
+
+    def show(self, called: str) -> None:
+        """The steps of an improvement that the user stopped, and that they stay; no document, which is of a whole."""
+        steps = self.history.revisions[len(self.folder.history.revisions) :]
+        rows = [[r.number, r.effect or r.action, name, *pair] for r in steps for name, pair in r.rmse_K.items()]
+        grid = Table("As far as it came (rms)", ["revision", "step", "test", "before (K)", "after (K)"], rows)
+        more = f"thermoscope explain improve {quote(called)} goes on from there"
+        sentence = f"Stopped after {len(steps)} steps; what the next one would be is not known yet."
+        give({}, None, lambda: Summary(sentence, [grid] if rows else [], more))
+        notes([f"stopped: {self.written} revisions were written to {self.file} and stay"])
 
 
 def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:

@@ -11,7 +11,7 @@ from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.folder import find_case, network_of, patient_of
 from thermoscope.case_folder.history import load_history
 from thermoscope.case_folder.recording_checks import Finding
-from thermoscope.case_folder.settings import Entry, Settings, read_settings
+from thermoscope.case_folder.settings import read_settings
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, progress
@@ -44,12 +44,8 @@ def looked(path: Path, tell: Progress) -> tuple[list[Finding], tuple[Finding, ..
             read_test(entry.name, entry.role, one.samples, one.sheet, network, settings.sample_s)
             good.append(one)
         except InputError as fault:
-            wrong.append(_fault(settings, entry, fault))
+            wrong.append(Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right))
     return wrong, examined(good, network)
-
-
-def _fault(settings: Settings, entry: Entry, fault: InputError) -> Finding:
-    return Finding(entry.name, fault.where.removeprefix(f"{settings.path}/"), fault.what, fault.right)
 
 
 def doctor_summary(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Summary:

@@ -21,7 +21,6 @@ from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, shift
 from measured.importing.case_files import folder_whole, write_case
-from measured.importing.cells import number
 from measured.importing.clock import Clock, clock_of
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
@@ -30,6 +29,7 @@ from measured.importing.source import Source, read_source, signature
 from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.grid import LONGEST_S
+from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -99,7 +99,7 @@ def new(
     target: Json = None,
 ) -> int:
     """A case from your own recordings: guesses each column, asks what it cannot know. Same columns: one test a file."""
-    window_s, values = (start, end), settings(constants or ())
+    window_s, values = (start, end), read_pairs(constants or (), "--set", "NAME=VALUE", "such as ambient=21.5")
     return new_case(files, Wishes(machine, network, out, yes, values, period, window_s, places(place or ())), target)
 
 
@@ -107,9 +107,10 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     """A case from recordings; nothing is written where anything is wrong."""
     if wishes.machine and wishes.network:
         raise InputError("a machine and a network are both given", "--machine, --network", "one of the two")
-    folder = wishes.out or Path(test_name(files[0], []))
+    folder, (start, end) = wishes.out or Path(test_name(files[0], [])), wishes.window_s
+    if end is not None and end <= start:
+        raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
     with progress() as tell:
-        _window(wishes)
         read = [read_recording(file, wishes.period_s, tell) for file in dict.fromkeys(files)]
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
@@ -117,13 +118,6 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         document = save_case(folder, model, drafts, tell)
     give(document, target, lambda: new_case_summary(document))
     return 0
-
-
-def _window(wishes: Wishes) -> None:
-    """The part that is asked for runs forwards."""
-    start, end = wishes.window_s
-    if end is not None and end <= start:
-        raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
 
 
 def places(words: Sequence[str]) -> dict[str, str]:
@@ -134,17 +128,6 @@ def places(words: Sequence[str]) -> dict[str, str]:
                 f"'{word}' is no COLUMN=PLACE", "--place", "such as T_Wickl_U=winding; PLACE may be an input"
             )
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
-
-
-def settings(words: Sequence[str]) -> dict[str, float]:
-    """NAME=VALUE of --set."""
-    out = {}
-    for word in words:
-        name, sign, value = word.partition("=")
-        if not sign or not np.isfinite(number(value)):
-            raise InputError(f"'{word}' is no NAME=VALUE", "--set", "such as ambient=21.5")
-        out[name.strip()] = number(value)
-    return out
 
 
 def read_recording(file: Path, period_s: float | None, tell: Progress) -> tuple[Source, Clock]:

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pandas as pd
 import pytest
 from command_line import RUN
 from small_case import HEADER, measured, small_case, write_csv
@@ -107,6 +108,24 @@ def test_packed_rows_are_read(thermoscope, case, rows, tmp_path):
     done = thermoscope("use", "watch", case, "--follow", file, "--json", "-", cwd=tmp_path)
     assert done.code == 0, done.err
     assert done.document["samples"] == 59
+
+
+@pytest.mark.parametrize("ending", ["xlsx", "parquet"])
+def test_rows_of_every_format_are_read(thermoscope, case, rows, tmp_path, ending):
+    """Instants among them, as a workbook has them."""
+    table = pd.read_csv(rows).head(59)
+    table["time_s"] = pd.Timestamp("2026-03-28 12:00") + pd.to_timedelta(table["time_s"], unit="s")
+    file = tmp_path / f"live.{ending}"
+    table.to_excel(file, index=False) if ending == "xlsx" else table.to_parquet(file)
+    (tmp_path / "live.log").write_text("\n".join(rows.read_text().splitlines()[:60]))
+    done, plain = (
+        thermoscope("use", "watch", case, "--follow", name, "--json", "-", cwd=tmp_path) for name in (file, "live.log")
+    )
+    assert done.code == plain.code == 0, done.err
+    assert done.document["samples"] == 59
+    assert done.document["duration_s"] == pytest.approx(plain.document["duration_s"])
+    for a, b in zip(done.document["places"], plain.document["places"], strict=True):
+        assert a["end_C"] == pytest.approx(b["end_C"], abs=0.01)
 
 
 @pytest.mark.parametrize(
