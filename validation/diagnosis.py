@@ -190,8 +190,8 @@ def weigh(
     prior = {h.place: h.log_prior for h in scan.hypotheses}
     loud, ones = recalibrated(evidence, loudest), singles(evidence)
     every = [*ones, *pairs(evidence, ones), *(Weighed((), w.place, prior[w.place], w.log_bayes) for w in heat)]
-    evidence = replace(evidence, loud=LoudNoise.create(evidence, loud))
-    every = averaged_noise(every, loud, evidence.loud.over)
+    larger = LoudNoise.create(evidence, loud)
+    evidence, every = replace(evidence, loud=larger), averaged_noise(every, loud, larger.over)
     return refitted(evidence, with_answers(evidence, every, case.answers), progress, warm_fits, again), heat
 
 

@@ -65,7 +65,7 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
 
     tests : whose largest load is that at which losses are in doubt; without any they follow their laws
     """
-    before, bridges = len(network.parameters), lumping_errors(network, doubt["bridge"])
+    before, pairs = len(network.parameters), lumping_errors(network, doubt["bridge"])
     past = bypasses(network, doubt["bridge"], tests)
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
     for loss, square in _under_load(network, tests):
@@ -76,7 +76,7 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
         name = f"{link.name}^dT?"
         network = copy_link(network, link, name, WithTemperature(link.law, LOGARITHM))
         new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
-    for a, b, G in bridges:
+    for a, b, G in pairs:
         name = f"beside:{a}|{b}"
         network = network.extended(links=[exchange(network, name, a, b, Fixed(1.0))])
         new.append(_amplitude(f"doubt:{name}", name, G, "W/K"))
@@ -92,11 +92,11 @@ def bypasses(network: Network, share: float, tests: Sequence[Test]) -> list[tupl
     of one temperature let it: name, films of the same laws, and the part of them (one sigma)."""
     out = []
     for body, ends in stars(network).items():
-        washed: dict[str, list[Link]] = {}
+        by_boundary: dict[str, list[Link]] = {}
         for x in [x for x in network.links if x.places[0] == body and x.places[1] in network.boundaries]:
             if is_film(network, x) and x.kind != "stream" and not x.origin:
-                washed.setdefault(x.places[1], []).append(x)
-        for (outside, films), (other, G) in product(washed.items(), ends.items()):
+                by_boundary.setdefault(x.places[1], []).append(x)
+        for (outside, films), (other, G) in product(by_boundary.items(), ends.items()):
             name, area = f"past:{other}|{body}|{outside}", {x.name: float(np.max(np.abs(x.vals))) for x in films}
             new = [exchange(network, f"{name}:{x.name}", other, outside, x.law) for x in films]
             new = [replace(n, vals=n.vals * area[x.name]) for n, x in zip(new, films, strict=True)]

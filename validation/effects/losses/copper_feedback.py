@@ -58,14 +58,14 @@ class CopperFeedback(Effect):
 def _constant_copper(network: Network) -> list[Source]:
     """Declared copper losses that do not follow their temperature."""
     wound = set(windings(network))
-    declared = [s for s in network.sources if not s.origin and not s.name.endswith(EDDY)]
-    return [s for s in declared if _copper(s, wound) and _reference(s) is not None]
+    sources = [s for s in network.sources if not s.origin and not s.name.endswith(EDDY)]
+    return [s for s in sources if _copper(s, wound) and _reference(s) is not None]
 
 
 def _winding(network: Network, name: str) -> list[str]:
     """The copper losses that one parameter moves with this one; itself where none does."""
-    moved = next(({t for t, _ in p.targets} for p in network.parameters if name in {t for t, _ in p.targets}), {name})
-    return [s.name for s in _constant_copper(network) if s.name in moved] or [name]
+    targets = next(({t for t, _ in p.targets} for p in network.parameters if name in {t for t, _ in p.targets}), {name})
+    return [s.name for s in _constant_copper(network) if s.name in targets] or [name]
 
 
 def _copper(source: Source, wound: set[str]) -> bool:
