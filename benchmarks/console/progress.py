@@ -102,9 +102,7 @@ def main() -> None:
             )
     long = [row for row in rows if row.ratio is not None and row.stood_s is not None]
     good = sum(0.5 <= (row.ratio or 0.0) <= 2.0 and (row.stood_s or 0.0) <= STOOD_S for row in long)
-    print(
-        f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s"
-    )
+    print(f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s")
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
 
