@@ -184,9 +184,9 @@ def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            known = {**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)}
+            durations = {**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)}
             with suppress(InputError):  # a folder that can only be read
-                write_whole(cache_folder() / FILE, json.dumps(dict(list(known.items())[-MOST:])))
+                write_whole(cache_folder() / FILE, json.dumps(dict(list(durations.items())[-MOST:])))
     finally:
         stages.leave()
 
