@@ -184,7 +184,7 @@ from measured.recordings.formats import (
 )
 from measured.recordings.sheet import Column as Column, Sheet as Sheet, load_sheet as load_sheet
 from measured.recordings.tables import seconds_of as seconds_of
-from measured.recordings.units import QUANTITIES as QUANTITIES, converted as converted
+from measured.recordings.units import QUANTITIES as QUANTITIES
 from measured.sensors.operators import head as head
 from validation.bands.at_rest import AtRest as AtRest
 from validation.bands.posterior import (

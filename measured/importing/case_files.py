@@ -92,7 +92,9 @@ def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Se
     ]
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
-        write_test(folder / "tests", draft)
+        for i, record in enumerate(draft.records):
+            write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record)))
+        write_whole(folder / f"tests/{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
     write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
 
@@ -101,13 +103,6 @@ def roles(count: int) -> list[str]:
     if count < 3:
         return list(ROLES[:count])
     return ["calibrate", *["validate"] * (count - 2), "hold-out"]
-
-
-def write_test(folder: Path, draft: Draft) -> None:
-    """The recordings as plain CSV, each with its own clock, and the sheet."""
-    for i, record in enumerate(draft.records):
-        write_whole(folder / _file(draft, i), csv_text(readings(record)))
-    write_whole(folder / f"{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
 
 
 def _file(draft: Draft, i: int) -> str:

@@ -177,11 +177,6 @@ def _with_ms(source: Source, clock: Clock) -> Clock:
     return clock
 
 
-def is_instants(source: Source, column: str) -> bool:
-    """Is it a column of dates or times of day?"""
-    return _mostly(source.cells[column], lambda cell: is_date(cell) or is_clock(cell))
-
-
 def _mostly(cells: Sequence[Any], test: Callable[[Any], bool]) -> bool:
     if isinstance(cells, np.ndarray):
         if cells.dtype.kind in "mM":
@@ -418,7 +413,8 @@ def _unit_of_time(source: Source, column: str) -> str:
 
 def is_second_clock(source: Source, column: str) -> bool:
     """Is it a time beside the clock: by its name, its unit, its size (seconds since 1970 in any unit) or its cells?"""
-    if _is_named(source, column) or unit_of(source.units[column]) in TIME_UNITS or is_instants(source, column):
+    instants = _mostly(source.cells[column], lambda cell: is_date(cell) or is_clock(cell))
+    if _is_named(source, column) or unit_of(source.units[column]) in TIME_UNITS or instants:
         return True
     has_name = bool(set(tokens(column)) & CLOCKS) or bool(_unit_of_time(source, column))
     has_name &= unit_of(source.units[column]) in ("", *TIME_UNITS)

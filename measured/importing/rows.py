@@ -59,7 +59,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         widest = max(len(row) for row in head[first:])  # cells that are empty in most rows have names too
         names = names[1:] if not names[0] and len(names) > max(width, widest) else names
     if len(names) == width - 1:
-        names = ["", *names] if all(names) and _counts(head[first:]) else [*names, ""]
+        numbers = [number(row[0]) for row in head[first:] if row]  # as statistics programs number their rows
+        counted = len(numbers) > 1 and bool((np.diff(numbers[:FIRM]) == 1).all())
+        names = ["", *names] if all(names) and counted else [*names, ""]
     if len(names) < width - 1:
         right = "as many as names: decimal commas become points, or columns stand between ';'"
         raise InputError(f"{width} values under {len(names)} names", where, right)
@@ -102,12 +104,6 @@ def _informative(row: Row) -> int:
     return sum(2 if quantities_of(c) or roles_of(c) or is_time(c) or split_unit(c)[1] else 0 for c in cells) + (
         len(cells) > 1
     )
-
-
-def _counts(rows: Sequence[Row]) -> bool:
-    """Do the rows begin with their number, as statistics programs write them?"""
-    first = [number(row[0]) for row in rows[:SAMPLE] if row]
-    return len(first) > 1 and bool((np.diff(first[:FIRM]) == 1).all())
 
 
 def _forward_filled(cells: Sequence[str]) -> list[str]:

@@ -131,7 +131,9 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
     for draft in drafts:
         columns = [(r.source, g) for r in draft.records for g in r.guesses]
         left = [(s, g) for s, g in columns if not g.used and s.is_filled(g.column) and g.doubt not in ALONE]
-        wound = [g.column for s, g in left if Role.WINDING in roles_of(s.labels[g.column])[:1] and _warms(s, g)]
+        hot_left = [(s, g) for s, g in left if g.quantity in ("", "temperature")]
+        hot_left = [(s, g) for s, g in hot_left if quantities_of(s.labels[g.column]) in ([], ["temperature"])]
+        wound = [g.column for s, g in hot_left if Role.WINDING in roles_of(s.labels[g.column])[:1]]
         if wound and not any(
             Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place
         ):
@@ -152,11 +154,6 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         if doubts:
             out.setdefault("clock", doubts[0])
     return list(out.values())
-
-
-def _warms(source: Source, g: Guess) -> bool:
-    """Is it a temperature by its name or its unit?"""
-    return g.quantity in ("", "temperature") and quantities_of(source.labels[g.column]) in ([], ["temperature"])
 
 
 ALONE = ("a set point, not a reading", "left out by hand", "--set gives it")

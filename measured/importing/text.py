@@ -39,7 +39,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
 
     The last is the time between rows (s) where the lines before the header say it.
     """
-    text, notes = decoded(b"".join(chunks(file)), file), []
+    text, notes = decoded(b"".join(chunks(file)), file), list[str]()
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
     if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):

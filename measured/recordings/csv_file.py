@@ -44,11 +44,11 @@ def csv_pieces(file: Path, size: int = BLOCK) -> tuple[list[str], Iterator[Seque
         raise InputError("the file is empty: it holds no row", str(file), "a header line and rows of numbers")
     with _readable(file):
         header, start, line = _header(file, first)
-    named = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
+    least = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
 
     def pieces() -> Iterator[Sequence[Any]]:
         with _readable(file):
-            yield from Body(file, len(header), named).pieces(chain([first[start:]], blocks), line)
+            yield from Body(file, len(header), least).pieces(chain([first[start:]], blocks), line)
 
     return header, pieces()
 

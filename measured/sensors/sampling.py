@@ -59,16 +59,11 @@ def sampled(steps: Mapping[str, SampleStep]) -> str:
     if worst.sensor is None:
         return f"readings and model are compared {sentence}, as recorded"
     tau_s = worst.time_constant_s
-    fast = "" if tau_s is None else f", where {worst.node} follows in {_duration(tau_s)}"
+    late = f"{tau_s / 3600.0:.0f} h" if tau_s and tau_s >= 7200.0 else f"{tau_s:.3g} s" if tau_s is not None else ""
+    fast = f", where {worst.node} follows in {late}" * bool(late)
     return (
         f"readings and model are compared {sentence}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
     )
-
-
-def _duration(seconds: float) -> str:
-    """In hours from two on: a node that nothing cools follows in weeks."""
-    hours = seconds / 3600.0
-    return f"{hours:.0f} h" if hours >= 2.0 else f"{seconds:.3g} s"
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,9 @@ def load_case(
     network = with_quantities(network, sheets, tests, history.reference)
     low = None
     if built and built.small:
-        low = _low_fidelity(network, with_quantities(built.small, sheets, tests, history.reference), patients.values())
+        small = with_quantities(built.small, sheets, tests, history.reference)
+        every = [(p.name, rows_of(p.sheet, p.samples, small)) for p in patients.values()]
+        low = LowFidelity(network, small, {(test, name): row for test, rows in every for name, row in rows.items()})
     case = Case(
         settings.name,
         history.model(network, history.last),
@@ -184,12 +186,6 @@ def patient_of(entry: Entry, progress: Progress = lambda message: None) -> Patie
             _read.pop(next(iter(_read)))
         _read[key] = samples
     return Patient(entry.name, sheet, _read[key])
-
-
-def _low_fidelity(network: Network, small: Network, patients: Iterable[Patient]) -> LowFidelity:
-    """The smaller network with the rows of all sensors."""
-    rows = {(p.name, name): row for p in patients for name, row in rows_of(p.sheet, p.samples, small).items()}
-    return LowFidelity(network, small, rows)
 
 
 def _stamp(file: Path) -> tuple[str, int, int, int]:

@@ -184,7 +184,9 @@ def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            _remember({**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)})
+            durations = {**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)}
+            with suppress(InputError):  # a folder that can only be read
+                write_whole(cache_folder() / FILE, json.dumps(dict(list(durations.items())[-MOST:])))
     finally:
         stages.leave()
 
@@ -294,8 +296,3 @@ def _stages_in(file: Path) -> dict[str, dict[str, float]]:
         document = json.loads(file.read_text(encoding="utf-8"))
         return {str(k): {str(s): float(t) for s, t in v.items()} for k, v in document.items()}
     return {}
-
-
-def _remember(stages: dict[str, dict[str, float]]) -> None:
-    with suppress(InputError):  # a folder that can only be read
-        write_whole(cache_folder() / FILE, json.dumps(dict(list(stages.items())[-MOST:])))
