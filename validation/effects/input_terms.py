@@ -144,7 +144,8 @@ class InputLoss(InputTerm):
 
     def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
         """ "a loss at stator that no declared one gives: 0 W at rest, 230 at speed_rpm 4000 [200, 260]"."""
-        exponents = [x for x in network.sources if x.name.startswith(f"{self.name}^")]
+        names = {f"{self.name}^{name}" for name in self.inputs}
+        exponents = [x for x in network.sources if x.name in names]
         most, where = a + _total(exponents, network, values, self.most), self.parts()[0][0]
         return self.sentence(f"a loss at {where} that no declared one gives", 0.0, most, values, _width(a, ci95))
 

@@ -47,9 +47,9 @@ class Step:
     @property
     def left_out_K(self) -> float:
         """Error (K rms) on tests that were left out in turn; of a model from before on those a fit may use."""
-        known = self.revision.left_out_K if self.revision else None
+        error = self.revision.left_out_K if self.revision else None
         rows = [c for t in self.comparison.tests if t.role != "hold-out" for c in t.channels]
-        return pooled(rows) if known is None else known
+        return pooled(rows) if error is None else error
 
     def document(self) -> dict:
         tests = [

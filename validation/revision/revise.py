@@ -346,8 +346,8 @@ def judge(
         f"rms over the tests used {fall(was, now)}",
         *other_changes(changes, fitted),
     ]
-    tried = action == "add" and bool(acceptance)
-    return bool((tried or now <= GETS_WORSE * was) and converged and not failed), "; ".join(filter(None, reasons))
+    predicts = action == "add" and bool(acceptance)
+    return bool((predicts or now <= GETS_WORSE * was) and converged and not failed), "; ".join(filter(None, reasons))
 
 
 def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[str]:
