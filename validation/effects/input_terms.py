@@ -123,7 +123,7 @@ class InputTerm(ReadingEffect):
         each = []
         for name, begin, _, p in self.parts()[1]:
             exponent = p + values.get(f"{self.name}^{name}", 0.0)
-            each += [f"two regimes, it grows from {name} {begin:g} on"] if begin else []
+            each += [f"nothing up to {name} {begin:g}, then growing"] if begin else []
             each += [f"with {name} to the power of {exponent:.2g}"] if abs(exponent - 1.0) >= STRAIGHT else []
         shape = f" ({'; '.join(each)})" if each else ""
         interval = (most + width[0], most + width[1])

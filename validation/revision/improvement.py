@@ -182,12 +182,9 @@ def further_step(
     yard = yardstick(case) if supervisor.suggest else None
     if yard is None:
         return None, {}, []
-    best, free, present = (
-        min(yard.left_out.values()),
-        yard.left_out["free_network"],
-        {e.name for e in case.model.effects},
-    )
-    why, trials = [f"left out in turn {left_out:.2f} K, of the best yardstick {best:.2f} K"], list[Trial]()
+    best, free = min(yard.left_out.values()), yard.left_out["free_network"]
+    present = {e.name for e in case.model.effects}
+    why, trials = [f"left out in turn {left_out:.2f} K, of the best plain model {best:.2f} K"], list[Trial]()
     if best * WORTH < left_out and not diagnosis.groups:
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
@@ -195,11 +192,9 @@ def further_step(
         every = suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case))))
         alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
         for some in (tuple(s for s in every if s.effects), *alone):
-            words = {
-                "free network": ", ".join(s.words for s in some),
-                "share": max((s.share for s in some), default=0.0),
-            }
-            trials.append((tuple(name for s in some for name in s.effects), words))
+            share = max((s.share for s in some), default=0.0)
+            words = ", ".join(s.words for s in some)
+            trials.append((tuple(n for s in some for n in s.effects), {"free network": words, "share": share}))
     for names, document in {names: document for names, document in trials if names}.items():
         step = _present(case, names, progress) if present.isdisjoint(names) else None
         if step and step.accepted:

@@ -90,7 +90,7 @@ def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
     step, _, (why,) = further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, no_progress)
     assert step is None
-    assert why.startswith("left out in turn 0.01 K, of the best yardstick 0.")
+    assert why.startswith("left out in turn 0.01 K, of the best plain model 0.")
 
 
 def test_where_no_name_is_given_the_likeliest_sets_are_tried_and_the_criterion_decides(case):
