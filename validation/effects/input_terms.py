@@ -123,7 +123,7 @@ class InputTerm(ReadingEffect):
         each = []
         for name, begin, _, p in self.parts()[1]:
             exponent = p + values.get(f"{self.name}^{name}", 0.0)
-            each += [f"two regimes, it grows from {name} {begin:g} on"] if begin else []
+            each += [f"nothing up to {name} {begin:g}, then growing"] if begin else []
             each += [f"with {name} to the power of {exponent:.2g}"] if abs(exponent - 1.0) >= STRAIGHT else []
         shape = f" ({'; '.join(each)})" if each else ""
         interval = (most + width[0], most + width[1])
@@ -144,7 +144,8 @@ class InputLoss(InputTerm):
 
     def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
         """ "a loss at stator that no declared one gives: 0 W at rest, 230 at speed_rpm 4000 [200, 260]"."""
-        exponents = [x for x in network.sources if x.name.startswith(f"{self.name}^")]
+        names = {f"{self.name}^{name}" for name in self.inputs}
+        exponents = [x for x in network.sources if x.name in names]
         most, where = a + _total(exponents, network, values, self.most), self.parts()[0][0]
         return self.sentence(f"a loss at {where} that no declared one gives", 0.0, most, values, _width(a, ci95))
 

@@ -421,8 +421,8 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         effect = e.effects[group[0]]
         if isinstance(effect, ReadingEffect):
             h = posterior.best if group[0] in posterior.best.members else posterior.single[group[0]]
-            said = effect.words(best.value, e.fit.network, (h.fit or e.fit).values, best.ci95)
-            return f"{said} ({percent(best.probability)})"
+            text = effect.words(best.value, e.fit.network, (h.fit or e.fit).values, best.ci95)
+            return f"{text} ({percent(best.probability)})"
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}{impossible_words(effect, best)}"
         return f"{'fault' if effect.fault else 'missing'}: {effect_words(effect)}{size} ({percent(best.probability)})"

@@ -18,6 +18,8 @@ from validation.yardstick.words import WORTH
 from validation.yardstick.yardstick import yardstick
 
 Progress = Callable[[str], None]
+Trial = tuple[tuple[str, ...], dict[str, float | str]]  # effects, and what speaks for them
+LIKELY = 3  # sets tried where the diagnosis gives no name: each costs a fit, and the criterion decides
 MOST = 6  # effects at a time: more are a reason to look at the model
 
 
@@ -45,9 +47,9 @@ class Step:
     @property
     def left_out_K(self) -> float:
         """Error (K rms) on tests that were left out in turn; of a model from before on those a fit may use."""
-        known = self.revision.left_out_K if self.revision else None
+        error = self.revision.left_out_K if self.revision else None
         rows = [c for t in self.comparison.tests if t.role != "hold-out" for c in t.channels]
-        return pooled(rows) if known is None else known
+        return pooled(rows) if error is None else error
 
     def document(self) -> dict:
         tests = [
@@ -163,36 +165,42 @@ def _added(
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 why.append(f"{step.effect} was not accepted: {step.why}")
-    further, document, refusals = free_network_step(case, supervisor, left_out, progress)
+    further, document, refusals = further_step(case, supervisor, diagnosis, left_out, progress)
     return further, document, "; ".join([*(why or [diagnosis.words]), *refusals])
 
 
-def free_network_step(
-    case: Case, supervisor: Supervisor, left_out: float, progress: Progress
+def further_step(
+    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], list[str]]:
-    """What a free network has and the model lacks, if it is accepted; or None, and what stops it, in words.
+    """What else is accepted where the diagnosis offers nothing that is; or None, and what stops it, in words.
 
-    All of it is tried in one step, since terms that need each other are worth nothing alone; then, where that network
-    is better by more than a tenth, each for itself.
+    Where plain models are better by more than a tenth: the likeliest sets, if no name was given. Then all that a free
+    network has and the model lacks, in one step, since terms that need each other are worth nothing alone; then each.
 
     left_out : error (K) of the model on tests left out in turn
     """
     yard = yardstick(case) if supervisor.suggest else None
     if yard is None:
         return None, {}, []
-    why = [f"left out in turn {left_out:.2f} K, of the best yardstick {min(yard.left_out.values()):.2f} K"]
-    if not yard.left_out["free_network"] < left_out:
-        return None, {}, why
-    every = suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case))))
-    every = tuple(s for s in every if s.effects and {e.name for e in case.model.effects}.isdisjoint(s.effects))
-    alone = [(s,) for s in every] if yard.left_out["free_network"] * WORTH < left_out else []
-    for some in ([every] if every else []) + alone * (len(every) > 1):
-        step = _present(case, [name for s in some for name in s.effects], progress)
-        words = ", ".join(s.words for s in some)
-        if step.accepted:
-            return step, {"free network": words, "share": some[0].share}, why
-        why.append(f"{words}, as {step.effect}: not accepted: {step.why}")
-    return None, {}, why if every else [*why, "the free network has no term that the model lacks"]
+    best, free = min(yard.left_out.values()), yard.left_out["free_network"]
+    present = {e.name for e in case.model.effects}
+    why, trials = [f"left out in turn {left_out:.2f} K, of the best plain model {best:.2f} K"], list[Trial]()
+    if best * WORTH < left_out and not diagnosis.groups:
+        likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
+        trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
+    if free < left_out:
+        every = suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case))))
+        alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
+        for some in (tuple(s for s in every if s.effects), *alone):
+            share = max((s.share for s in some), default=0.0)
+            words = ", ".join(s.words for s in some)
+            trials.append((tuple(n for s in some for n in s.effects), {"free network": words, "share": share}))
+    for names, document in {names: document for names, document in trials if names}.items():
+        step = _present(case, names, progress) if present.isdisjoint(names) else None
+        if step and step.accepted:
+            return step, document, why
+        why += [f"{step.effect} was not accepted: {step.why}"] if step else []
+    return None, {}, why
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:

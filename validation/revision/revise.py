@@ -330,10 +330,10 @@ def nudge(p: Parameter) -> float:
 def judge(
     action: str, changes: Sequence[Change], fits: Sequence[Fit], acceptance: Sequence[Check], fitted: Collection[str]
 ) -> tuple[bool, str]:
-    """Accept what converges, passes its checks and lowers the error of the tests it was fitted to.
+    """Accept what converges and passes its checks; a fit that nothing was left out of has to lower its tests' error.
 
-    That error weighs all sensors alike and the fit does not, so it may rise by GETS_WORSE. Held-out tests have no say;
-    what became of them is told after.
+    That error weighs all sensors alike and the fit does not, so it may rise by GETS_WORSE. It is no check of an effect,
+    which has to predict what was left out. Held-out tests have no say; what became of them is told after.
     fitted : names of the tests it was fitted to
     """
     in_fit = [c for c in changes if c.name in fitted]
@@ -346,7 +346,8 @@ def judge(
         f"rms over the tests used {fall(was, now)}",
         *other_changes(changes, fitted),
     ]
-    return bool(now <= GETS_WORSE * was and converged and not failed), "; ".join(filter(None, reasons))
+    predicts = action == "add" and bool(acceptance)
+    return bool((predicts or now <= GETS_WORSE * was) and converged and not failed), "; ".join(filter(None, reasons))
 
 
 def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[str]:

@@ -67,9 +67,9 @@ def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
     if not lacking:
         return None
     inputs = tuple(dict.fromkeys(name for t in lacking for name in sorted(inputs_of(t))))
-    known = first.unit.startswith("W")
-    starts = _starts(first, set(inputs), sum(t.value for t in lacking), case) if known else {}
-    terms = {one.name: t.value for t in lacking if known and (one := input_term(t, network, sizes))}
+    absolute = first.unit.startswith("W")
+    starts = _starts(first, set(inputs), sum(t.value for t in lacking), case) if absolute else {}
+    terms = {one.name: t.value for t in lacking if absolute and (one := input_term(t, network, sizes))}
     return Suggestion(
         first.place,
         first.other,

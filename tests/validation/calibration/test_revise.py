@@ -11,6 +11,7 @@ from geom.errors import InputError
 from validation import add, calibrate, compare, remove
 from validation.comparison.linearisation import rmse, segments
 from validation.parameters.unknowns import standing
+from validation.revision.acceptance import Check
 from validation.revision.revise import Change, judge
 
 EFFECT = "convection@flange.right"
@@ -146,3 +147,10 @@ def test_a_frozen_channel_does_not_bend_the_calibration(monkeypatch):
     monkeypatch.setattr("validation.revision.revise.broken_channels", lambda tests: [])
     bent = values(y[half])
     assert max(abs(bent[k] - gone[k]) for k in gone) > 0.2
+
+
+@pytest.mark.parametrize(("passed", "accepted"), [(True, True), (False, False)])
+def test_an_effect_is_judged_by_what_it_predicts_not_by_the_error_it_was_fitted_to(passed, accepted):
+    changes = (Change("stand", "calibrate", 3.0, 4.0),)
+    checks = (Check("left out", passed, 40.0, 0.0, "5.9 -> 2.9 K"),)
+    assert judge("add", changes, (), checks, {"stand"})[0] is accepted

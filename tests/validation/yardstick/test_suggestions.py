@@ -1,16 +1,19 @@
 """What a free network knows and the declared one lacks, as effects with place and start."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from two_bodies import bench
 
 from validation.calibration.calibrate import no_progress
 from validation.effects import effect
-from validation.revision.improvement import Supervisor, best, free_network_step
+from validation.revision.improvement import Supervisor, best, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
+
+SILENT = SimpleNamespace(groups=(), odds=(), verdict="outside")  # a diagnosis that names nothing
 
 
 def link(place, other, on, value, share=0.2, unit="W/K"):
@@ -77,14 +80,24 @@ def test_per_capacity_there_is_no_start(case):
 def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(case):
     """The film that was left out is accepted, with the words of the free network as its evidence."""
     poorer = without(case, ("body", "ambient"))
-    step, evidence, tried = free_network_step(poorer, Supervisor(best, suggest=True), 9.0, no_progress)
+    step, evidence, tried = further_step(poorer, Supervisor(best, suggest=True), SILENT, 9.0, no_progress)
     assert step is not None, tried
     assert step.accepted
     assert evidence["free network"].startswith("body to ambient: ")
-    assert free_network_step(poorer, Supervisor(best), 9.0, no_progress) == (None, {}, [])
+    assert further_step(poorer, Supervisor(best), SILENT, 9.0, no_progress) == (None, {}, [])
 
 
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
-    step, _, (why,) = free_network_step(case, Supervisor(best, suggest=True), 0.01, no_progress)
+    step, _, (why,) = further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, no_progress)
     assert step is None
-    assert why.startswith("left out in turn 0.01 K, of the best yardstick 0.")
+    assert why.startswith("left out in turn 0.01 K, of the best plain model 0.")
+
+
+def test_where_no_name_is_given_the_likeliest_sets_are_tried_and_the_criterion_decides(case):
+    poorer = without(case, ("body", "ambient"))
+    odds = [
+        SimpleNamespace(effects=(n,), probability=p) for n, p in (("mass@core", 0.6), ("convection.constant@body", 0.3))
+    ]
+    said = SimpleNamespace(groups=(), odds=(SimpleNamespace(effects=(), probability=0.1), *odds), verdict="outside")
+    step, evidence, _ = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, no_progress)
+    assert (step.effect, step.accepted, evidence["probability"]) == ("convection.constant@body", True, 0.3)
