@@ -1,40 +1,59 @@
 """Random operating points of every machine family and circuit, against correlations called directly.
 
-    python benchmarks/operating_points.py [--points 200] [--json FILE]
+    python benchmarks/operating_points.py [--points 200] [--json FILE] [--page]
 
-Every film of every library machine, and of circuits of one and of several branches with every coolant, at random speeds
-(0 to 3 times the rated one), flows (0 to 4 times), coolant from -40 to 130 degC where it is a liquid, air from -40 to
-150 degC and, of declared films, up to 4,000 m. The network's coefficient is held against the correlation at the true
-state; beside it the shares of branches against equal pressure drop, and at rest the heat in against the heat out.
+Every film of every library machine - gap, jackets, outer faces with fins and a cowl's air, end space, a fan's air - and
+of circuits of one and of several branches with every coolant, at random speeds (0 to 3 times the rated one), flows (0
+to 4 times), coolant from -40 to 130 degC where it is a liquid, air from -40 to 150 degC and, of declared films, up to
+4,000 m. The network's coefficient is held against the correlation at the true state; beside it the shares of branches
+against equal pressure drop, and at rest the heat in against the heat out. Beyond its end every table has to warn.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from geom import load_machine
-from geom.errors import InputError
+from geom import Machine, load_machine
+from geom.description.roles import Role
+from geom.errors import InputError, ThermoscopeError
+from lumped.build.crosscheck import coefficients, fluid_nodes, steady_state
+from lumped.build.mesh_choice import MEANS
+from lumped.build.pipeline import means_network, prepared, reduced
 from lumped.circuits.circuit import film_in
 from lumped.circuits.hydraulics import parallel_shares
 from lumped.correlations.air_gap import taylor_film
+from lumped.correlations.contacts import radiation_film
+from lumped.correlations.ducts import duct_film
+from lumped.correlations.end_space import end_space
+from lumped.correlations.fins import elenbaas, heiles
+from lumped.correlations.forced import flat_plate
+from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
 from lumped.declarations.circuit import read_circuits
-from lumped.declarations.films import FORCED, over
+from lumped.declarations.films import moving_surfaces, over
 from lumped.declarations.network import read_network
 from lumped.integration.steady import steady
-from lumped.machine.films import Surroundings, surroundings
-from lumped.machine.jackets import FLOW, channel_of, liquid, onto_outlet
-from lumped.machine.outer import cowl_of, outer_films
-from lumped.machine.shapes import extent
+from lumped.machine.air import Ways, gap_film, stirred
+from lumped.machine.bases import on_every_base
+from lumped.machine.films import Surroundings, face_films, surroundings
+from lumped.machine.jackets import FLOW, channel_of, jacket_film, liquid, onto_outlet
+from lumped.machine.motor import rated_inputs
+from lumped.machine.outer import Outer, cowl_of, outer_films, outer_of
+from lumped.machine.shapes import extent, fins_of
+from lumped.model.network import Network
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import Law
-from lumped.transfer.properties import air
+from lumped.transfer.properties import Fluid, air
 from lumped.transfer.ranges import within_silence
+from lumped.transfer.streamed import Streamed
 from lumped.transfer.terms_value import coefficient
+from scripts.published import publish
 
 MACHINES = Path("geom/machines")
 ALLOWED = 0.02
@@ -44,6 +63,7 @@ COOLANTS = (
     {"name": "water"},
     {"name": "ethylene glycol", "mass_percent": 50},
     {"name": "propylene glycol", "volume_percent": 40},
+    {"name": "oil"},
 )
 CIRCUITS: dict[str, list[dict[str, object]]] = {
     "one channel": [CHANNEL],
@@ -60,40 +80,92 @@ MOVING: dict[str, dict[str, float]] = {
     "end space": {},
 }
 HIGHEST_M = 4000.0
+AT_REST = ("ipmsm-48s8p-jacket", "series-dc-100kw-air", "series-dc-100kw-jacket-two", "tefc-industrial")
+STEADY = 20  # points at rest: what leaves then is what comes in, of one network for all of them
+PAGE = Path("docs/benchmarks.md")
 Pair = tuple[float, float]  # ours, the correlation's
+Key = tuple[str, str]  # what is asked, of what
 
 
 def main() -> int:
-    """The table, and 1 where anything is off by more than ALLOWED."""
+    """The table, and 1 where anything is off by more than ALLOWED or a table ends in silence."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--points", type=int, default=200)
     parser.add_argument("--json", type=Path)
+    parser.add_argument("--page", action="store_true", help="put the table into docs/benchmarks.md")
     options = parser.parse_args()
+    silent: list[str] = []
     with within_silence():
-        found = {name: worst(pairs) for name, pairs in subjects(options.points)}
-    for name, (off, count) in found.items():
-        print(f"{name:45} {count:5} points  worst {100.0 * off:5.2f} %")
+        found = worst(subjects(options.points))
+    for law in (x for x in streamed_laws() if isinstance(x, Streamed)):
+        silent += [] if told(law) else [law.what]
+    for (kind, of), (off, count) in found.items():
+        print(f"{of:25} {kind:35} {count:6} points  worst {100.0 * off:5.2f} %")
+    print(f"tables that end in silence: {', '.join(silent) or 'none'}")
     if options.json:
-        options.json.write_text(json.dumps(found, indent=1))
-    return int(any(off > ALLOWED for off, _ in found.values()))
+        options.json.write_text(json.dumps([[*key, *value] for key, value in found.items()], indent=1))
+    if options.page:
+        publish(PAGE, "operating-points", table(found, len(silent)))
+    return int(bool(silent) or any(off > ALLOWED for off, _ in found.values()))
 
 
-def worst(pairs: list[Pair]) -> tuple[float, int]:
-    """The largest relative difference, and of how many."""
-    return max((abs(a / b - 1.0) if b else abs(a) for a, b in pairs), default=0.0), len(pairs)
+def worst(pairs: Iterable[tuple[Key, Pair]]) -> dict[Key, tuple[float, int]]:
+    """Of every kind and what it is of: the largest relative difference, and of how many."""
+    out: dict[Key, tuple[float, int]] = {}
+    for key, (a, b) in pairs:
+        off, count = out.get(key, (0.0, 0))
+        out[key] = max(off, abs(a / b - 1.0) if b else abs(a)), count + 1
+    return out
 
 
-def subjects(count: int) -> Iterator[tuple[str, list[Pair]]]:
-    """Everything that is asked, by name."""
+def table(found: Mapping[Key, tuple[float, int]], silent: int) -> str:
+    """A row per kind, a column per family or coolant: percent, of how many points."""
+    lines = ["| | of | points | furthest off |", "|---|---|---|---|"]
+    lines += [f"| {kind} | {of} | {count:,} | {100.0 * off:.2f} % |" for (kind, of), (off, count) in found.items()]
+    return "\n".join([*lines, "", f"Tables that end without a warning of value and range: {silent or 'none'}."])
+
+
+def subjects(
+    count: int, machines: Sequence[str] | None = None, coolants: Sequence[dict[str, object]] | None = None
+) -> Iterator[tuple[Key, Pair]]:
+    """Everything that is asked, by kind and by family, coolant or surface."""
     rng = np.random.default_rng(48)
-    for file in sorted(MACHINES.glob("*.toml")):
-        yield from machine_points(file.stem, count, rng)
-    for coolant in COOLANTS:
+    for name in machines or sorted(file.stem for file in MACHINES.glob("*.toml")):
+        yield from machine_points(name, count, rng)
+    for coolant in coolants or COOLANTS:
         for name, passes in CIRCUITS.items():
-            circuit = f"{name}, {coolant['name']}"
-            yield from circuit_points(circuit, {"coolant": coolant, "passes": passes}, count, rng)
+            for kind, pairs in circuit_points(name, {"coolant": coolant, "passes": passes}, count, rng):
+                yield from (((f"circuit, {kind}", str(coolant["name"])), pair) for pair in pairs)
     for surface in MOVING:
-        yield f"declared: {surface}", list(declared_points(surface, count, rng))
+        yield from ((("declared film", surface), pair) for pair in declared_points(surface, count, rng))
+
+
+def streamed_laws() -> Iterator[Law]:
+    """Every film and share that follows a flow or a speed, once for each machine, circuit and surface."""
+    for file in sorted(MACHINES.glob("*.toml")):
+        machine = load_machine(file.stem)
+        around = surroundings(machine, ())
+        if around.gap is not None:
+            yield gap_film(around.gap, around.usual_rpm)
+        for jacket in around.cooling.feeds if around.cooling else ():
+            yield jacket_film(machine, jacket, around.cooling)
+        for way in around.ways.ducts if around.ways else ():
+            yield face_films("poles", way, around)["axial"]
+        for part in machine.parts:
+            yield from outer_films(machine, part.name, around.films).values()
+    for surface, keys in MOVING.items():
+        yield over(Table({"surface": surface, "speed": "v", "up_to_m_s": 20.0, **keys}, surface))
+
+
+def told(law: Streamed) -> bool:
+    """Whether it warns beyond its end, with the value, and is silent before."""
+    words = []
+    for times in (0.999, 1.001):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            law.factor({law.reads[0]: np.array([times * law.top])})
+        words.append([str(w.message) for w in caught])
+    return not words[0] and any("outside 0 to" in word for word in words[1])
 
 
 def declared_points(surface: str, count: int, rng: np.random.Generator) -> Iterator[Pair]:
@@ -104,31 +176,124 @@ def declared_points(surface: str, count: int, rng: np.random.Generator) -> Itera
         law = over(Table(dict(data), surface))
         for _ in range(k * count // 5, (k + 1) * count // 5):
             v, hot, cold = rng.uniform(0.0, 60.0), rng.uniform(-40.0, 150.0), rng.uniform(-40.0, 80.0)
-            exact = FORCED[surface](Table(dict(data), surface), air(0.5 * (hot + cold), high))(v)[0]
+            exact = moving_surfaces()[surface](Table(dict(data), surface), air(0.5 * (hot + cold), high))(v)[0]
             yield coefficient(law, {"v": np.array([v])}, hot, cold), exact
 
 
-def machine_points(name: str, count: int, rng: np.random.Generator) -> Iterator[tuple[str, list[Pair]]]:
-    """Gap, jackets and shields of a machine."""
+def machine_points(name: str, count: int, rng: np.random.Generator) -> Iterator[tuple[Key, Pair]]:
+    """Gap, jackets, outer faces, end space and fan's air of a machine, and its heat at rest."""
     machine = load_machine(name)
     around = surroundings(machine, ())
+
+    def each(kind: str, point: Callable[[], Pair | None]) -> Iterator[tuple[Key, Pair]]:
+        yield from (((kind, str(machine.family)), pair) for _ in range(count) if (pair := point()))
+
     if around.gap is not None:
-        yield f"{name} gap", [gap_point(around, rng) for _ in range(count)]
+        yield from each("air gap", lambda: gap_point(around, rng))
     for jacket in around.cooling.feeds if around.cooling else ():
-        yield f"{name} {jacket}", [p for _ in range(count) if (p := jacket_point(around, jacket, rng))]
-    if (cowl := cowl_of(machine)) is not None:
-        for part in (p.name for p in machine.parts if "cap" in p.name):
-            laws, high = outer_films(machine, part, around.films), extent(machine.part(part)).size[1]
-            if "blown" not in laws:
-                continue
-            share = cowl.rear_share if part.endswith(cowl.rear) else cowl.front_share
-            scale = share * cowl.air_speed / cowl.at_rpm
-            yield f"{name} {part}", [blown_point(laws, scale, high, cowl.at_rpm, rng) for _ in range(count)]
+        yield from each("jacket", partial(jacket_point, around, jacket, rng))
+    for outer, part in {outer_of(machine, p.name, around.films): p.name for p in machine.parts}.items():
+        laws = outer_films(machine, part, around.films)
+        yield from each("outer faces", partial(outside_point, machine, part, outer, laws, rng))
+    yield from each("end space", lambda: end_space_point(around, rng))
+    if around.ways is not None:
+        for way in around.ways.ducts:
+            yield from each("ducts of the fan's air", partial(duct_point, around, way, rng))
+            yield from each("split of the fan's air", partial(split_point, around.ways, way, rng))
+    if name in AT_REST:
+        network = on_every_base(means_network(machine, reduced(prepared(machine, 0.1, 36), MEANS)))
+        for _ in range(min(count, STEADY)):
+            yield from ((("heat at rest", str(machine.family)), p) for p in heat_point(machine, network, rng))
+
+
+def heat_point(machine: Machine, network: Network, rng: np.random.Generator) -> Iterator[Pair]:
+    """What faces and streams take to the surroundings beside what the losses put in; none where it runs away."""
+    inputs = {k: v * rng.uniform(0.05, 3.0) for k, v in rated_inputs(machine).items()}
+    inputs["current_A"] *= 0.1
+    cold = rng.uniform(-40.0, 50.0)
+    try:
+        z = steady_state(network, inputs, cold)
+    except ThermoscopeError:
+        return
+    c, fluids = coefficients(network, inputs, z), fluid_nodes(network)
+    u = np.array([z[network.column(name)] for name in fluids])
+    faces = [p for p in network.places.values() if p.kind == "surface" and p.fluid in network.boundaries]
+    out = sum(c.films[p.name] * p.area * (float(p.mean.weights @ z[p.mean.index]) - cold) for p in faces)
+    yield float(out + (c.streams @ u - c.inflow).sum()), sum(c.watts.values())
+
+
+def outside_point(machine: Machine, part: str, outer: Outer, laws: dict[str, Law], rng: np.random.Generator) -> Pair:
+    """Still and blown air and radiation of one face, together."""
+    cowl, cold, rise = cowl_of(machine), rng.uniform(-40.0, 50.0), rng.uniform(0.5, 150.0)
+    hot, rpm = cold + rise, rng.uniform(0.0, 3.0) * (cowl.at_rpm if cowl else 1500.0)
+    still = outer.factor * STILL[outer.surface](outer, hot, cold)
+    blown = blown_film(machine, part, rpm, air(0.5 * (hot + cold))) if "blown" in laws else 0.0
+    got = sum(coefficient(law, {"speed_rpm": np.array([rpm])}, hot, cold) for law in laws.values())
+    return got, float(np.cbrt(still**3 + blown**3)) + radiation_film(outer.emissivity * outer.view, hot, cold)[0]
+
+
+STILL: dict[str, Callable[[Outer, float, float], float]] = {
+    "horizontal cylinder": lambda o, hot, cold: churchill_chu_cylinder(o.size, hot, cold)[0],
+    "vertical plate": lambda o, hot, cold: churchill_chu_plate(o.size, hot, cold)[0],
+    "horizontal plate": lambda o, hot, cold: (
+        0.5 * sum(mcadams_plate(o.size, hot, cold, upward=up)[0] for up in (True, False))
+    ),
+    "radial fins": lambda o, hot, cold: elenbaas(o.spacing, o.size, hot, cold)[0],
+}
+
+
+def blown_film(machine: Machine, part: str, rpm: float, fluid: Fluid) -> float:
+    """The cowl's air: Heiles between fins, a flat plate over shields and blades."""
+    cowl, fins, e = cowl_of(machine), fins_of(machine), extent(machine.part(part))
+    assert cowl is not None
+    v = cowl.air_speed * rpm / cowl.at_rpm
+    if part == "housing" and fins is not None:
+        length = fins.length if fins.axial else np.pi * (fins.root + fins.height)
+        return heiles(0.5 * (1.0 + cowl.end_share) * v, fins.hydraulic_diameter, length, cowl.turbulence, fluid)[0]
+    if machine.part(part).role is Role.FAN:
+        return flat_plate(v, 0.5 * e.size[1], fluid)[0]
+    share = cowl.rear_share if part.endswith(cowl.rear) else cowl.front_share
+    return flat_plate(share * v, e.size[1], fluid)[0]
+
+
+def end_space_point(around: Surroundings, rng: np.random.Generator) -> Pair:
+    films, rpm, share = around.films, rng.uniform(0.0, 3.0) * around.usual_rpm, rng.uniform(0.05, 1.0)
+    v = share * around.tip_radius * rpm * np.pi / 30.0
+    exact = end_space(v, films.end_space_k1_W_m2K, films.end_space_k2, films.end_space_k3)[0]
+    law = stirred(share, films, around.tip_radius)
+    return coefficient(law, {"speed_rpm": np.array([rpm])}, 80.0, 40.0), float(exact)
+
+
+def fan_split(ways: Ways, flow: float, fluid: Fluid) -> dict[str, float]:
+    """Share of every way: the gap's is given, the rest drops the same pressure."""
+    beside = 1.0 - ways.fan.gap_share
+    ducts = [[duct] for duct in ways.ducts.values()]
+    return dict(
+        zip(ways.ducts, (beside * s for s in parallel_shares(ducts, beside * flow / 3600.0, fluid)), strict=True)
+    )
+
+
+def split_point(ways: Ways, way: str, rng: np.random.Generator) -> Pair:
+    flow, T = rng.uniform(0.01, 4.0) * ways.fan.flow_m3_h, rng.uniform(-40.0, 50.0)
+    whole = air(T).rho * air(T).cp * flow / 3600.0
+    got = coefficient(ways.rate(way), {"fan_flow_m3h": np.array([flow])}, T, 0.0)
+    return got / whole, fan_split(ways, flow, air(T + ways.fan.air_C - 20.0))[way]
+
+
+def duct_point(around: Surroundings, way: str, rng: np.random.Generator) -> Pair:
+    """The fan's air along the walls of a duct; those that stand see all that does not turn."""
+    ways = around.ways
+    assert ways is not None
+    flow, hot, cold = rng.uniform(0.01, 4.0) * ways.fan.flow_m3_h, rng.uniform(-40.0, 150.0), rng.uniform(-40.0, 80.0)
+    duct, fluid = ways.ducts[way], air(0.5 * (hot + cold))
+    shares = fan_split(ways, flow, fluid)
+    share = shares[way] if duct.turns else 1.0 - sum(s for n, s in shares.items() if ways.ducts[n].turns)
+    exact = duct_film(share * flow / 3600.0 / duct.section, duct.diameter, duct.length, fluid)[0]
+    law = face_films("poles", way, around)["axial"]
+    return coefficient(law, {"fan_flow_m3h": np.array([flow])}, hot, cold), exact
 
 
 def gap_point(around: Surroundings, rng: np.random.Generator) -> Pair:
-    from lumped.machine.air import gap_film
-
     assert around.gap is not None
     rpm, T = rng.uniform(0.0, 3.0) * around.usual_rpm, rng.uniform(-40.0, 150.0)
     law = gap_film(around.gap, around.usual_rpm)
@@ -149,18 +314,6 @@ def jacket_point(around: Surroundings, jacket: str, rng: np.random.Generator) ->
     law = onto_outlet(around.machine, jacket, cooling, wet)
     got = coefficient(law, {FLOW: np.array([flow])}, T, 0.0)
     return (got * wet / rate, float(np.expm1(h * wet / rate))) if h * wet < 5.0 * rate else None
-
-
-def blown_point(laws: dict[str, Law], scale: float, high: float, rated: float, rng: np.random.Generator) -> Pair:
-    from lumped.correlations.forced import flat_plate
-    from lumped.correlations.natural import churchill_chu_plate
-
-    rpm, cold, rise = rng.uniform(0.0, 3.0) * rated, rng.uniform(-40.0, 50.0), rng.uniform(0.5, 150.0)
-    at = {"speed_rpm": np.array([rpm])}
-    still = churchill_chu_plate(high, cold + rise, cold)[0]
-    blown = flat_plate(scale * rpm, high, air(cold + 0.5 * rise))[0]
-    got = sum(coefficient(laws[k], at, cold + rise, cold) for k in ("natural", "blown"))
-    return got, float(np.cbrt(still**3 + blown**3))
 
 
 def circuit_points(
@@ -200,10 +353,9 @@ def circuit_points(
         if len(closed) < 20 and flow > 2.0 and T < 60.0:
             rest = steady(network, {FLOW: flow}, {"inlet": T})
             closed.append((circuit.heat * flow / 6e4 * (rest["c.outlet"] - T), 2000.0))
-    yield f"{name}: films", stretched
-    yield f"{name}: heat at rest", closed
-    if streams:
-        yield f"{name}: shares", shares
+    yield "films", stretched
+    yield "heat at rest", closed
+    yield "shares of branches", shares
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""The network that a case runs against its field, at the hot spot of every heated part, away from where it was made.
+"""The network that a case runs against its field, at hot spots of heated parts and of others, far from its own point.
 
-    python benchmarks/condensed/case_network.py [MACHINE ...] [--json FILE]
+    python benchmarks/condensed/case_network.py [MACHINE ...] [--json FILE [--page]]
 
 Points: nominal; all films x0.3 and x10; all contacts x0.2 and x5; every film and contact drawn between x0.2 and x5.
 Steady, errors are in percent of the part's own rise, at least a tenth of the machine's largest. After a step of loss,
@@ -13,7 +13,7 @@ import argparse
 import datetime
 import json
 import platform
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,8 +25,11 @@ from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
 from lumped.model.network import Array, Network
+from scripts.published import publish
 from thermoscope.case_folder.folder import load_machine_file
 
+PAGE = Path("docs/condensation.md")
+KINDS = ("heated", "other")  # parts
 EARLY = 2  # steps of 10 s that are left out
 
 
@@ -50,8 +53,8 @@ def fields(ready: Prepared, asked: dict[str, FixedCoefficients]) -> dict[str, li
 
 def errors(
     ready: Prepared, network: Network, asked: dict[str, FixedCoefficients], exact: dict[str, list[Array]]
-) -> Iterator[tuple[str, str, float]]:
-    """(point, the part that is furthest off, percent)"""
+) -> Iterator[tuple[str, str, str, float]]:
+    """(point, kind of part, the part that is furthest off, percent)"""
     for name, curve in exact.items():
         step = name.startswith("step of loss, ")
         point = asked[name.removeprefix("step of loss, ")]
@@ -60,15 +63,17 @@ def errors(
             if step
             else [point.of_network(network, ready.field)]
         )
-        off = dict.fromkeys(point.watts, 0.0)
+        off = dict.fromkeys(ready.field.blocks, 0.0)
         for T, x in zip(curve, own, strict=True):
             largest = float(T[: ready.field.n].max())
             for part in off:
                 dofs = ready.field.blocks[part].dofs
                 rise = largest if step else max(float(T[dofs].max()), FLOOR * largest)
                 off[part] = max(off[part], 100.0 * abs(float(T[dofs].max() - x[dofs].max())) / rise)
-        worst = max(off, key=lambda part: off[part])
-        yield name, worst, off[worst]
+        for kind in KINDS:
+            those = [part for part in off if (part in point.watts) == (kind == "heated")]
+            worst = max(those, key=lambda part: off[part])
+            yield name, kind, worst, off[worst]
 
 
 def rows(machine: str) -> Iterator[dict[str, Any]]:
@@ -79,25 +84,58 @@ def rows(machine: str) -> Iterator[dict[str, Any]]:
     asked = points(rated(described, networks[0], ready.films, ready.contacts))
     exact = fields(ready, asked)
     for network in networks:
-        for point, part, percent in errors(ready, network, asked, exact):
-            case = f"{machine}, {len(network.states)} states, {point}"
-            yield {"case": case, "measure": f"hot spot of {part}", "unit": "%", "ours": round(percent, 3)}
+        for point, kind, part, percent in errors(ready, network, asked, exact):
+            yield {
+                "machine": machine,
+                "states": len(network.states),
+                "case": point,
+                "kind": kind,
+                "measure": f"hot spot of {part}",
+                "unit": "%",
+                "ours": round(percent, 3),
+            }
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("machines", nargs="*", default=["series-dc-100kw"], metavar="MACHINE")
-    parser.add_argument("--json", type=Path, metavar="FILE")
+    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
+    parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
     given = parser.parse_args()
-    found = []
+    old = json.loads(given.json.read_text())["rows"] if given.json and given.json.exists() else []
+    found = [row for row in old if row["machine"] not in given.machines]
     for machine in given.machines:
         for row in rows(machine):
             found.append(row)
-            print(f"{row['case']:60} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
-    if given.json:
-        computer = f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}"
-        head = {"benchmark": "case_network", "computer": computer, "date": datetime.date.today().isoformat()}
-        given.json.write_text(json.dumps({**head, "rows": found}, indent=1))
+            case = f"{machine}, {row['states']} states, {row['case']}, {row['kind']}"
+            print(f"{case:70} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
+        if given.json:
+            computer = f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}"
+            head = {"benchmark": "case_network", "computer": computer, "date": datetime.date.today().isoformat()}
+            given.json.write_text(json.dumps({**head, "rows": found}, indent=1))
+    if given.page:
+        publish(PAGE, "case-network", table(found, max))
+        publish(PAGE, "small-network", table(found, min))
+
+
+def table(found: Sequence[Mapping[str, Any]], which: Callable[[set[int]], int]) -> str:
+    """Percent at the part that is furthest off, heated and other: a row per point, a column per machine.
+
+    which : of the numbers of states of a machine's networks
+    """
+    machines = list(dict.fromkeys(row["machine"] for row in found))
+    states = {m: which({row["states"] for row in found if row["machine"] == m}) for m in machines}
+    cells = {
+        (row["case"], row["machine"], row["kind"]): f"{row['ours']:.1f}"
+        for row in found
+        if row["states"] == states[row["machine"]]
+    }
+    lines = [f"| heated / other | {' | '.join(machines)} |", f"|{'---|' * (len(machines) + 1)}"]
+    lines.append(f"| states | {' | '.join(str(states[m]) for m in machines)} |")
+    for case in dict.fromkeys(row["case"] for row in found):
+        each = [" / ".join(cells[case, m, kind] for kind in KINDS) for m in machines]
+        lines.append(f"| {case} | {' | '.join(each)} |")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

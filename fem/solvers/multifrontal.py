@@ -83,30 +83,26 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
         lo, hi = int(tree.start[i]), int(tree.start[i + 1])
         k, reach = hi - lo, symbolic.reach[i]
         local[lo:hi], local[reach] = np.arange(k), np.arange(k, k + len(reach))
-        front = np.zeros((k + len(reach), k + len(reach)), order="F")
-        _scatter(front, lo, hi, upper.indptr, upper.indices, upper.data, local)
+        mine, rest = np.zeros((k + len(reach), k), order="F"), np.zeros((len(reach), len(reach)), order="F")
+        _scatter(mine, lo, hi, upper.indptr, upper.indices, upper.data, local)
         for c in children:
-            _extend_add(front, waiting.pop(c), local[symbolic.reach[c]])
-        L, B, S = _eliminate(front, k)
+            _extend_add(mine, rest, waiting.pop(c), local[symbolic.reach[c]])
+        L, B, waiting[i] = _eliminate(mine, rest)
         pivots.append(L)
         below.append(B)
-        waiting[i] = S
     return Factor(symbolic, tuple(pivots), tuple(below))
 
 
-def _eliminate(front: Floats, k: int) -> tuple[Floats, Floats, Floats]:
-    L, info = lapack.dpotrf(front[:k, :k], lower=1, clean=1)
+def _eliminate(mine: Floats, rest: Floats) -> tuple[Floats, Floats, Floats]:
+    """Factor of a front's own columns (k + m, k), and what `rest` (m, m), overwritten, becomes without them."""
+    k = mine.shape[1]
+    L, info = lapack.dpotrf(mine[:k], lower=1, clean=1)
     if info:
         raise InputError(
             "the matrix is not positive definite", "solve", "a film or contact for every part, all above 0"
         )
-    B = blas.dtrsm(1.0, L, front[k:, :k], side=1, lower=1, trans_a=1)
-    S = (
-        blas.dsyrk(-1.0, B, beta=1.0, c=np.asfortranarray(front[k:, k:]), lower=1, overwrite_c=1)
-        if len(B)
-        else B[:, :0]
-    )
-    return L, B, S
+    B = blas.dtrsm(1.0, L, mine[k:], side=1, lower=1, trans_a=1)
+    return L, B, blas.dsyrk(-1.0, B, beta=1.0, c=rest, lower=1, overwrite_c=1) if len(B) else rest
 
 
 def _upper(A: sp.csr_array, tree: Tree) -> sp.csr_array:
@@ -114,14 +110,19 @@ def _upper(A: sp.csr_array, tree: Tree) -> sp.csr_array:
 
 
 @numba.njit(cache=True)
-def _scatter(front, lo, hi, indptr, indices, data, local):  # type: ignore[no-untyped-def]
+def _scatter(mine, lo, hi, indptr, indices, data, local):  # type: ignore[no-untyped-def]
     for row in range(lo, hi):
         for p in range(indptr[row], indptr[row + 1]):
-            front[local[indices[p]], row - lo] += data[p]
+            mine[local[indices[p]], row - lo] += data[p]
 
 
 @numba.njit(cache=True)
-def _extend_add(front, update, where):  # type: ignore[no-untyped-def]
+def _extend_add(mine, rest, update, where):  # type: ignore[no-untyped-def]
+    k = mine.shape[1]
     for j in range(len(where)):
-        for i in range(j, len(where)):
-            front[where[i], where[j]] += update[i, j]
+        if where[j] < k:
+            for i in range(j, len(where)):
+                mine[where[i], where[j]] += update[i, j]
+        else:
+            for i in range(j, len(where)):
+                rest[where[i] - k, where[j] - k] += update[i, j]

@@ -9,7 +9,7 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.solve import Fluids, Solver, Steady, steady
-from lumped.integration.simulate import Record, simulate
+from lumped.integration.steady import steady as steady_rest
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Array, Network, Source
 from lumped.transfer.laws import Law
@@ -94,12 +94,7 @@ def steady_state(
     network: Network, inputs: Mapping[str, float], ambient: float, values: Mapping[str, float] | None = None
 ) -> Array:
     """(n + n_boundary,) temperatures the network settles at (degC)."""
-    time = np.concatenate([[0.0], np.cumsum(np.geomspace(10.0, 1e6, 80))])
-    signals = {name: np.full(time.size, float(value)) for name, value in inputs.items()}
-    boundaries = {name: np.full(time.size, ambient) for name in network.boundaries}
-    run = simulate(network, Record(time, signals, boundaries, ambient), values, keep_states=True)
-    assert run.z is not None
-    return run.z[-1]
+    return steady_rest(network, inputs, dict.fromkeys(network.boundaries, ambient), values).z
 
 
 def coefficients(

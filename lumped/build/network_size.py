@@ -9,7 +9,7 @@ from typing import Any
 from geom import Machine
 from lumped.build.load_cases import load_cases
 from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
-from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, prepared, reduced, silent
+from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, meshed, reduced, silent
 from lumped.condensation.greedy_enrichment import Enrichment, Size, enrich
 from lumped.condensation.reduction import Recipe, Reduction
 from lumped.condensation.reduction_error import Accuracy
@@ -23,7 +23,7 @@ ROUNDS = 3  # of learning: each solves the field at new points
 POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
 CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables
 SEGMENTS = 48  # chords per turn
-BYTES = 16_000  # per unknown: snapshots, factor and the points that are learned from; 1.5 GB at 96,000
+BYTES = 18_500  # per unknown: snapshots, factor and the points that are learned from; 2.85 GB at 154,000
 SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
 LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
 
@@ -77,11 +77,8 @@ def accurate_network(
     say(f"first mesh: {points:,} points, {needs(unknowns)}; the finest that is condensed: {needs(MOST_UNKNOWNS)}")
     mesh = chosen_mesh(on_all(machine), accuracy, first, progress)
     say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}")
-    how, left = mesh.meshing, max(accuracy - mesh.worst, LEAST * accuracy)
-    size = smallest_network(
-        machine, left, how.size_m, how.segments, progress=progress, across=how.across, axial_m=how.axial_m
-    )
-    return replace(size, mesh=mesh)
+    left = max(accuracy - mesh.worst, LEAST * accuracy)
+    return replace(smallest_network(machine, left, progress=progress, how=mesh.meshing), mesh=mesh)
 
 
 def needs(unknowns: int) -> str:
@@ -98,17 +95,17 @@ def smallest_network(
     recipe: Recipe = FINE,
     progress: Progress = silent,
     rounds: int = ROUNDS,
-    across: float = ACROSS,
-    axial_m: float | None = None,
+    how: Meshing | None = None,
     points_each: int = POINTS_EACH,
     contact_factors: Sequence[float] = CONTACT_FACTORS,
 ) -> NetworkSize:
     """Build at several sizes and keep the smallest that is accurate enough; if none is, learn from where it fails.
 
+    how : the mesh, None for one of size_m and segments
     points_each : random points, and extreme ones, at which every size is checked;  contact_factors : times all contacts
     """
     machine = on_all(machine)
-    ready = prepared(machine, size_m, segments, progress, axial_m, across)
+    ready = meshed(machine, how or Meshing(size_m, segments, ACROSS, AXIAL * size_m), progress)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)

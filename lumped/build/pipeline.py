@@ -28,6 +28,7 @@ AXIAL = 0.75  # thickest layer over the size of a triangle: 45 mm, a stack of 14
 CASE = Recipe(  # hot spots within 2 % over the range of films and contacts: docs/condensation.md
     tolerance=0.16, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(2.2, 5.0), favour=3.0
 )
+LITTLE, THIN = 0.02, 6.0  # of the machine's volume; favour of such a part: its hot spot is one of little energy
 FEW = 100  # means and shapes of the network that a diagnosis runs: its effects are within 1 % (median) of the larger's
 
 
@@ -175,7 +176,9 @@ def build(
 def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple[Network, Network]:
     """The network of a recipe, and the small one for many runs."""
     favour = dict.fromkeys(means_network(machine, reduction).heated, recipe.favour)
-    large = reduction.network(recipe.tolerance, recipe.max_states, favour)
+    volumes = {part: block.volume for part, block in reduction.field.blocks.items()}
+    thin = {part: THIN for part, volume in volumes.items() if volume < LITTLE * sum(volumes.values())}
+    large = reduction.network(recipe.tolerance, recipe.max_states, {**thin, **favour})
     small = reduction.network(recipe.tolerance, FEW, favour)
     return motor_network(machine, large), motor_network(machine, small)
 

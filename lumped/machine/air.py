@@ -3,47 +3,102 @@
     ambient -> [space of the fan] -> left end -> gap, space between the poles, ducts of the rotor -> right end -> out
 
 The gap takes the share that [fans] gives it. The rest divides so that all ways drop the same pressure between the two
-ends: friction, entrance and exit of each. The air in a duct of the rotor is spun up at the shaft's cost: the dynamic
-pressure of its turning, as it comes in relative to the duct, is taken as lost at the inlet, neither more nor less.
+ends: friction, entrance and exit of each, at every flow. The air in a duct of the rotor is spun up at the shaft's
+cost: the dynamic pressure of its turning, as it comes in relative to the duct, is taken as lost at the inlet, neither
+more nor less.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from geom.constants import M3_H, RPM
 from geom.description.geometry import Duct, Features
 from geom.description.machine import Machine
-from lumped.circuits.hydraulics import parallel_shares
+from lumped.circuits.hydraulics import parallel_shares, split
 from lumped.correlations.air_gap import taylor_film
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.end_space import end_space
 from lumped.correlations.info import Info
-from lumped.correlations.streams import streamed
+from lumped.correlations.streams import LEAST, MOST, streamed
 from lumped.machine.settings import Fan, Films
 from lumped.machine.shapes import Gap, gap_fluid
 from lumped.model.network import Link, Network, Row
-from lumped.transfer.laws import Array, InputPower, Inputs, Law, Table
+from lumped.transfer.laws import Array, InputPower, Inputs, Law, StreamTable, Table
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.reversal import OneWay
 
 GAP_C, DUCT_C = 80.0, 40.0  # usual film temperatures, at which ranges are checked
+INTAKE_USUAL_C = 20.0  # at which [fans] air_C is what the air comes to inside
 INTAKE_C = tuple(float(T) for T in range(-60, 101, 10))  # of a fan; rho cp is straight between two to 0.03 %
 
 
-def fan_shares(machine: Machine, fan: Fan) -> dict[str, float]:
-    """What each way along the axis takes of the fan's air at its rated flow; together 1."""
-    ducts, gap = machine.features.ducts, gap_fluid(machine)
-    if not ducts:
-        return {gap: 1.0}
-    beside = 1.0 - fan.gap_share
-    split = parallel_shares([[duct] for duct in ducts.values()], beside * fan.flow_m3_h * M3_H, air(fan.air_C))
-    shares = {gap: fan.gap_share, **{name: beside * share for name, share in zip(ducts, split, strict=True)}}
-    return {name: share for name, share in shares.items() if share > 0.0}
+@dataclass(frozen=True)
+class Ways:
+    """The ways of a fan's air along the axis: the gap, and the ducts that share what it leaves."""
+
+    fan: Fan
+    gap: str
+    ducts: Mapping[str, Duct]
+
+    @property
+    def _beside(self) -> float:
+        return 1.0 - self.fan.gap_share
+
+    @cached_property
+    def split(self) -> tuple[Array, dict[str, Array]]:
+        """Share of each duct in all the fan's air, over the logarithm of its flow (m3/h) in air of air_C."""
+        usual = self._beside * self.fan.flow_m3_h * M3_H
+        flows, each = split([[duct] for duct in self.ducts.values()], LEAST * usual, MOST * usual, air(self.fan.air_C))
+        shares = dict(zip(self.ducts, self._beside * each, strict=True))
+        return flows - math.log(self._beside * M3_H), shares
+
+    def share(self, way: str, flow: float, fluid: Fluid) -> float:
+        """Of a flow (m3/h) of air in some state."""
+        if way == self.gap or len(self.rated) < 3:  # one duct takes all that the gap leaves
+            return self.rated.get(way, 0.0)
+        flows, each = self.split
+        alike = flow * air(self.fan.air_C).nu / fluid.nu
+        return float(np.interp(math.log(max(alike, 1e-300)), flows, each[way]))
+
+    def past(self, flow: float, fluid: Fluid) -> float:
+        """What does not turn with the rotor: of a flow (m3/h), what passes walls that stand."""
+        return 1.0 - sum(
+            self.share(way, flow, fluid) for way in self.rated if way in self.ducts and self.ducts[way].turns
+        )
+
+    @cached_property
+    def rated(self) -> dict[str, float]:
+        """What each way takes at the rated flow; together 1."""
+        if not self.ducts:
+            return {self.gap: 1.0}
+        flow, ducts = self._beside * self.fan.flow_m3_h * M3_H, [[duct] for duct in self.ducts.values()]
+        each = zip(self.ducts, parallel_shares(ducts, flow, air(self.fan.air_C)), strict=True)
+        shares = {self.gap: self.fan.gap_share, **{name: self._beside * share for name, share in each}}
+        return {way: share for way, share in shares.items() if share > 0.0}
+
+    def rate(self, way: str | None = None) -> InputPower:
+        """Heat capacity rate (W/K) of a way, None: of all; it looks at the temperature of what the fan takes in."""
+        flow = (("fan_flow_m3h", 1.0, 1.0),)
+        if way is None or way == self.gap or len(self.rated) < 3:
+            return InputPower(M3_H * (1.0 if way is None else self.rated[way]), flow, heat_of_air())
+        (numbers, each), warmer = self.split, self.fan.air_C - INTAKE_USUAL_C
+        intake = [air(T) for T in INTAKE_C]
+        shift = tuple(math.log(air(T + warmer).nu / air(self.fan.air_C).nu) for T in INTAKE_C)
+        value = np.outer([x.rho * x.cp for x in intake], each[way]).ravel()
+        usual = self.fan.flow_m3_h, INTAKE_USUAL_C
+        table = StreamTable("fan_flow_m3h", *usual, INTAKE_C, shift, tuple(numbers.tolist()), tuple(value.tolist()))
+        return InputPower(M3_H, flow, table)
+
+
+def ways_of(machine: Machine, fan: Fan) -> Ways:
+    return Ways(fan, gap_fluid(machine), machine.features.ducts)
 
 
 def stirred(share: float, films: Films, radius: float) -> Law:
@@ -75,31 +130,26 @@ def gap_film(gap: Gap, usual_rpm: float) -> Law:
     return streamed("speed_rpm", usual_rpm, film, air, GAP_C, liquid=False)
 
 
-def channel_film(duct: Duct, share: float, usual: float) -> Law:
-    """Walls along the axis that `share` of the fan's air passes; a turning duct is taken to stand still.
+def channel_film(duct: Duct, share: Callable[[float, Fluid], float], usual: float) -> Law:
+    """Walls along the axis that a share of the fan's air passes; a turning duct is taken to stand still.
 
-    usual : flow (m3/h)
+    share : of a flow (m3/h) of air in some state;  usual : flow (m3/h)
     """
 
     def film(flow: float, fluid: Fluid) -> tuple[float, Info]:
-        return duct_film(share * flow * M3_H / duct.section, duct.diameter, duct.length, fluid)
+        return duct_film(share(flow, fluid) * flow * M3_H / duct.section, duct.diameter, duct.length, fluid)
 
     return streamed("fan_flow_m3h", usual, film, air, DUCT_C, liquid=False)
 
 
-def fan_streams(network: Network, features: Features, shares: Mapping[str, float], usual: float) -> list[Link]:
-    """The fan's air, cell by cell; shares : way along the axis -> its part of the flow;  usual : flow (m3/h)."""
-    (left, right), inlet = features.ends, {features.fan_space: {"ambient": 1.0}} if features.fan_space else {}
-    feeds = {
-        **inlet,
-        left: dict.fromkeys(inlet or ("ambient",), 1.0),
-        **{way: {left: share} for way, share in shares.items()},
-        right: dict(shares),
-    }
-    way = "a flow from left to right: what comes in at the right is not known"
-    rate = InputPower(M3_H, (("fan_flow_m3h", 1.0, 1.0),), heat_of_air())
-    law = OneWay(rate, "fan_flow_m3h", "[fans]", way, usual)
-    return [_cell(network, cell, upstream, law) for cell, upstream in feeds.items()]
+def fan_streams(network: Network, features: Features, ways: Ways) -> list[Link]:
+    """The fan's air, cell by cell; what passes a way comes from the left end and goes to the right one."""
+    (left, right), inlet = features.ends, [features.fan_space] if features.fan_space else []
+    cells = list(pairwise(["ambient", *inlet, left]))
+    return [
+        *(_stream(network, [cell], ways.rate(), ways.fan.flow_m3_h) for cell in cells),
+        *(_stream(network, [(left, w), (w, right)], ways.rate(w), ways.fan.flow_m3_h) for w in ways.rated),
+    ]
 
 
 @cache
@@ -108,11 +158,12 @@ def heat_of_air() -> Table:
     return Table(INTAKE_C, tuple(air(T).rho * air(T).cp for T in INTAKE_C))
 
 
-def _cell(network: Network, cell: str, upstream: Mapping[str, float], law: Law) -> Link:
-    """An upwind cell: it takes up flow x heat capacity x (own temperature - what flows in)."""
-    column = network.column(cell)
-    cols = np.array([column, *(network.column(name) for name in upstream)])
-    vals = np.array([sum(upstream.values()), *(-share for share in upstream.values())])
-    rows, first = np.full(len(cols), column), next(iter(upstream))
+def _stream(network: Network, edges: list[tuple[str, str]], rate: Law, usual: float) -> Link:
+    """Upwind cells: each takes up flow x heat capacity x (own temperature - what flows in);  usual : flow (m3/h)"""
+    a, b = ([network.column(edge[k]) for edge in edges] for k in (0, 1))
+    rows, cols, vals = np.array(b + b), np.array(b + a), np.repeat([1.0, -1.0], len(edges))
+    law = OneWay(
+        rate, "fan_flow_m3h", "[fans]", "a flow from left to right: what comes in at the right is not known", usual
+    )
     intake, nothing = Row(np.array([network.column("ambient")]), np.ones(1)), Row(np.empty(0, np.int64), np.empty(0))
-    return Link(f"stream:fan:{cell}", "stream", (first, cell), rows, cols, vals, law, intake, nothing)
+    return Link(f"stream:fan:{edges[0][1]}", "stream", edges[0], rows, cols, vals, law, intake, nothing)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.machine.air import channel_film, fan_shares, gap_film, stirred
+from lumped.machine.air import Ways, channel_film, gap_film, stirred, ways_of
 from lumped.machine.jackets import Cooling, cooling_of, jacket_film
 from lumped.machine.outer import outer_films
 from lumped.machine.part_identities import turning
@@ -36,11 +36,6 @@ class Surroundings:
     def fan(self) -> Fan | None:
         return read_fan(self.machine)
 
-    @property
-    def usual_flow(self) -> float:
-        """Of the fan (m3/h)."""
-        return 0.0 if self.fan is None else self.fan.flow_m3_h
-
     @cached_property
     def gap(self) -> Gap | None:
         return gap_of(self.machine)
@@ -51,9 +46,9 @@ class Surroundings:
         return frozenset(part.name for part in self.machine.fluids if part.role is Role.AIR_GAP)
 
     @cached_property
-    def shares(self) -> dict[str, float]:
-        """Of the fan's air, along each way; empty without a fan."""
-        return {} if self.fan is None else fan_shares(self.machine, self.fan)
+    def ways(self) -> Ways | None:
+        """Of the fan's air along the axis."""
+        return None if self.fan is None else ways_of(self.machine, self.fan)
 
     @cached_property
     def cooling(self) -> Cooling | None:
@@ -90,12 +85,11 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.usual_rpm)}
-    ducts = around.machine.features.ducts
-    if fluid in ducts and ducts[fluid].turns and fluid in around.shares:
-        return {"axial": channel_film(ducts[fluid], around.shares[fluid], around.usual_flow)}
+    ducts, ways = around.machine.features.ducts, around.ways
+    if fluid in ducts and ducts[fluid].turns and ways is not None and fluid in ways.rated:
+        return {"axial": channel_film(ducts[fluid], partial(ways.share, fluid), ways.fan.flow_m3_h)}
     if fluid in ducts and not ducts[fluid].turns:
-        past = 1.0 - sum(share for way, share in around.shares.items() if way in ducts and ducts[way].turns)
-        axial = {} if around.fan is None else {"axial": channel_film(ducts[fluid], past, around.usual_flow)}
+        axial = {} if ways is None else {"axial": channel_film(ducts[fluid], ways.past, ways.fan.flow_m3_h)}
         return {**axial, "stirred": stirred(films.channel_wall_share, films, around.tip_radius)}
     share = films.moving_wall_share if part in around.turning else films.still_wall_share
     return {"": stirred(share, films, around.tip_radius)}

@@ -99,7 +99,7 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
-    streams = [] if around.fan is None else fan_streams(network, machine.features, around.shares, around.fan.flow_m3_h)
+    streams = [] if around.ways is None else fan_streams(network, machine.features, around.ways)
     if around.cooling is not None:
         streams += coolant_streams(machine, network, around.cooling)
     losses = sources(machine, network)

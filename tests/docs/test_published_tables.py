@@ -4,7 +4,9 @@ import re
 
 import pytest
 
-from scripts.published import FRONT, HUST, between, demo_table
+from scripts.published import FRONT, HUST, ROOT, between, demo_table
+
+CONDENSATION = (ROOT / "docs" / "condensation.md").read_text(encoding="utf-8")
 
 
 def rows(text: str, first: str) -> list[list[str]]:
@@ -61,3 +63,37 @@ def test_a_table_goes_between_its_markers():
 def test_the_demo_table_is_bold_where_it_was_never_used():
     tests = [{"name": "a", "role": "calibrate", "rmse_K": 0.256}, {"name": "b", "role": "hold-out", "rmse_K": 1.0}]
     assert demo_table([{"stage": "start", "tests": tests}]).splitlines()[-1] == "| start | 0.26 | **1.00** |"
+
+
+def cells(marker: str) -> dict[str, list[tuple[float, float]]]:
+    """Point -> (heated, other) of each machine, from the table between a marker's begin and end."""
+    table = CONDENSATION.partition(f"<!-- {marker}:begin -->\n")[2].partition(f"<!-- {marker}:end -->")[0]
+    rows = [[c.strip() for c in line.strip("|").split("|")] for line in table.splitlines()[3:]]
+    return {row[0]: [tuple(map(float, c.split(" / "))) for c in row[1:]] for row in rows}
+
+
+def test_a_cases_network_is_within_what_is_wanted():
+    """Hottest points that a loss heats within 2 %, any other within 5 %: steady, and after a step of loss."""
+    found = cells("case-network")
+    assert {
+        "nominal",
+        "films x0.3",
+        "films x10",
+        "contacts x0.2",
+        "contacts x5",
+        "step of loss, nominal",
+    } <= found.keys()
+    assert "Wanted are 2 / 5" in CONDENSATION
+    for point, machines in found.items():
+        assert max(heated for heated, _ in machines) <= 2.0, point
+        assert max(other for _, other in machines) <= 5.0, point
+
+
+def test_the_small_network_is_compared_at_the_same_points():
+    small, large = cells("small-network"), cells("case-network")
+    assert small.keys() == large.keys()
+    assert all(len(small[point]) == len(large[point]) for point in small)
+
+
+def test_no_table_of_it_is_empty():
+    assert re.findall(r"<!-- (\S+):begin -->\n<!--", CONDENSATION) == []

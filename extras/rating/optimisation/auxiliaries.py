@@ -46,9 +46,10 @@ def auxiliary_power(machine: Machine, inputs: Mapping[str, float], ambient_C: fl
     around = surroundings(machine, ())
     out = 0.0 if around.cooling is None else _pump(machine, around.cooling, inputs[FLOW] * L_MIN)
     ducts = machine.features.ducts
-    if around.fan is not None and ducts and inputs[FAN] > 0.0:
+    if around.ways is not None and ducts and inputs[FAN] > 0.0:
         flow, (way, duct) = inputs[FAN] * M3_H, next(iter(ducts.items()))  # all ways drop the same pressure
-        drop = pressure_drop(duct, around.shares[way] * flow, air(around.fan.air_C))
+        inside = air(around.ways.fan.air_C)
+        drop = pressure_drop(duct, around.ways.share(way, inputs[FAN], inside) * flow, inside)
         out += pumping_power(drop, flow, EFFICIENCY)
     cowl, fins = cowl_of(machine), fins_of(machine)
     if cowl is not None and fins is not None:

@@ -12,13 +12,14 @@ from geom.errors import InputError
 from geom.machine_file import machine_from
 from lumped.build.crosscheck import coefficients
 from lumped.build.pipeline import prepared
-from lumped.circuits.hydraulics import pressure_drop
+from lumped.circuits.hydraulics import parallel_shares, pressure_drop
 from lumped.integration.steady import steady
-from lumped.machine.air import fan_shares
+from lumped.machine.air import ways_of
 from lumped.machine.films import surroundings
 from lumped.machine.motor import operating_point
 from lumped.model.network import Network
 from lumped.transfer.properties import air
+from lumped.transfer.terms_value import coefficient
 
 WAYS = ("airgap", "air.interpolar", "air.ducts")
 POINT = {"current_A": 150.0, "speed_rpm": 1000.0, "fan_flow_m3h": 138.0}
@@ -49,7 +50,7 @@ def with_ducts(number: int, diameter_mm: float, **fan: float) -> Machine:
 
 
 def shares_of(machine: Machine) -> dict[str, float]:
-    return surroundings(machine, ()).shares
+    return surroundings(machine, ()).ways.rated
 
 
 def test_all_ways_beside_the_gap_drop_the_same_pressure(machine):
@@ -71,6 +72,22 @@ def test_laminar_ducts_by_hand(machine):
     assert pressure_drop(machine.features.ducts["air.ducts"], 12 * each, warm) == pytest.approx(by_hand, rel=1e-3)
 
 
+@pytest.mark.parametrize(("times", "outside"), [(0.0, 20.0), (0.05, 20.0), (0.3, -30.0), (1.0, 20.0), (4.0, 60.0)])
+def test_the_split_follows_the_flow(machine, network, times, outside):
+    """Equal pressure drop at every flow, friction laminar or turbulent; what leaves the ways is all that came in."""
+    flow, inside = max(times * 138.0, 1e-6), air(outside + 20.0)
+    left = (1.0 - 0.10) * flow / 3600.0
+    split = parallel_shares([[duct] for duct in machine.features.ducts.values()], left, inside)
+    carried = {
+        x.name.removeprefix("stream:fan:"): coefficient(x.law, {"fan_flow_m3h": np.array(flow)}, outside, 0.0)
+        for x in network.links
+        if x.kind == "stream"
+    }
+    for way, share in zip(machine.features.ducts, split, strict=True):
+        assert carried[way] / carried["air.left"] == pytest.approx(0.9 * share, rel=5e-3)
+    assert sum(carried[way] for way in WAYS) == pytest.approx(carried["air.left"], rel=1e-9)
+
+
 @pytest.mark.parametrize("wider", [with_ducts(24, 10.0), with_ducts(12, 14.0)], ids=["more ducts", "wider ducts"])
 def test_more_room_in_the_rotor_takes_more_air(wider):
     assert shares_of(wider)["air.ducts"] > 1.2 * shares_of(with_ducts(12, 10.0))["air.ducts"]
@@ -80,7 +97,7 @@ def test_without_ducts_the_rest_passes_between_the_poles():
     assert shares_of(load_machine("series-dc-100kw")) == {"airgap": 0.10, "air.interpolar": 0.90}
     assert shares_of(with_ducts(12, 10.0, gap_share=1.0)) == {"airgap": 1.0}
     machine = load_machine("pmsm-m1")
-    assert fan_shares(machine, surroundings(with_ducts(0, 10.0), ()).fan) == {"airgap": 1.0}
+    assert ways_of(machine, surroundings(with_ducts(0, 10.0), ()).fan).rated == {"airgap": 1.0}
 
 
 def test_the_air_carries_off_what_the_outer_faces_do_not(machine, network):

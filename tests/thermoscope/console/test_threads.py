@@ -9,7 +9,7 @@ import pytest
 AFTER_A_COMMAND = """
 import os, sys
 from thermoscope.cli import main
-sys.argv = ["thermoscope", "--help"]
+sys.argv = ["thermoscope", *sys.argv[1:], "--help"]
 try:
     main()
 except SystemExit:
@@ -17,10 +17,21 @@ except SystemExit:
 """
 
 
-@pytest.mark.parametrize(("given", "used"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
-def test_blas_has_one_thread_unless_told_otherwise(given, used):
+TWO = str(min(2, os.cpu_count() or 1))
+
+
+@pytest.mark.parametrize(
+    ("words", "given", "used"),
+    [
+        ([], {}, "1"),
+        ([], {"OPENBLAS_NUM_THREADS": "3"}, "3"),
+        (["model", "build"], {}, TWO),
+        (["test", "compare"], {}, "1"),
+    ],
+)
+def test_blas_has_one_thread_unless_told_otherwise_and_two_for_a_field(words, given, used):
     env = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
     done = subprocess.run(
-        [sys.executable, "-c", AFTER_A_COMMAND], env=env | given, capture_output=True, text=True, check=True
+        [sys.executable, "-c", AFTER_A_COMMAND, *words], env=env | given, capture_output=True, text=True, check=True
     )
-    assert done.stdout.splitlines()[-1] == f"False {used}"
+    assert done.stdout.splitlines()[-1] == f"{bool(words)} {used}"

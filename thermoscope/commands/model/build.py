@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
 
 
+NETWORKS = {0: "means only", None: "learned", "mesh": "the mesh"}  # rows of the table that no number of states names
+
+
 def build(machine: Machine, out: Out = None, target: Json = None, accuracy: Accuracy = 2.0) -> int:
     """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
     return build_machine(machine, out, target, accuracy)
@@ -146,20 +149,23 @@ def build_summary(document: Mapping[str, Any], folder: Path) -> Summary:
 
 
 def _sizes(sizes: Mapping[str, Any]) -> list[Table | str]:
-    """Error against number of states, and what was seen at points nothing was fitted to."""
-    requested, trials = sizes["wish_percent"], sizes["guard"]
+    """Error against number of states, what was seen at points nothing was fitted to, and the mesh's own: all that the
+    exit code hangs on."""
+    requested, trials, mesh = sizes["wish_percent"], sizes["guard"], sizes["mesh"]
+    meshes = [] if mesh is None else [{"asked": "mesh", "nominal": {"hot": mesh["worst"]}, "met": mesh["met"]}]
     table = Table.of(
         f"Error in % of a part's rise (asked: means {requested['mean']:g}, hot spots and points {requested['hot']:g})",
-        [*sizes["sizes"], *({**g, "asked": None} for g in trials)],
+        [*sizes["sizes"], *({**g, "asked": None} for g in trials), *meshes],
         "network | *states | mean=nominal.mean | hot spot=nominal.hot | point=nominal.point | "
         "*mean, random=random.mean | *hot, random=random.hot | point, random=random.point | *met",
-        network=lambda s: "learned" if s["asked"] is None else f"up to {s['asked']}" if s["asked"] else "means only",
+        network=lambda s: NETWORKS.get(s["asked"], f"up to {s['asked']}"),
         met=lambda s: "yes" if s["met"] else "no",
     )
     notes: list[Table | str] = []
-    if mesh := sizes["mesh"]:
+    if mesh:
         left = f"{mesh['worst']:.2g} % of the rise at the hot spot of {mesh['worst_part']}"
-        notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}.")
+        more = "" if mesh["met"] else ": too much, but a finer one is beyond 4 GB or 3 min"
+        notes.append(f"The mesh of {mesh['unknowns']} unknowns leaves {left}{more}.")
     if trials and not trials[-1]["met"]:
         bad = trials[-1]["random"]
         where = f"mean {bad['mean_part']}, hot spot {bad['hot_part']}, point {bad['point_part']}"

@@ -1,0 +1,39 @@
+"""Random operating points against correlations called directly: one machine, one circuit's coolant, every surface.
+
+All machines, all coolants and 200 points of each: benchmarks/operating_points.py.
+"""
+
+import numpy as np
+import operating_points
+import pytest
+from operating_points import ALLOWED, COOLANTS, streamed_laws, subjects, told, worst
+
+from lumped.transfer.ranges import within_silence
+
+
+@pytest.mark.parametrize("machine", ["tefc-industrial", "series-dc-100kw-air", "ipmsm-48s8p-jacket"])
+def test_no_film_of_a_machine_is_off_anywhere(machine, monkeypatch):
+    """0 to 3 times the speed, 0 to 4 times the flow, -40 to 150 degC: gap, jacket, faces, end space, fan's air."""
+    monkeypatch.setattr(operating_points, "AT_REST", ())
+    with within_silence():
+        found = worst(operating_points.machine_points(machine, 5, np.random.default_rng(7)))
+    assert len(found) >= 3
+    assert max(off for off, _ in found.values()) < ALLOWED, found
+
+
+def test_no_circuit_and_no_declared_film_is_off_and_heat_closes(monkeypatch):
+    branches = {"two branches": operating_points.CIRCUITS["two branches"]}
+    monkeypatch.setattr(operating_points, "CIRCUITS", branches)
+    with within_silence():
+        found = worst(subjects(4, ["pmsm-m1-no-base"], [COOLANTS[1]]))
+    assert {"circuit, films", "circuit, shares of branches", "declared film"} <= {kind for kind, _ in found}
+    assert max(off for off, _ in found.values()) < ALLOWED, found
+    assert max(off for (kind, _), (off, _) in found.items() if kind.endswith("at rest")) < 1e-9
+
+
+def test_a_table_that_ends_says_so(monkeypatch, tmp_path):
+    (tmp_path / "series-dc-100kw.toml").touch()
+    monkeypatch.setattr(operating_points, "MACHINES", tmp_path)
+    laws = [law for law in streamed_laws() if hasattr(law, "top")]
+    assert len(laws) > 5
+    assert [law.what for law in laws if not told(law)] == []
