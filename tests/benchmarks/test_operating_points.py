@@ -31,6 +31,15 @@ def test_no_circuit_and_no_declared_film_is_off_and_heat_closes(monkeypatch):
     assert max(off for (kind, _), (off, _) in found.items() if kind.endswith("at rest")) < 1e-9
 
 
+def test_beside_the_kinks_of_friction_branches_are_not_off(monkeypatch):
+    """Where one of three branches turns turbulent, its share moves the films of all."""
+    monkeypatch.setattr(operating_points, "steady", lambda network, inputs, at: {"c.outlet": at["inlet"]})
+    data = {"coolant": COOLANTS[1], "passes": operating_points.CIRCUITS["three branches"]}
+    kinds = dict(operating_points.circuit_points("three", data, 150, np.random.default_rng(1)))
+    found = worst((("films", ""), pair) for pair in kinds["films"])
+    assert max(off for off, _ in found.values()) < 0.01
+
+
 def test_a_table_that_ends_says_so(monkeypatch, tmp_path):
     (tmp_path / "series-dc-100kw.toml").touch()
     monkeypatch.setattr(operating_points, "MACHINES", tmp_path)
