@@ -28,7 +28,7 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --hits 1 --json out/benchmarks/robustness.json
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json
 	@echo "== bands"; $(BIN)/python benchmarks/bands.py --kinds servo --count 2 --json out/benchmarks/bands.json
-	@echo "== drawn_benches"; $(BIN)/python benchmarks/drawn_benches.py --cases 1 --json out/benchmarks/drawn_benches.json
+	@echo "== drawn_benches"; $(BIN)/python benchmarks/drawn/drawn_benches.py --cases 1 --json out/benchmarks/drawn_benches.json
 	@echo "== hidden_effects"; $(BIN)/python benchmarks/hidden_effects.py --seeds dev --count 2 --classes nothing one --json out/benchmarks/hidden_effects.json
 
 designs: setup  ## Pareto sets of the three cooling layouts of the first paper, in out/designs

@@ -22,11 +22,11 @@ from validation.inference.evidence import Evidence, continued, log_bayes
 from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
 from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
-from validation.inference.stretches import ALIKE
 
 Array = NDArray[np.float64]
 Group = tuple[int, ...]
 SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
+SAME = 0.5  # of the time in either of two events is in both: such are one
 SILENT = COSTS["miss"].share / (COSTS["wrong"].share + COSTS["miss"].share)  # P(nothing) from which silence costs less
 
 
@@ -208,7 +208,7 @@ def is_same_event(one: Effect, other: Effect) -> bool:
     """Is it the same effect, for about the same while?"""
     if not (isinstance(one, During) and isinstance(other, During) and one.event and other.event):
         return one == other
-    return one.base == other.base and one.event.overlap(other.event) >= ALIKE
+    return one.base == other.base and one.event.overlap(other.event) >= SAME
 
 
 def differs(choice: Decision, other: Decision) -> bool:

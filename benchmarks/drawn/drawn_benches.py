@@ -1,6 +1,6 @@
 """Benches that other people might have: a fan in one test, a lid that is opened, a probe that sat elsewhere; drawn.
 
-    python benchmarks/drawn_benches.py [--cases 100] [--only lid] [--json FILE]
+    python benchmarks/drawn/drawn_benches.py [--cases 100] [--only lid] [--json FILE]
 
 Every case is drawn anew (sizes, losses, films, noise, inputs) with one cause that the model does not have. It is right
 where `diagnose` names it and `add` accepts it: the test of the fan; the lid with begin and end within two samples. A
