@@ -31,13 +31,14 @@ from condensed.points import Pair, Point
 from fem.solvers.solve import Fluids, steady
 from geom import library, load_machine
 from lumped.build.network_size import NetworkSize, smallest_network
+from lumped.build.pipeline import Meshing
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
 BALANCED = 1e-10
-COARSE = {"size_m": 0.1, "segments": 36, "across": 1, "axial_m": 0.2}
+COARSE = {"how": Meshing(0.1, 36, 1, 0.2)}
 
 
 def machine_rows(name: str, mesh: Mapping[str, Any], accuracy: float) -> Iterator[Row]:

@@ -161,7 +161,7 @@ def test_a_shipped_machine_is_built_and_held_against_its_field(name):
     """On a coarse mesh, of any accuracy, looked at in few points: that it runs and closes its balance is the point."""
     machine = load_machine_file(ROOT / name if name.endswith(".toml") else Path(name))
     found = network_size.smallest_network(
-        machine, 1e3, size_m=0.15, segments=24, recipe=TINY, rounds=0, across=1, points_each=1, contact_factors=(5.0,)
+        machine, 1e3, size_m=0.15, segments=24, recipe=TINY, rounds=0, points_each=1, contact_factors=(5.0,)
     )
     result = checked(found.built, found, lambda message: None)
     assert result["energy_balance"] < 1e-9
