@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from measured.doubt import Odds
+from measured.doubt import TEMPER, Odds
 from validation.effects.base import Effect
 from validation.effects.during import During
 
+SHARPNESS = TEMPER["sharpness"].share
 SENSORS = "sensors"  # every fault of a thermometer of the machine
 
 
@@ -46,5 +47,6 @@ def is_meant(effect: Effect, name: str) -> bool:
 
 
 def odds_factor(effect: Effect, odds: Mapping[str, Odds]) -> float:
-    """Log of what the odds of an effect are multiplied by.  odds : as of `Case.odds`"""
-    return float(sum(np.log(o.share) for name, o in odds.items() if is_meant(effect, name)))
+    """Log of what the odds of an effect are multiplied by, before they are stated at their power: the stated odds
+    change by the factor that the user gave.  odds : as of `Case.odds`"""
+    return float(sum(np.log(o.share) for name, o in odds.items() if is_meant(effect, name))) / SHARPNESS

@@ -18,7 +18,7 @@ from validation.effects.during import During
 from validation.effects.time_window import event
 from validation.inference.decide import SURE, Posterior
 from validation.inference.evidence import Evidence
-from validation.inference.hypotheses import Weighed, inclusion, probabilities
+from validation.inference.hypotheses import SHARPNESS, Weighed, inclusion, probabilities
 from validation.inference.result import Question
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ def with_answers(evidence: Evidence, hypotheses: Sequence[Weighed], answers: Map
     for about, yes in answers.items():
         of_it = {k for k, e in enumerate(evidence.effects) if concerns(e, about)}
         right = [bool(of_it & set(h.members)) == yes for h in out]
-        odds = [float(np.log(1.0 - wrong if x else wrong)) for x in right]
+        odds = [float(np.log(1.0 - wrong if x else wrong)) / SHARPNESS for x in right]
         out = [replace(h, log_prior=h.log_prior + x) for h, x in zip(out, odds, strict=True)]
     return out
 

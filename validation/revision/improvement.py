@@ -128,12 +128,14 @@ def improve(
 ) -> Improvement:
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
-    A model that was never calibrated is calibrated first. What the diagnosis cannot tell is not offered.
+    A model that was never calibrated is calibrated first, if its own tests gain by that. What the diagnosis cannot
+    tell is not offered.
     """
     stairs = [Step(errors(case), {})]
     if not case.model.values:
         progress("calibrating")
-        case = _with_step(case, calibrate(case, progress=progress), supervisor, {}, stairs)
+        first = calibrate(case, progress=progress)
+        case = _with_step(case, first, supervisor, {}, stairs) if first.worth_keeping else case
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{diagnosis.verdict}: {diagnosis.words}")

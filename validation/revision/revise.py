@@ -46,6 +46,7 @@ Progress = Callable[[str], None]
 GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests
 LOST = 2.0  # a test that was fitted and is so many times worse has paid for another: no compromise costs that
 TRAINING = ("calibrate", "validate")
+FITTED = "fitted"  # the check of a calibration on the tests that it was fitted to
 TOGETHER = " + "  # between the names of effects that are added in one step
 
 
@@ -88,7 +89,8 @@ class Revision:
     @property
     def worth_keeping(self) -> bool:
         """Whether it belongs into the model: also a calibration that only its own tests gain by, which is told."""
-        return self.accepted or (self.action == "calibrate" and self.converged and bool(failures(self.checks)))
+        gains = bool(self.checks) and all(c.passed for c in self.checks if c.check == FITTED)
+        return self.accepted or (self.action == "calibrate" and self.converged and gains)
 
     @property
     def left_out_K(self) -> float | None:
@@ -254,10 +256,10 @@ def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
 
 
 def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> tuple[Check, ...]:
-    """Does a calibration leave tests that it has not seen as well predicted as they were by the model before?
+    """Does a calibration lower the error of its own tests, and leave others as well predicted as they were before?
 
-    Those are the tests that a fit may use and this one did not, and each of its own left out in turn, if the model as
-    it stood had not seen it either.
+    The others are the tests that a fit may use and this one did not, and each of its own left out in turn, if the
+    model as it stood had not seen it either.
     """
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
@@ -273,7 +275,14 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     if others:
         pairs["unseen"] = np.array([mean_square(others, "before"), mean_square(others, "after")])
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
-    which = {"left out": "each of its tests predicted from the rest", "unseen": ", ".join(c.name for c in others)}
+    mine_too = [c for c in changes if c.name in {t.name for t in fitted} and isfinite(c.before)]
+    if mine_too:
+        pairs[FITTED] = np.array([mean_square(mine_too, "before"), mean_square(mine_too, "after")])
+    which = {
+        "left out": "each of its tests predicted from the rest",
+        "unseen": ", ".join(c.name for c in others),
+        FITTED: "the tests it was fitted to",
+    }
     return tuple(
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()
@@ -339,9 +348,9 @@ def judge(
     in_fit = [c for c in changes if c.name in fitted]
     was, now = mean_square(in_fit, "before"), mean_square(in_fit, "after")
     converged = all(fit.converged for fit in fits)
-    failed = failures(acceptance)
+    failed, lower = failures(acceptance), all(c.passed for c in acceptance if c.check == FITTED)
     reasons = [
-        f"kept for the fitted tests only: {failed}" if failed and action == "calibrate" else failed,
+        f"kept for the fitted tests only: {failed}" if failed and action == "calibrate" and lower else failed,
         "" if converged else "not converged",
         f"rms over the tests used {fall(was, now)}",
         *other_changes(changes, fitted),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from math import comb, log
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,11 +17,13 @@ from measured.doubt import PRIOR
 from validation.effects.base import Effect
 from validation.effects.build import links_between, losses_at
 from validation.effects.input_terms import InputConductance, InputLoss, InputTerm, factor_words
-from validation.inference.evidence import Evidence
 from validation.yardstick.first_network import may_heat, may_stir
 from validation.yardstick.free_network import Powers, link_powers, loss_powers, power_words
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import POWERS, SHAPES, free_network_terms
+
+if TYPE_CHECKING:
+    from validation.inference.evidence import Evidence
 
 KINDS: tuple[tuple[str, type[InputTerm]], ...] = (("loss", InputLoss), ("link", InputConductance))
 

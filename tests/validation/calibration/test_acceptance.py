@@ -155,3 +155,15 @@ def test_the_only_test_that_tells_is_cut_where_half_of_what_the_step_does_has_be
     (cut,) = folds(tests, ["two"], middle)
     read = tests[1].time[np.isfinite(cut.fitted[1].channels[0].y)]
     assert read[-1] == pytest.approx(middle, rel=0.01)
+
+
+def test_a_calibration_is_not_kept_if_its_own_tests_lose_by_it():
+    """A heater that no input shows: what fits the noise of its blocks best may follow the readings worse."""
+    done = calibrate(Case("one", Model(one_node(FILM)), (measured("odd", loss=1.6), measured("usual", "validate"))))
+    (own,) = [c for c in done.checks if c.check == "fitted"]
+    (change,) = [t for t in done.tests if t.name == "odd"]
+    assert own.passed
+    assert (own.limit, own.value) == (pytest.approx(change.before), pytest.approx(change.after))
+    worse = replace(own, passed=False)
+    assert not replace(done, checks=(worse, *(c for c in done.checks if c != own))).worth_keeping
+    assert judge("calibrate", done.tests, (), (worse,), {"odd"})[1].startswith(worse.words)

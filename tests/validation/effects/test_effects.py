@@ -230,7 +230,7 @@ def test_a_loss_that_follows_an_input_heats_and_a_film_cools(name, net):
     late = predict(bigger, warm_test(net), {}, [p]).J[-1, :, 0]
     assert late[np.argmax(np.abs(late))] * (1.0 if name.startswith("loss") else -1.0) > 0.0
     (law,) = {one.law for one in added(bigger, net)}
-    assert float(law.factor({f: level for f, level, _ in effect(name).parts()[1]})) == pytest.approx(1.0)
+    assert float(law.factor({f: level for f, _, level, _ in effect(name).parts()[1]})) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
