@@ -80,14 +80,24 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     groups = [smallest_cover(every)]
     while more := further_group(every, groups):
         groups.append(more)
+    share, single = inclusion(hypotheses, len(evidence.effects)), singles_by_member(hypotheses)
+    groups.sort(key=lambda g: precedence(g[0], share, single))
     if len(groups) > 1:
         verdict: Verdict = "several"
     elif all(evidence.effects[k].fault for k in groups[0]):
         verdict = "data"
     else:
-        sure = inclusion(hypotheses, len(evidence.effects))[groups[0][0]] >= SURE
+        sure = share[groups[0][0]] >= SURE
         verdict = "named" if len(groups[0]) == 1 and sure else "group"
     return Decision(verdict, tuple(groups), something)
+
+
+def precedence(k: int, share: Array, single: Mapping[int, Weighed]) -> tuple[float, float]:
+    """Sorts causes: the most probable first, of equally probable ones the one that explains more by itself.
+
+    share : (n_cause,) probability of each
+    """
+    return -round(float(share[k]), 3), -single[k].nats if k in single else np.inf
 
 
 def smallest_cover(rows: Sequence[tuple[frozenset[int], float]], without: frozenset[int] = frozenset()) -> Group:

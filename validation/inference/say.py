@@ -125,13 +125,14 @@ def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
     words |= {name: effect_words(effect) for name, effect in zip(e.names, e.effects, strict=True)}
     words |= {f"heat@{h.heat}": f"heat of unknown cause at {h.heat}" for h in posterior.hypotheses if h.heat}
     causes = [tuple(e.names[k] for k in h.members) or (e.name(h),) for h in posterior.hypotheses]
+    nats = {each[0]: h.nats for each, h in zip(causes, posterior.hypotheses, strict=True) if len(each) == 1}
     left = list(zip(causes, map(float, probabilities(posterior.hypotheses)), strict=True))
     rows: list[Explanation] = []
     while left and sum(p for _, p in left) > LEAST_ODDS:
         share: dict[str, float] = {}
         for each, p in left:
             share |= {name: share.get(name, 0.0) + p for name in each}
-        lead = max(share, key=lambda name: share[name])
+        lead = max(share, key=lambda name: (round(share[name], 3), nats.get(name, -np.inf)))  # as `decide` orders them
         partners: dict[str, float] = {}
         for each, p in left:
             if lead in each:
