@@ -197,12 +197,19 @@ def rms(folds: Sequence[FoldPrediction]) -> float:
 
 
 def bound_check(fit: Fit, name: str) -> Check:
-    """Whether an amplitude is inside its bounds: told, and no reason to refuse what predicts; one of nothing is."""
+    """Whether an amplitude is inside its bounds: told, and no reason to refuse what predicts.
+
+    What is fitted to nothing is refused; and a room or inlet that would have to be further off than any reading is:
+    there something else is wrong.
+    """
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
     inside = f"{name} {value:.3g} lies between {p.low:.3g} and {p.high:.3g} {p.unit}"
     if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
+    if fit.at_bound[k] and p.targets[0][0].startswith("boundary:"):
+        words = f"{name} would have to be more than {value:.3g} {p.unit}: no boundary is read so far off"
+        return Check("bounds", False, value, p.high, words)
     at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"
     return Check("bounds", True, value, p.high, at if fit.at_bound[k] else inside)
 

@@ -15,7 +15,14 @@ from validation.calibration.staged_fit import fit_stages, measured_in
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.parameters.unknowns import Unknowns, working
-from validation.revision.acceptance import fold_prediction, folds, halves, middle_instant, prediction_checks
+from validation.revision.acceptance import (
+    bound_check,
+    fold_prediction,
+    folds,
+    halves,
+    middle_instant,
+    prediction_checks,
+)
 from validation.revision.revise import Change, add, calibrate, judge
 
 BIAS = Parameter(
@@ -167,3 +174,24 @@ def test_a_calibration_is_not_kept_if_its_own_tests_lose_by_it():
     worse = replace(own, passed=False)
     assert not replace(done, checks=(worse, *(c for c in done.checks if c != own))).worth_keeping
     assert judge("calibrate", done.tests, (), (worse,), {"odd"})[1].startswith(worse.words)
+
+
+def test_a_room_further_off_than_any_reading_is_refused():
+    """A body 15 K too warm for its room; the room may be off by 10 K. A film at its bound may still predict."""
+    far = Parameter(
+        "ambient.offset@ambient",
+        (("boundary:ambient", 1.0),),
+        value=0.0,
+        low=-10,
+        high=10,
+        prior_sd=90.0,
+        mapping="offset",
+        neutral=0.0,
+        unit="K",
+    )
+    narrow = replace(FILM, low=0.8, high=1.25)
+    for p, passes in ((far, False), (narrow, True)):
+        test = measured("one", shift=15.0)
+        fit = minimise(one_node(p), [test], Unknowns((p,)), np.zeros(1))
+        assert fit.at_bound[0]
+        assert bound_check(fit, p.name).passed == passes
