@@ -25,6 +25,7 @@ Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
+DRAFT_STEPS, LAST_STEPS = 10, 40  # of a fit that another follows, and of one that is kept: few need more than ten
 ROUGH = 1.0  # nats: a fit under a noise that is only guessed
 SHORTER, MORE, LESS = 0.01, 30.0, 10.0  # damping of the first shorter step; growth where that fails, fall where not
 SHORTEST, STALE = 1e6, 1e3  # damping beyond which no step gains; a stale Jacobian is given up before
@@ -422,7 +423,7 @@ def calibrated(
             fit.theta,
             fit_noise(fit.parts),
             fixed,
-            10,
+            DRAFT_STEPS if rough or i + 1 < rounds else LAST_STEPS,
             CachedSegments(fit.parts, nearby=False, stale=True),
             draft=rough or i + 1 < rounds,
             progress=progress,
