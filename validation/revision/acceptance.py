@@ -28,13 +28,17 @@ REFITS = 3  # steps of such a fit: it begins at an optimum that all tests but fe
 
 @dataclass(frozen=True)
 class Check:
-    """One check: what it found, the limit, and whether that is good enough."""
+    """One check: what it found, the limit, and whether that is good enough.
+
+    partial : of a part of the readings alone
+    """
 
     check: str
     passed: bool
     value: float
     limit: float
     words: str
+    partial: bool = False
 
     def document(self) -> dict:
         return dict(vars(self))
@@ -180,14 +184,13 @@ def prediction_checks(
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, {sum(nats):+.3g} nats in all"
-    only = (
-        f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if len(telling) == 1 else ""
-    )
+    part = len(telling) == 1
+    only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
     return (
-        Check("left out", sum(nats) > 0.0 and now <= was, sum(nats), 0.0, words),
-        Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K"),
+        Check("left out", sum(nats) > 0.0 and now <= was, sum(nats), 0.0, words, part),
+        Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
     )
 
 

@@ -94,9 +94,10 @@ class Revision:
 
     @property
     def left_out_K(self) -> float | None:
-        """Error (K rms) of tests that were left out in turn, with sensors as the rest has them; None where none was."""
+        """Error (K rms) of tests that were left out in turn, with sensors as the rest has them; None where none was,
+        and where a part of one test alone was predicted."""
         check = {"add": "no change", "calibrate": "left out"}.get(self.action)
-        return next((c.value for c in self.checks if c.check == check), None)
+        return next((c.value for c in self.checks if c.check == check and not c.partial), None)
 
     def __repr__(self) -> str:
         what = " ".join(x for x in (self.action, self.effect) if x)

@@ -60,7 +60,10 @@ def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
     """30 % more loss in both tests, or 30 % more in one and 30 % less in the other; 25 K of rise, read to 0.3 K."""
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
     before, after = ([fold_prediction(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in both(tests))
-    assert prediction_checks(before, after, ["one", "two"])[0].passed == better
+    checks = prediction_checks(before, after, ["one", "two"])
+    assert checks[0].passed == better
+    assert not any(c.partial for c in checks)
+    assert all(c.partial for c in prediction_checks(before, after, ["one"])), "a part of one test is no left-out error"
 
 
 def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
