@@ -172,7 +172,7 @@ def measured_row(source: Source, most: int, scratch: Path) -> Row:
         supervisor = Supervisor(best, suggest=True)
         result = improve(case, supervisor, most, lambda message: print(f"  {message}", file=sys.stderr))
     except (ThermoscopeError, RuntimeError) as fault:
-        return Row(source.name, fault=str(fault), cpu_s=cpu_s() - begin)
+        return Row(source.name, fault=str(fault).rpartition(": ")[2], cpu_s=cpu_s() - begin)
     if yard is None or not yard.hold_out:
         return Row(source.name, fault="no test kept back reads a sensor that others read", cpu_s=cpu_s() - begin)
     return row(source, case, yard, result, cpu_s() - begin)
