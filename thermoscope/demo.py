@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from validation.calibration.one_factor_fit import OneFactorFit
 
 CASE, KNOB, FLANGE = "road-test", "fan.flow", "flange.right"
-SHORT, LONGER = 6, 11  # lines of a chapter after its first sentence: the whole story is at most 80
+SHORT, LONGER = 5, 10  # lines of a chapter after its first sentence: the whole story is at most 80
 MARKER = ".made-by-thermoscope-demo"
 
 

@@ -35,6 +35,7 @@ class Recipe:
     joined_contacts : factors on all contacts at once, at which losses are solved, steady and at the shifts: corners of
         the range that random points do not reach
     favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
+    thin : the same weight for parts of little volume that nothing heats; by energy alone they have too few shapes
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
     """
 
@@ -51,6 +52,7 @@ class Recipe:
     film_factors: tuple[float, float] | None = None
     joined_contacts: tuple[float, ...] = ()
     favour: float = 1.0
+    thin: float = 1.0
 
     def other_films(self, films: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
         """Those of a random point."""

@@ -6,7 +6,6 @@ import numpy as np
 
 from geom import load_machine
 from geom.machine_file import machine_from
-from lumped.build import pipeline
 from lumped.build.fixed_coefficients import rated
 from lumped.build.pipeline import CASE, Meshing, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
@@ -23,9 +22,8 @@ def test_insulation_is_within_5_percent_of_its_rise(tmp_path, monkeypatch):
     recipe = replace(CASE, random_points=2, joined_contacts=(5.0,))
     reduction = reduced(ready, recipe)
     off = {}
-    for favour in (1.0, pipeline.THIN):
-        monkeypatch.setattr(pipeline, "THIN", favour)
-        network = on_every_base(networks_of(small, reduction, recipe)[0])
+    for favour in (1.0, CASE.thin):
+        network = on_every_base(networks_of(small, reduction, replace(recipe, thin=favour))[0])
         point = rated(small, network, ready.films, ready.contacts)
         assert "field.insulation" not in point.watts
         off[favour] = 0.0
@@ -40,4 +38,4 @@ def test_insulation_is_within_5_percent_of_its_rise(tmp_path, monkeypatch):
                 np.max(T[rows]) for T in (there.of_field(ready.field), there.of_network(network, ready.field))
             )
             off[favour] = max(off[favour], 100.0 * abs(ours / exact - 1.0))
-    assert off[pipeline.THIN] < 5.0 < off[1.0]
+    assert off[CASE.thin] < 5.0 < off[1.0]
