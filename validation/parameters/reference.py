@@ -7,6 +7,7 @@ another model wherever another test is recorded. So it is determined when the mo
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from math import fsum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +98,7 @@ def effect_sizes(network: Network, effects: Collection[str], tests: Sequence[Tes
 def mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:
     """Mean size of what the laws multiply an amplitude by; 0 where nothing is known."""
     factors = [np.abs(law.size(t.inputs)) for law in laws for t in tests if set(law.reads) <= set(t.inputs)]
-    return float(np.mean([np.mean(f) for f in factors])) if factors else 0.0
+    return fsum(float(np.mean(f)) for f in factors) / len(factors) if factors else 0.0  # to the bit in any order
 
 
 def value_counts(tests: Sequence[Test]) -> dict[str, int]:
