@@ -92,7 +92,7 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     tests = case.fitted if case.model.revision else ()
     network, unknowns = working(replace(case, tests=tests or case.tests))
     values = parameter_values(network, case.model.values)
-    larger, doubts = with_doubts(network, case.doubt, tests or case.tests)
+    larger, doubts = with_doubts(network, case.doubt, case.fitted or case.tests)
     of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
