@@ -144,6 +144,7 @@ TEMPER: Mapping[str, Odds] = MappingProxyType(
         "sharpness": Odds(1.25, "power of the odds as stated: what is said too carefully on other kinds of machine"),
     }
 )
+SHARPNESS = TEMPER["sharpness"].share
 SIZES = (0.3, 1.0, 3.0)  # of an effect's usual size: nobody knows it better than within a decade
 
 # What else can move a verdict, and no case widens: how errors, heat of unknown cause and dead channels look.

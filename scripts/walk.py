@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from pathlib import Path
@@ -80,20 +81,22 @@ def of_room(graph: Graph, room: str) -> Graph:
     return {name: graph[name] & inside for name in inside}
 
 
+@cache
+def room_module(file: str) -> str:
+    """The module of a file of the rooms, "" of any other."""
+    path = Path(file)
+    ours = path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ROOMS
+    return name_of(path) if ours else ""
+
+
 def visits(work: Callable[[], Any]) -> list[str]:
     """Modules whose functions run, one entry for every change from one to another."""
     out: list[str] = []
-    names: dict[str, str] = {}
 
     def look(frame: FrameType, event: str, argument: Any) -> None:
         if event != "call":
             return
-        file = frame.f_code.co_filename
-        if file not in names:
-            path = Path(file)
-            ours = path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ROOMS
-            names[file] = name_of(path) if ours else ""
-        name = names[file]
+        name = room_module(frame.f_code.co_filename)
         if name and frame.f_code.co_name != "<module>" and (not out or out[-1] != name):
             out.append(name)
 
@@ -108,17 +111,12 @@ def visits(work: Callable[[], Any]) -> list[str]:
 def stations(work: Callable[[], Any]) -> list[tuple[str, float]]:
     """Modules in order of the first visit, with the share of the time between a visit and its return."""
     inside: dict[str, float] = {}  # module -> seconds, all that it calls included
-    names: dict[str, str] = {}
     depth: dict[str, int] = {}  # module -> how often it waits for a call of its own
     since: dict[str, float] = {}
 
     def look(frame: FrameType, event: str, argument: Any) -> None:
         file = frame.f_code.co_filename
-        if file not in names:
-            path = Path(file)
-            ours = path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ROOMS
-            names[file] = name_of(path) if ours and path.stem != "__init__" else ""
-        name = names[file]
+        name = "" if file.endswith("__init__.py") else room_module(file)
         if not name or event not in ("call", "return") or frame.f_code.co_name == "<module>":
             return
         if event == "call":

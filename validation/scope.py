@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from measured.doubt import TEMPER, Odds
+from measured.doubt import SHARPNESS, Odds
 from validation.effects.base import Effect
 from validation.effects.during import During
 
-SHARPNESS = TEMPER["sharpness"].share
 SENSORS = "sensors"  # every fault of a thermometer of the machine
 
 

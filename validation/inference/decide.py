@@ -81,7 +81,7 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     while more := further_group(every, groups):
         groups.append(more)
     share, single = inclusion(hypotheses, len(evidence.effects)), singles_by_member(hypotheses)
-    groups.sort(key=lambda g: precedence(g[0], share, single))
+    groups.sort(key=lambda g: precedence(share[g[0]], single[g[0]].nats if g[0] in single else -np.inf))
     if len(groups) > 1:
         verdict: Verdict = "several"
     elif all(evidence.effects[k].fault for k in groups[0]):
@@ -92,12 +92,12 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     return Decision(verdict, tuple(groups), something)
 
 
-def precedence(k: int, share: Array, single: Mapping[int, Weighed]) -> tuple[float, float]:
+def precedence(probability: float, nats: float) -> tuple[float, float]:
     """Sorts causes: the most probable first, of equally probable ones the one that explains more by itself.
 
-    share : (n_cause,) probability of each
+    nats : log evidence of the cause alone
     """
-    return -round(float(share[k]), 3), -single[k].nats if k in single else np.inf
+    return -round(float(probability), 3), -nats
 
 
 def smallest_cover(rows: Sequence[tuple[frozenset[int], float]], without: frozenset[int] = frozenset()) -> Group:

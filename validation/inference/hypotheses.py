@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from lumped.model.network import Network, Parameter
-from measured.doubt import PRIOR, RARE, TEMPER, temper
+from measured.doubt import PRIOR, RARE, SHARPNESS, temper
 from validation.effects.base import Effect
 from validation.effects.registry import extended
 from validation.inference.columns import Linearised
@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
-SHARPNESS = TEMPER["sharpness"].share
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 

@@ -12,13 +12,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from measured.doubt import USUAL
+from measured.doubt import SHARPNESS, USUAL
 from validation.effects.base import Effect
 from validation.effects.during import During
 from validation.effects.time_window import event
 from validation.inference.decide import SURE, Posterior
 from validation.inference.evidence import Evidence
-from validation.inference.hypotheses import SHARPNESS, Weighed, inclusion, probabilities
+from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.result import Question
 
 Array = NDArray[np.float64]

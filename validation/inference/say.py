@@ -18,7 +18,7 @@ from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During, effect_words
 from validation.effects.time_window import Event
-from validation.inference.decide import Decision, Group, Posterior
+from validation.inference.decide import Decision, Group, Posterior, precedence
 from validation.inference.evidence import Evidence, smallest_visible, thresholds
 from validation.inference.hypotheses import (
     REPORTED,
@@ -132,7 +132,7 @@ def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
         share: dict[str, float] = {}
         for each, p in left:
             share |= {name: share.get(name, 0.0) + p for name in each}
-        lead = max(share, key=lambda name: (round(share[name], 3), nats.get(name, -np.inf)))  # as `decide` orders them
+        lead = min(share, key=lambda name: precedence(share[name], nats.get(name, -np.inf)))
         partners: dict[str, float] = {}
         for each, p in left:
             if lead in each:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geom.errors import InputError
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Law
 from lumped.transfer.ranges import within_silence
@@ -54,7 +55,9 @@ def network_terms(case: Case, evidence: Evidence, kinds: Sequence[str] | None = 
 
 
 def input_term(term: Term, network: Network, sizes: Mapping[str, float]) -> InputTerm | None:
-    """The effect that adds a term which follows inputs; None where it is constant, or nothing physical.
+    """The effect that adds a term which follows inputs; None where it is constant or nothing physical.
+
+    None, too, of an input whose name no effect can spell, such as one with " * " in it.
 
     sizes : input -> its largest size
     """
@@ -63,9 +66,11 @@ def input_term(term: Term, network: Network, sizes: Mapping[str, float]) -> Inpu
     if form is None:
         return None
     where = sorted({term.place, term.other} - {""}, key=lambda end: (end in network.boundaries, end))
-    return dict(KINDS)[term.kind](
-        "|".join([*where, factor_words((f.input, f.begin * sizes[f.input], sizes[f.input], f.exponent) for f in form)])
-    )
+    factors = factor_words((f.input, f.begin * sizes[f.input], sizes[f.input], f.exponent) for f in form)
+    try:
+        return dict(KINDS)[term.kind]("|".join([*where, factors]))
+    except InputError:
+        return None
 
 
 def possible_forms(network: Network, inputs: Sequence[str], element: str) -> list[Powers]:

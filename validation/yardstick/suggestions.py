@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geom.errors import InputError
 from lumped.model.network import Link, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
@@ -61,14 +60,6 @@ def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ..
 
 
 def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
-    """The same; None where an input has a name that no effect can spell, such as one with " * " in it."""
-    try:
-        return _lacking(group, case)
-    except InputError:
-        return None
-
-
-def _lacking(group: Sequence[Term], case: Case) -> Suggestion | None:
     """Of the terms between two places, or at one; None where what is declared can do the same."""
     first, network, sizes = group[0], case.model.network, largest_inputs(case.usable)
     laws = [x.law for x in term_elements(network, first)]

@@ -35,7 +35,9 @@ def machines(
     if copied is not None:
         file = copy_machine(copied, out or Path())
         give(
-            {"machine": copied, "file": file}, target, lambda: Summary(f"{file}: yours to change.", [], next_step(file))
+            {"machine": copied, "file": file},
+            target,
+            lambda: Summary(f"{file}: yours to change.", [], f"Next: thermoscope model build {quote(str(file))}"),
         )
         return 0
     entries = catalogue()
@@ -57,11 +59,6 @@ def copy_machine(name: str, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(library()[name], target)
     return target
-
-
-def next_step(file: Path) -> str:
-    """What to do with a machine file."""
-    return f"Next: thermoscope model build {quote(str(file))}"
 
 
 def described(entry: Entry, page: Path | None) -> dict[str, Any]:

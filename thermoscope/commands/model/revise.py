@@ -109,7 +109,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     places = unmeasured(folder, result)
     nuisance_words = strain_words(replace(folder.case, model=result.model))
     more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
-    more |= {"words": words(folder, result), "worst": worst_record(result)}
+    more |= {"words": words(folder, result), "worst": largest_error(result)}
     document = {**result.document(), **more}
     give(document, target, lambda: revision_summary(document, folder, case))
     return 0 if result.accepted or anyway else 1
@@ -124,7 +124,7 @@ def words(folder: Folder, result: revise.Revision) -> str:
     return " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
 
 
-def worst_record(result: revise.Revision) -> dict[str, Any]:
+def largest_error(result: revise.Revision) -> dict[str, Any]:
     """The record with the largest error after the step."""
     records = [(c, t.name) for t in result.after.tests for c in t.channels]
     worst, test = max(records, key=lambda row: row[0].rmse_K)
