@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import ThermoscopeError
+from geom.errors import NoSolution
 from geom.text import table
 from lumped.integration.compiled import compiled
 from lumped.integration.reach import Reach
@@ -53,7 +53,7 @@ def steady(
 
     Arguments as for `simulate`.
 
-    Raises ThermoscopeError where there is no rest: a node that nothing holds, or losses that grow faster with
+    Raises NoSolution where there is no rest: a node that nothing holds, or losses that grow faster with
     temperature than the cooling does (thermal runaway).
     """
     core = compiled(network, Record(np.zeros(1), inputs, boundaries), values, rows, tangents)
@@ -64,7 +64,7 @@ def steady(
     rests = solve_steady_start(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
     if not rests or np.linalg.eigvals(scratch.G[:, :n]).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
-        raise ThermoscopeError(f"{network.title} does not come to rest: {why}")
+        raise NoSolution(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], scratch.D
     reach = Reach(core.terms)
     reach.see(z[None, :])

@@ -68,11 +68,11 @@ def test_command_lists_the_library_as_document_and_as_table(page, tmp_path, caps
     from thermoscope.commands.model.machines import machines
     from thermoscope.console.summary import limited_lines
 
-    assert machines(tmp_path / "lib", "-") == 0
+    assert machines(None, tmp_path / "lib", "-") == 0
     document = json.loads(capsys.readouterr().out)
     assert [row["name"] for row in document["machines"]] == list(library())
     assert all((tmp_path / "lib" / "thumbnails" / f"{name}.svg").is_file() for name in library())
     with limited_lines(None):
-        assert machines(None, None) == 0
+        assert machines(None, None, None) == 0
     shown = capsys.readouterr().out
     assert all(name in shown for name in library())
