@@ -30,9 +30,8 @@ ABOUT = "See where your motor's thermal model is wrong, and why."
 CODES = """Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 the input is wrong.
 --all after any command shows all it knows; --debug where an error came from."""
 
-# Read when NumPy is imported. The matrices of a diagnosis are small: threads of BLAS would mostly wait for each other.
-# Those of a field are large: two halve the time of its factors.
-LARGE = (["model", "build"], ["model", "crosscheck"])
+# Read when NumPy is imported. The matrices of a diagnosis, and most fronts of a field, are small: threads of BLAS would
+# mostly wait for each other. A build of `pmsm-m1` takes 160 s of one thread, and 420 s of two.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 # Group -> what it is for, and its commands: MODULE, or MODULE.COMMAND where they have not one name. Each command is a
@@ -114,7 +113,7 @@ def main() -> None:
     """Run the command line and exit; what is wrong with the input is one message on stderr and exit code 2."""
     arguments = [a for a in sys.argv[1:] if a not in ANYWHERE]
     for name in BLAS_THREADS:
-        os.environ.setdefault(name, str(min(2, os.cpu_count() or 1) if arguments[:2] in LARGE else 1))
+        os.environ.setdefault(name, "1")
     _open_streams()
     try:
         with limited_lines(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
