@@ -89,15 +89,15 @@ def _least_cover(low: Ints, high: Ints) -> tuple[Ints, Ints]:
     match = maximum_bipartite_matching(edges, perm_type="column")  # of every low end; -1: none
     partner = np.full(len(highs), -1)
     partner[match[match >= 0]] = np.flatnonzero(match >= 0)
-    reached, met, front = match < 0, np.zeros(len(highs), bool), np.flatnonzero(match < 0)
+    below, above, front = match < 0, np.zeros(len(highs), bool), np.flatnonzero(match < 0)
     while len(front):
         fresh = np.zeros(len(highs), bool)
         fresh[edges[front].indices] = True
-        fresh &= ~met
-        met |= fresh
+        fresh &= ~above
+        above |= fresh
         front = partner[fresh]  # all matched: a path that ended here would make the matching larger
-        reached[front] = True
-    return lows[~reached], highs[met]
+        below[front] = True
+    return lows[~below], highs[above]
 
 
 def _below(s: Floats) -> NDArray[np.bool_]:
