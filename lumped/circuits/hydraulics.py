@@ -13,7 +13,9 @@ from lumped.correlations.ducts import LAMINAR, TURBULENT
 from lumped.transfer.properties import Fluid
 
 Array = NDArray[np.float64]
-POINTS = 3200  # of a split, 1 % apart in flow: at 3 % films are off by 2 % beside a kink of the friction
+POINTS = 1600  # of a split, 2 % apart in flow, beside the kinks of the friction: straight in between to 1e-4 of a share
+COIL_BRIDGE = 1.2  # of a coil's critical Re, where Schmidt's turbulent friction begins: his branches do not meet
+COIL_JUMP = 2.2e4  # Re at which his turbulent friction steps up
 SLOWEST = 1e-3  # where a split begins below the least flow: branches may take so little
 STRAIGHT = 1e-3  # of a share
 ROUGHNESS = 2.5e-6  # m, drawn or die-cast channel
@@ -89,7 +91,7 @@ def helical_friction(Re: float, diameter: float, coil: float, relative_roughness
     critical = fluids.helical_transition_Re_Schmidt(diameter, coil)
     if critical >= Re:
         return fluids.friction.helical_laminar_fd_Schmidt(max(Re, 1e-12), diameter, coil)
-    top = 1.2 * critical  # his branches do not meet; they are bridged over a fifth of the critical Re
+    top = COIL_BRIDGE * critical
     share = min((Re - critical) / (top - critical), 1.0)
     low = fluids.friction.helical_laminar_fd_Schmidt(critical, diameter, coil)
     high = fluids.friction.helical_turbulent_fd_Schmidt(max(Re, top), diameter, coil, relative_roughness)
@@ -134,13 +136,32 @@ def split(branches: Sequence[Sequence[Passage]], low: float, high: float, fluid:
 
     Shares depend on the flow over the kinematic viscosity alone: one split holds for a fluid at every temperature.
     """
-    flows = np.geomspace(low * SLOWEST, high, POINTS)
-    drops = np.array([[sum(pressure_drop(duct, float(q), fluid) for duct in b) for q in flows] for b in branches])
-    p = np.linspace(np.log(drops[:, 0].max()), np.log(drops[:, -1].min()), POINTS)
-    each = np.exp([np.interp(p, np.log(drop), np.log(flows)) for drop in drops])
-    total = each.sum(axis=0)
-    some = _needed(np.log(total), each / total, 0, POINTS - 1)
-    return np.log(total[some]), each[:, some] / total[some]
+    even, curves = np.geomspace(low * SLOWEST, high, POINTS), []
+    for branch in branches:
+        kinks = [q for duct in branch for q in _kinks(duct, fluid) if even[0] < q < even[-1]]
+        flows = np.union1d(even, kinks)
+        drops = [sum(pressure_drop(duct, float(q), fluid) for duct in branch) for q in flows]
+        curves.append((np.log(drops), np.log(flows), np.isin(flows, kinks)))
+    first, last = max(drops[0] for drops, *_ in curves), min(drops[-1] for drops, *_ in curves)
+    bends = np.concatenate([drops[kink] for drops, _, kink in curves])
+    p = np.union1d(np.linspace(first, last, POINTS), bends[(first < bends) & (bends < last)])
+    each = np.exp([np.interp(p, drops, flows) for drops, flows, _ in curves])
+    total, some = np.unique(each.sum(axis=0), return_index=True)
+    shares = each[:, some] / total
+    some = _needed(np.log(total), shares, 0, len(total) - 1)
+    return np.log(total[some]), shares[:, some]
+
+
+def _kinks(duct: Passage, fluid: Fluid) -> list[float]:
+    """Flows (m3/s) at which the friction of a duct bends: where turbulence begins and where all of it is turbulent."""
+    import fluids
+
+    if duct.coil:
+        critical = fluids.helical_transition_Re_Schmidt(duct.diameter, duct.coil)
+        numbers = [critical, COIL_BRIDGE * critical, COIL_JUMP * (1 - 1e-9), COIL_JUMP * (1 + 1e-9)]
+    else:
+        numbers = [LAMINAR, TURBULENT]
+    return [Re * fluid.nu / duct.diameter * duct.section for Re in numbers]
 
 
 def _needed(x: Array, y: Array, first: int, last: int) -> list[int]:

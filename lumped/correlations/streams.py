@@ -21,6 +21,7 @@ THIN = 1.5e-3  # of a viscosity between two temperatures: where a regime begins 
 LEAST, MOST = 1e-5, 1e4  # times the usual input: where a table ends at the latest
 REACH = 20.0  # and at the earliest: at four times the usual input in a fluid of a fifth of the viscosity
 LOOKS = (0.2, 0.5, 0.8)  # of a cell, where a film is looked at: a corner may be anywhere in it
+GRID_K = TABULATED_C[1] - TABULATED_C[0]
 FINEST = 2e-3  # of a logarithm: no cell is cut further, at a jump
 
 
@@ -85,8 +86,20 @@ def _temperatures(
     """The usual one, at which nothing is missed, and as many as viscosity and film ask for where the fluid is known."""
     wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
     span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
-    some = sorted({T for T in (*wide, degC) if span[0] < T < span[-1]})
-    return list(_between(film, fluid, usual, [span[0], *some, span[-1]]))
+    ends = [_limit(fluid, span[0], -GRID_K), _limit(fluid, span[-1], GRID_K)] if liquid else [span[0], span[-1]]
+    some = sorted({T for T in (*wide, degC) if ends[0] < T < ends[1]})
+    return list(_between(film, fluid, usual, [ends[0], *some, ends[1]]))
+
+
+def _limit(fluid: Callable[[float], Fluid], known: float, step: float) -> float:
+    """Where a fluid freezes or boils between a temperature at which it is known and the next, to 0.02 K."""
+    gone = known + step
+    if _exists(fluid, gone):
+        return known
+    for _ in range(8):
+        middle = 0.5 * (known + gone)
+        known, gone = (middle, gone) if _exists(fluid, middle) else (known, middle)
+    return known
 
 
 def _exists(fluid: Callable[[float], Fluid], T: float) -> bool:

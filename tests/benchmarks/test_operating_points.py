@@ -3,6 +3,8 @@
 All machines, all coolants and 200 points of each: benchmarks/operating_points.py.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import operating_points
 import pytest
@@ -31,13 +33,26 @@ def test_no_circuit_and_no_declared_film_is_off_and_heat_closes(monkeypatch):
     assert max(off for (kind, _), (off, _) in found.items() if kind.endswith("at rest")) < 1e-9
 
 
-def test_beside_the_kinks_of_friction_branches_are_not_off(monkeypatch):
-    """Where one of three branches turns turbulent, its share moves the films of all."""
+@pytest.mark.parametrize(
+    ("branches", "coolant", "seed"), [("three branches", COOLANTS[1], 1), ("two branches", COOLANTS[2], 48)]
+)
+def test_beside_the_kinks_of_friction_branches_are_not_off(branches, coolant, seed, monkeypatch):
+    """Where one of several branches turns turbulent, its share moves the films of all."""
     monkeypatch.setattr(operating_points, "steady", lambda network, inputs, at: {"c.outlet": at["inlet"]})
-    data = {"coolant": COOLANTS[1], "passes": operating_points.CIRCUITS["three branches"]}
-    kinds = dict(operating_points.circuit_points("three", data, 150, np.random.default_rng(1)))
-    found = worst((("films", ""), pair) for pair in kinds["films"])
-    assert max(off for off, _ in found.values()) < 0.01
+    data = {"coolant": coolant, "passes": operating_points.CIRCUITS[branches]}
+    kinds = dict(operating_points.circuit_points(branches, data, 150, np.random.default_rng(seed)))
+    found = worst(((kind, ""), pair) for kind in ("films", "shares of branches") for pair in kinds[kind])
+    assert found["films", ""][0] < 0.01
+    assert found["shares of branches", ""][0] < 0.002
+
+
+def test_a_coolant_is_followed_until_it_freezes(monkeypatch):
+    """Propylene glycol of 40 % by volume is liquid 1 K below the last step of the grid of temperatures."""
+    monkeypatch.setattr(operating_points, "steady", lambda network, inputs, at: {"c.outlet": at["inlet"]})
+    cold = SimpleNamespace(uniform=lambda low, high: -20.9 if low == -40.0 else 0.5 * (low + high))
+    data = {"coolant": COOLANTS[2], "passes": operating_points.CIRCUITS["a coil"]}
+    kinds = dict(operating_points.circuit_points("a coil", data, 1, cold))
+    assert worst((("films", ""), pair) for pair in kinds["films"])["films", ""] == (pytest.approx(0.0, abs=0.002), 1)
 
 
 def test_a_table_that_ends_says_so(monkeypatch, tmp_path):
