@@ -130,7 +130,7 @@ def test_bands(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
     of, places = posterior_of(folder, progress), _places(named_rows(model_of(folder)[0], folder))
     out = []
-    for test in counted("bands around the model", folder.case.tests):
+    for test in counted("bands around the model", folder.case.tests, len(folder.case.tests)):
         out += _widths(test, band_stretches(of, _test_of(test.name, record(test, {})), places))
     return out
 

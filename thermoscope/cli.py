@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -115,6 +116,14 @@ def main() -> None:
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
     _open_streams()
+    stopped: list[int] = []
+
+    def stop(*_: object) -> None:
+        stopped.append(STOPPED)
+        raise KeyboardInterrupt
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, stop)
     try:
         with limited_lines(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
             if "--help" not in arguments:
@@ -125,8 +134,10 @@ def main() -> None:
     except Exception as fault:
         if "--debug" in sys.argv:
             raise
-        print(one_line(fault), file=sys.stderr)
-        raise SystemExit(2) from None
+        if not stopped:
+            print(one_line(fault), file=sys.stderr)
+            raise SystemExit(2) from None
+        code = STOPPED  # what a package makes of Ctrl-C while it is loaded
     if code == STOPPED:
         print(
             f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TypeVar
@@ -21,8 +21,8 @@ def listening(tell: Callable[[str], None]) -> Iterator[None]:
         _listener.reset(token)
 
 
-def counted(what: str, pieces: Collection[T]) -> Iterator[T]:
-    """The pieces one by one, each announced as "WHAT (3 of 200)"."""
+def counted(what: str, pieces: Iterable[T], count: int) -> Iterator[T]:
+    """The pieces one by one, each announced as "WHAT (3 of 200)"; without words where they are part of something."""
     for number, piece in enumerate(pieces, 1):
-        _listener.get()(f"{what} ({number} of {len(pieces)})")
+        _listener.get()(f"{what} ({number} of {count})".strip())
         yield piece

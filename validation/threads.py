@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import wraps
+from itertools import chain
 from typing import ParamSpec, TypeVar
 
 from threadpoolctl import threadpool_limits
+
+from validation.counting import counted
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -33,7 +36,7 @@ def one_blas_thread(work: Callable[P, R]) -> Callable[P, R]:
 def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[T], float] | None = None) -> list[R]:
     """What `work` makes of every piece, in their order. No piece may depend on another.
 
-    length : of a piece, of which the longest begin first
+    length : of a piece, of which the longest begin first. Whoever listens hears how many are done.
     """
     every = list(pieces)
     if len(every) < 2:
@@ -41,4 +44,6 @@ def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[
     order = sorted(range(len(every)), key=lambda i: -length(every[i])) if length else range(len(every))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         futures = {i: pool.submit(work, every[i]) for i in order}
+        for _ in counted("", chain([None], as_completed(futures.values())), len(every) + 1):  # as it begins, too
+            pass
         return [futures[i].result() for i in range(len(every))]

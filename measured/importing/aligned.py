@@ -74,6 +74,19 @@ def common(
     return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
 
 
+def longest_part(first: Recording, limit_s: float) -> tuple[tuple[float, float | None], tuple[str, ...]]:
+    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note."""
+    t = first.clock.seconds[np.isfinite(first.clock.seconds)]
+    gaps = np.flatnonzero(np.diff(t) > max(limit_s, 2 * first.step_s))
+    if not gaps.size:
+        return (0.0, None), ()
+    starts, ends = t[np.r_[0, gaps + 1]], t[np.r_[gaps, t.size - 1]]
+    k = int(np.argmax(ends - starts))
+    begin, end = float(starts[k]), float(ends[k])
+    what = f"no rows of {first.name} from {t[gaps[0]]:.6g} s to {t[gaps[0] + 1]:.6g} s"
+    return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
+
+
 def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:
     end, theirs = first.clock.end_s, other.clock.end_s
     if shift_s > end or shift_s + theirs < 0.0:

@@ -47,6 +47,7 @@ TIME_UNITS = {**{u: f for u, (f, _) in QUANTITIES["time"].units.items()}, "us": 
 SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
 LEAST = 3  # rows with a time
+EVEN = 1.5  # the longest step over the usual one of a record without gaps
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
 MANY = 100  # from one row to the next: more often ms than seconds, but for the steps of buildings
@@ -90,6 +91,28 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
+
+
+def in_time_order(source: Source) -> Source:
+    """With rows that stand out of order where they belong, and a note.
+
+    As it is where that makes no even clock: one that starts anew, or is set back, is another matter; numbers that fall
+    throughout may count down.
+    """
+    clock = _guessed_clock(source)
+    if clock is None or not np.isfinite(clock.seconds).all():
+        return source
+    order = np.argsort(clock.seconds, kind="stable")
+    step = np.diff(clock.seconds[order])
+    back = int((np.diff(clock.seconds) < 0).sum())
+    counts_down = clock.start is None and back > step.size / 2
+    if step.min() <= 0 or step.max() > EVEN * np.median(step) or counts_down:
+        return source
+    cells = {n: c[order] if isinstance(c, np.ndarray) else [c[i] for i in order] for n, c in source.cells.items()}
+    note = (
+        f"{source.file.name}: the clock runs back {back} times; sorted by time its rows are {np.median(step):g} s apart"
+    )
+    return replace(source, cells=cells, notes=(*source.notes, note), values={})
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -391,7 +414,11 @@ def _numeric(source: Source) -> Clock | None:
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)
-    return _scaled(source, numeric[0]) if source.unnamed and rises(source, numeric[0]) else None
+    if source.unnamed and rises(source, numeric[0]):
+        return _scaled(source, numeric[0])
+    cells = {c: source.numbers(c).tobytes() for c in numeric if rises(source, c)}
+    repeated = [c for c in cells if [*cells.values()].count(cells[c]) > 1]  # one clock beside every signal
+    return _scaled(source, repeated[0]) if repeated and source.period_s is None else None
 
 
 def rises(source: Source, column: str) -> bool:

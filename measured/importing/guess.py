@@ -52,7 +52,7 @@ SUREST = "unit and name"  # by which a column was told: such a one goes before o
 WEAK = frozenset({"", "%", "1", "V", "mV", "Hz"})  # units that say little of what a column is
 FIRST = (
     *("temperature", "current", "speed", "torque", "power", "vehicle_speed"),
-    *("voltage", "share", "water_flow", "air_flow", "frequency"),
+    *("voltage", "share", "water_flow", "air_flow", "frequency", "resistance"),
 )  # of several quantities that have a unit, the likelier before the others
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do

@@ -8,7 +8,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from geom.errors import InputError
 from measured.importing.cells import is_date, is_reading, number
 from measured.importing.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
@@ -24,7 +23,6 @@ def side_by_side(
 
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
     temperatures go on between them.
-    InputError where such times cannot be put in order.
     """
     key = next((j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])), None)
     if key is None:
@@ -48,7 +46,7 @@ def side_by_side(
     notes = []
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
-        instants = _in_order(dict.fromkeys(clocks), what, where)
+        instants = _in_order(dict.fromkeys(clocks))
         notes = [f"{Path(where).name}: {what}; all but temperatures hold until the next reading of their signal"]
         for signal, readings in series.items():
             if roles_of(signal) or "temperature" in quantities_of(signal):
@@ -60,13 +58,14 @@ def side_by_side(
     return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
 
 
-def _in_order(instants: Iterable[tuple[Any, ...]], what: str, where: str) -> list[tuple[Any, ...]]:
-    """Instants by their first cell: a number, or a date as ISO has it."""
+def _in_order(instants: Iterable[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+    """Instants by their first cell, a number or a date as ISO has it; else as the file has them, which clocks refuse
+    where it runs back."""
+    plain = {t: number(t[0]) for t in instants}
     try:
-        plain = {t: number(t[0]) for t in instants}
         plain |= {t: datetime.fromisoformat(str(t[0])).timestamp() for t, value in plain.items() if value != value}
     except ValueError:
-        raise InputError(what, where, "dates as ISO has them, or a column for each signal, with common times") from None
+        return list(plain)
     return sorted(plain, key=lambda t: plain[t])
 
 

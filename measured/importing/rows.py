@@ -15,6 +15,7 @@ from measured.importing.words import is_time, quantities_of, roles_of
 SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
+SHORT = 0.1  # of all rows of readings: settings of channels are few
 TALLEST = 8  # rows of names, tags, kinds and units over the readings
 
 Row = Sequence[object]
@@ -66,6 +67,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         right = "as many as names: decimal commas become points, or columns stand between ';'"
         raise InputError(f"{width} values under {len(names)} names", where, right)
     width = len(names) if len(names) > width else width
+    names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     if above and len(set(names)) < len(names):  # names of groups over those of columns
         groups = _forward_filled(above[-1])
@@ -88,7 +90,7 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     block: list[int] = []
     for i in reversed(range(max(0, first - TALLEST), first)):
         cells = [str(c).strip() for c in rows[i] if c is not None and str(c).strip()]
-        alone = len(cells) == 1 < 0.5 * width <= len(rows[i]) and not cells[0].startswith("***")
+        alone = len(cells) == 1 < 0.5 * width <= (len(rows[i]) if block else width) and not cells[0].startswith("***")
         if alone or any(map(is_date, cells)):
             continue
         if cells and (len(cells) < 0.5 * width or all(map(is_reading, cells))):
@@ -96,6 +98,21 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
         if cells:
             block.insert(0, i)
     return block
+
+
+def _called(names: list[str], before: Sequence[Row]) -> list[str]:
+    """Names of channels with what a table before the readings calls them: there a row for each says what it is."""
+    labels = [split_unit(name)[0] for name in names]
+    table = {str(row[0]).strip(): row for row in map(trimmed, before) if len(row) > 1 and str(row[0]).strip() in labels}
+    if len(table) < 2 or any(map(roles_of, names)):
+        return names
+    told = [
+        sum(bool(roles_of(str(row[j])) or quantities_of(str(row[j]))) for row in table.values() if j < len(row))
+        for j in range(max(map(len, table.values())))
+    ]
+    column = max(range(1, len(told)), key=lambda j: told[j])
+    called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and told[column]}
+    return [f"{name} {called.get(label, '')}".strip() for name, label in zip(names, labels, strict=True)]
 
 
 def _informative(row: Row) -> int:
@@ -129,10 +146,21 @@ def _readings(row: Row) -> bool:
 
 
 def _first(rows: Sequence[Row], width: int, where: str) -> int:
-    """The first of several rows of readings, as wide as the table or less where cells are empty."""
+    """The first of several rows of readings, as wide as the table or less where cells are empty.
+
+    A few rows before a header of their own are settings of channels, whose ranges look like readings.
+    """
     fits = [_readings(row) and width / 2 < len(row) and len(trimmed(row)) <= width for row in rows]
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
+            after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
+            names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
+            if (
+                after - i < SHORT * sum(fits)
+                and max(map(len, map(trimmed, rows[i:after]))) < width
+                and len(set(names)) >= width
+            ):
+                continue
             while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 i -= 1  # a remark behind the readings of a first row
             return i

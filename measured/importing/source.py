@@ -28,11 +28,12 @@ from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
-BINARY = (".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")
 UNIT_NAMES = ("unit", "einheit", "unité", "unità")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BOOKS = (".xlsx", ".xlsm")
+POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
@@ -150,7 +151,7 @@ def _source(
     notes: Sequence[str],
     start: float | None = None,
 ) -> Source:
-    pairs = list(zip(names, columns, strict=True))
+    pairs = [(name, _with_colons(cells)) for name, cells in zip(names, columns, strict=True)]
     cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
     if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
@@ -165,6 +166,14 @@ def _source(
             unit_texts[before] = unit
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
+
+
+def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
+    """Times of day that are written as dates are, 09.14.05: a year that changes from row to row is a second."""
+    if isinstance(cells, np.ndarray) or not all(isinstance(c, str) and POINTED.fullmatch(c.strip()) for c in cells[:9]):
+        return cells
+    seconds = {str(c)[-2:] for c in cells}
+    return [str(c).replace(".", ":") for c in cells] if len(seconds) > 2 else cells
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:

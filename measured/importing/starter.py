@@ -134,13 +134,14 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         hot_left = [(s, g) for s, g in left if g.quantity in ("", "temperature")]
         hot_left = [(s, g) for s, g in hot_left if quantities_of(s.labels[g.column]) in ([], ["temperature"])]
         wound = [g.column for s, g in hot_left if Role.WINDING in roles_of(s.labels[g.column])[:1]]
-        if wound and not any(
-            Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place
-        ):
-            out.setdefault(
-                "winding",
-                f"the winding was not placed: '{wound[0]}' looks like winding; --place {quote(f'{wound[0]}=PLACE')}",
-            )
+        ohms = [g.column for _, g in left if g.quantity == "resistance"]
+        if not any(Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place):
+            if wound:
+                how = f"'{wound[0]}' looks like winding; --place {quote(f'{wound[0]}=PLACE')}"
+                out.setdefault("winding", f"the winding was not placed: {how}")
+            elif ohms:
+                how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
+                out.setdefault("winding", f"the winding was not placed: {how}")
         hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
         if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
             out.setdefault("bearing", "no winding is measured, a bearing alone")

@@ -145,7 +145,7 @@ def decoded(raw: bytes, file: Path) -> str:
         raise InputError(
             "holds zero bytes, so it is no text: it is no record",
             str(file),
-            "CSV or other text, .xlsx, .tdms, .mf4 or .parquet",
+            "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
         )
     try:
         return raw.decode("utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from geom.description.roles import Role
 
-WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ÿ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[\u3040-\u9fff]+|[α-ωϑ]+")
+WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[\u3040-\u9fff]+|[α-ωϑ]+")
 
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
@@ -21,9 +21,9 @@ def _words(text: str) -> frozenset[str]:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS = (
+SETPOINT, READ, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
     _words(VOCABULARY["words"][name])
-    for name in ("setpoint", "read", "inlet", "nothing", "difference", "clock", "loss")
+    for name in ("setpoint", "read", "inlet", "nothing", "difference", "clock", "loss", "outer")
 )
 SHORTEST = 4  # letters of a word that may be looked for inside another
 IDEOGRAPHS = "\u3040"  # from here on a sign is a word
@@ -75,11 +75,14 @@ def quantities_of(name: str) -> list[str]:
 
 
 def roles_of(name: str) -> list[Role]:
-    """Roles whose words stand in a name, whole words first, then in their order; long words also inside others."""
+    """Roles whose words stand in a name, whole words first, then in their order; long words also inside others.
+
+    Of an outer winding the winding: words for outside mean the air only where no part is named.
+    """
     words = tokens(name)
     hits = {}
     for role, terms in ROLES.items():
-        at = [(w not in terms, i) for i, w in enumerate(words) if w in terms or _inside(w, terms)]
+        at = [(w in OUTER, w not in terms, i) for i, w in enumerate(words) if w in terms or _inside(w, terms)]
         if at:
             hits[role] = min(at)
     if not hits and OUTSIDE.search(name):

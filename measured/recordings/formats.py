@@ -1,4 +1,4 @@
-"""Recordings as people have them (.csv, .xlsx, .tdms, .mf4, .parquet) into one table.
+"""Recordings as people have them (.csv, .xlsx, .tdms, .mf4, .parquet, .mat) into one table.
 
 Channels of several rates share one time column and are empty where they were not sampled.
 """
@@ -6,6 +6,8 @@ Channels of several rates share one time column and are empty where they were no
 from __future__ import annotations
 
 import re
+import struct
+import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, MissingDependency
 from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
-from geom.recording_bounds import check_archive, check_shape, check_size, counted_rows, timed
+from geom.recording_bounds import CHUNK, check_archive, check_shape, check_size, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.recordings.csv_file import csv_pieces, in_rows, read_csv
 from measured.recordings.data_table import HEADER, DataTable
@@ -31,7 +33,7 @@ Reader = Callable[[Path], Mapping[str, Any]]  # name -> values; a pandas DataFra
 READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader
 PLAIN = (".csv", ".csv.gz")
 PIECE = 2**16  # bytes of a CSV file of which no more than a piece is kept: about a thousand rows
-SUFFIXES = (*PLAIN, ".xlsx", ".tdms", ".mf4", ".parquet", *(f".{name}" for name in READERS))
+SUFFIXES = (*PLAIN, ".xlsx", ".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
@@ -93,6 +95,7 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
         ".tdms": lambda: _table(file, "TDMS", "nptdms", lambda: _tdms(file, worksheet)),
         ".mf4": lambda: _table(file, "MF4", "asammdf", lambda: _mf4(file)),
         ".parquet": lambda: _table(file, "Parquet", "pyarrow", lambda: _parquet(file)),
+        ".mat": lambda: _table(file, "a MATLAB file", "scipy", lambda: _mat(file)),
         **{
             f".{n}": partial(_table, file, f"a .{n} file", n, lambda read=read: (read(file).items(), {}))  # type: ignore[misc]
             for n, read in READERS.items()
@@ -215,6 +218,61 @@ def _parquet(file: Path) -> Contents:
         table = pyarrow.Table.from_batches(timed(parquet.iter_batches(), file), parquet.schema_arrow)
     columns = zip(table.column_names, table.columns, strict=True)
     return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)], {}
+
+
+def _mat(file: Path) -> Contents:
+    """Vectors of a MATLAB file, alone or in structs, and columns of its matrices; those of the commonest length."""
+    from scipy.io import loadmat
+
+    start = file.open("rb").read(128)
+    if start.startswith(b"MATLAB 7.3"):
+        raise InputError("is a MATLAB file of version 7.3", str(file), "save(..., '-v7'), or CSV by writetable")
+    if start.startswith(b"MATLAB 5.0"):  # older ones are not packed
+        BYTES.check(sum(timed(_unpacked(file, "<II" if start.endswith(b"IM") else ">II"), file)), file, "holds")
+    paths = dict(_vectors(loadmat(file, simplify_cells=True)))
+    sizes = Counter(len(v) for v in paths.values() if len(v) > 2)
+    if not sizes:
+        right = "vectors and structs of vectors; a timetable by writetimetable(T, 'T.csv')"
+        raise InputError("holds no vectors of numbers", str(file), right)
+    rows = sizes.most_common(1)[0][0]
+    other = [".".join(path) for path, v in paths.items() if len(v) not in (rows, 0, 1)]
+    kept = {path: v for path, v in paths.items() if len(v) == rows}
+    check_shape(rows, len(kept), file)
+    last = Counter(path[-1] for path in kept)
+    columns = [(path[-1] if last[path[-1]] == 1 else ".".join(path), v) for path, v in kept.items()]
+    return columns, {"notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)}
+
+
+def _unpacked(file: Path, head: str) -> Iterator[int]:
+    """Bytes of each piece of a MATLAB file as it is unpacked."""
+    with file.open("rb") as source:
+        source.seek(128)
+        while len(about := source.read(8)) == 8:
+            kind, size = struct.unpack(head, about)
+            if kind != 15:
+                source.seek(size, 1)
+                continue
+            unpacker, rest = zlib.decompressobj(), source.read(size)
+            while rest and (part := unpacker.decompress(rest, CHUNK)):
+                yield len(part)
+                rest = unpacker.unconsumed_tail
+
+
+def _vectors(one: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Array]]:
+    """Numbers of one dimension by the names that lead to them; a Simulink signal by its label."""
+    if isinstance(one, Mapping):
+        if isinstance(label := one.get("label"), str) and label and "values" in one:
+            yield from _vectors(one["values"], (*path[:-1], label))
+            return
+        for name, inside in one.items():
+            if not str(name).startswith("__"):
+                yield from _vectors(inside, (*path, str(name)))
+    elif isinstance(one, np.ndarray) and one.dtype.kind in "fiub":
+        for j, column in enumerate(one.T if one.ndim == 2 else [one][: one.ndim == 1], 1):
+            yield (path if one.ndim == 1 else (*path[:-1], f"{path[-1]} {j}")), np.asarray(column, float)
+    elif isinstance(one, list | np.ndarray) and np.ndim(one) == 1:
+        for j, inside in enumerate(one, 1):
+            yield from _vectors(inside, (*path, str(j)))
 
 
 def _tdms(file: Path, group: str) -> Contents:

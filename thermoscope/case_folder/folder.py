@@ -135,7 +135,7 @@ def load_case(
     network, built = network_of(settings, progress)
     read = [
         read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
-        for e in counted("preparing the tests", settings.tests)
+        for e in counted("preparing the tests", settings.tests, len(settings.tests))
     ]
     findings = examined(list(patients.values()), network)
     notes = tuple(dict.fromkeys([*_assumed(network, settings), *(note for one in read for note in one.notes)]))

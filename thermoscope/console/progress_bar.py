@@ -1,7 +1,8 @@
 """Long work on stderr: one bar with share and time left on a terminal, one line a stage in a pipe.
 
-How long the stages took the last time is kept in the user's cache; the first time, what they took on the computer that
-`usual_stages.json` was written on. Either is scaled by how fast this run has been so far.
+How long the stages took the last time is kept in the user's cache; the first time, what they took in the shipped cases,
+in `usual_stages.json`. Either is scaled by how fast this run has been so far. The share moves at the speed that ends
+with the time left, so that it never stands.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import json
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -32,8 +33,11 @@ Progress = Callable[[str], None]
 FILE = "stages.json"
 MOST = 200  # pieces of work that are remembered
 COUNT = re.compile(r"\((\d+) of (\d+)\)$")  # at the end of a message
+ALONE = re.compile(COUNT.pattern)
 QUIET_S = 15.0  # a pipe that says nothing for longer looks as if it hung
 PACED_S = 0.5  # stages that took less the last time say nothing of the pace
+# Stages whose cost is that of files and meshes: they say little of how long fits take, which say much of each other.
+PREPARING = {"reading", "preparing", "estimating", "mesh", "conduction", "network", "field", "laws", "what", "error"}
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -49,6 +53,7 @@ class ProgressBar:
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
+    loop : start of a loop in the stage (s), part of it that is done;  share : done, as shown;  shown_s : when
     """
 
     last: dict[str, float]
@@ -61,11 +66,22 @@ class ProgressBar:
     part: float = 0.0
     piece: float = 0.0
     counted_s: float = 0.0
+    loop: tuple[float, float] = (0.0, 0.0)
     share: float = 0.0
+    shown_s: float = 0.0
     same_case: bool = True
 
     def enter(self, message: str) -> bool:
-        """Whether another stage begins; messages that begin with the same word are of one stage."""
+        """Whether another stage begins; messages that begin with the same word are of one stage.
+
+        A count alone, "(3 of 200)", is of a loop in the stage, which takes at least as long as that loop.
+        """
+        if loop := ALONE.fullmatch(message):
+            done = (int(loop[1]) - 1) / int(loop[2])
+            self.loop = (self.loop[0], done) if done > self.loop[1] else (self.clock(), 0.0)
+            return False
+        if not (self.now or self.took):
+            self.shown_s = self.clock()
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -86,43 +102,50 @@ class ProgressBar:
         instant = self.clock()
         if self.now:
             self.took[self.now] = self.took.get(self.now, 0.0) + instant - self.since
-        self.since, self.now, self.part, self.counted_s = instant, "", 0.0, 0.0
+        self.since, self.now, self.part, self.counted_s, self.loop = instant, "", 0.0, 0.0, (instant, 0.0)
 
     def left(self) -> tuple[float, float] | None:
-        """Share done, and seconds left; None where no stage is known that is worth it. The share never falls.
+        """Share done, and seconds left; None where no stage is known that is worth it.
 
-        A stage that counts says by itself how long it takes. Others take as long as the last time, at the pace of
-        this run: what its stages took, and will take, over what they took the last time. What comes before the stage
-        that runs does not come any more.
+        A stage that counts says by itself how long it takes, a loop in it at least how long. Others take as long as
+        the last time, at the pace of this run; one that is late by some time goes on for as much. What comes before
+        the stage that runs does not come any more. The share goes on at the speed that ends with the time left.
         """
         here = self._here()
         before, order = self.took.get(self.now, 0.0), list(self.last)
-        earlier = [s for s in self.took if s in self.last and s != self.now]
-        usual = sum(self.last[s] for s in earlier)
-        pace = self._pace(sum(self.took[s] for s in earlier), usual) if usual > PACED_S else 1.0
-        expected = pace * self.last.get(self.now, 0.0) - before
-        whole, late = max(expected, here), here > expected and not self.same_case
-        if self.part * here > 0.0 or late:
-            whole = whole if late and not self.part else here / self._done(here)
-            if self.now in self.last:
-                usual += self.last[self.now]
-                pace = self._pace(sum(self.took[s] for s in earlier) + before + whole, usual)
+        took = {s: seconds for s, seconds in self.took.items() if s in self.last and s != self.now}
+        expected = self._pace(took) * self.last.get(self.now, 0.0)
+        rest = abs(expected - before - here)
+        if self.part * here > 0.0:
+            rest = here / self._done(here) - here
+        begin, done = self.loop
+        rest = max(rest, (self.clock() - begin) * (1.0 - done) / done if done else 0.0)
+        if self.now in self.last and (self.part or before + here > expected):
+            took[self.now] = before + here + rest
         after = order.index(self.now) + 1 if self.now in self.last else 0
         later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
-        spent, rest = here + sum(self.took.values()), whole - here + pace * later
+        rest += self._pace(took) * later
+        spent, instant = here + sum(self.took.values()), self.clock()
         if max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) < self.shortest_s:
             return None
-        self.share = max(self.share, min(spent / max(spent + rest, 1e-9), 0.99))
+        passed, self.shown_s = instant - self.shown_s, instant
+        self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
         return self.share, rest
 
-    def _pace(self, took: float, usual: float) -> float:
-        """What is still to come over what it took the last time.
+    def _pace(self, took: Mapping[str, float]) -> float:
+        """What is still to come over what it took the last time, by the stages so far and what each took (s).
 
-        Of this very case it is that of the stages so far. Of another they say only as much as they were of its work:
-        a long file is read forty times as long, and the yardstick after it takes twice as long.
+        Of this very case it is what they took over what they took then. Of another, fits say that of fits; other
+        stages say only as much as they were of its work: a long file is read forty times as long, and the yardstick
+        after it takes twice as long.
         """
-        share = 1.0 if self.same_case else min(usual / max(sum(self.last.values()), 1e-9), 1.0)
-        return float((took / max(usual, 1e-9)) ** share)
+        fits = [s for s in took if s.split()[-1] not in PREPARING]
+        known = took if self.same_case or not sum(self.last[s] for s in fits) > PACED_S else fits
+        usual = sum(self.last[s] for s in known)
+        if not usual > PACED_S:
+            return 1.0
+        share = 1.0 if self.same_case or known is fits else min(usual / sum(self.last.values()), 1.0)
+        return float((sum(took[s] for s in known) / usual) ** share)
 
     def _done(self, here: float) -> float:
         """Part of the stage, as it grows between two counts: as if the next piece took as long as those before it."""
@@ -223,7 +246,7 @@ def _lines(stages: ProgressBar) -> Iterator[Progress]:
         _line(stages.words(now[0]))
 
     def tell(message: str) -> None:
-        now[0] = message
+        now[0] = now[0] if ALONE.fullmatch(message) else message
         if stages.enter(message):
             say()
 
@@ -273,7 +296,8 @@ def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
 
         def tell(message: str) -> None:
             stages.enter(message)
-            bar.update(task, description=visible(message))
+            if not ALONE.fullmatch(message):
+                bar.update(task, description=visible(message))
 
         yield tell
 

@@ -91,7 +91,7 @@ def _of_test(
 ) -> list[BaseDeviance]:
     sheet_base, fits = declared_base(test, bases), {}
     for base in (NONE, *bases):
-        progress(f"{test.name} on {base}")
+        progress(f"trying {test.name} on {base}")
         variant = [on_base(t, base, bases) if t is test else t for t in tests]
         fits[base] = declared_fit if base == sheet_base else _fitted(case, variant, declared_fit)
     cost = {base: deviance(fit) for base, fit in fits.items()}

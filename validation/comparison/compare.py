@@ -207,7 +207,7 @@ def compare(
     def judged(network: Network, test: Test, now: Mapping[str, float]) -> TestError:
         return judged_error(network, test, now, case.doubt, None if budgets is None else budgets[test.name])
 
-    return _of_every_test(case, values, judged, counted("running the model", case.tests))
+    return _of_every_test(case, values, judged, counted("running the model", case.tests, len(case.tests)))
 
 
 class StoppedComparisonError(KeyboardInterrupt):

@@ -57,7 +57,7 @@ def error_budgets(folder: OpenCase, records: Mapping[str, Record], progress: Pro
         progress("estimating the error of mesh and condensation")
         rated = cached_errors(folder.built, looks)
         rows |= hot_rows(network, rated)
-    each = counted("estimating the error of the time steps", records.items())
+    each = counted("estimating the error of the time steps", records.items(), len(records))
     return {name: _of_run(network, values, run, rows, rated) for name, run in each}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import warnings
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -86,7 +87,9 @@ def save(figure: Figure, path: str | Path | None) -> Figure:
     """The figure, also written as .png, .svg or .pdf if a path is given."""
     if path is not None:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=DPI)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing")  # a header in Japanese has boxes for letters
+            figure.savefig(path, dpi=DPI)
     return figure
 
 

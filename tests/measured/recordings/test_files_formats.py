@@ -109,9 +109,9 @@ def test_a_file_that_is_something_else(tmp_path, suffix):
 
 
 def test_unknown_format_and_missing_worksheet(tmp_path):
-    (tmp_path / "a.mat").write_text("x")
-    with pytest.raises(InputError, match=r"ending in '\.mat'"):
-        read_recording(tmp_path / "a.mat")
+    (tmp_path / "a.ods").write_text("x")
+    with pytest.raises(InputError, match=r"ending in '\.ods'"):
+        read_recording(tmp_path / "a.ods")
     as_xlsx(tmp_path / "a.xlsx")
     with pytest.raises(InputError, match=r"no worksheet 'result'.*did you mean 'results'"):
         read_recording(tmp_path / "a.xlsx", "result")

@@ -3,15 +3,19 @@
 import json
 import tomllib
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from logger_formats import signals
 
+from geom.description.roles import Role
 from geom.errors import InputError
-from measured.importing.clock import clock_of
-from measured.importing.source import read_source
+from measured.importing.aligned import Recording, longest_part
+from measured.importing.clock import Clock, clock_of, in_time_order
+from measured.importing.source import Source, read_source
+from measured.importing.words import roles_of
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
@@ -22,6 +26,7 @@ from validation.comparison.compare import compare
 
 S = signals(5.0)
 ROOM = f"{22:.2f}"
+NAMES = ("Winding U", "Ambient", "Current")
 
 
 def table(header, *columns, sep=","):
@@ -278,7 +283,75 @@ def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
 
 
 def test_signals_whose_times_have_no_order_are_refused(tmp_path):
-    rows = [f"28.03.26 12:00:{2 * k + (name == 'I'):02d},{name},{k}" for k in range(29) for name in ("T_winding", "I")]
+    rows = [f"28.03.26 12:00:{2 * k + (name == 'I'):02d},{name},{k}" for name in ("T_winding", "I") for k in range(29)]
     (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value", *rows]) + "\n")
-    with pytest.raises(InputError, match=r"2 signals .'sensor'., each at its own times"):
-        read_source(tmp_path / "a.csv")
+    with pytest.raises(InputError, match="runs back"):
+        clock_of(read_source(tmp_path / "a.csv"))
+
+
+def test_rows_out_of_order_are_sorted_where_that_makes_an_even_clock(tmp_path):
+    """Databases write the newest first; numbers that fall may count down, and a clock that starts anew is two tests."""
+    stamps = [f"2026-03-28 12:{k // 60:02d}:{k % 60:02d}" for k in range(90)]
+    for times, right in ((stamps[::-1], True), ([*range(90)][::-1], False), ([*range(45)] * 2, False)):
+        rows = [f"{t},{20 + k},5" for k, t in enumerate(times)]
+        (tmp_path / "a.csv").write_text("\n".join(["time,T_winding,I [A]", *rows]) + "\n")
+        source = in_time_order(read_source(tmp_path / "a.csv"))
+        assert ("sorted by time" in " ".join(source.notes)) == right
+        if right:
+            assert clock_of(source).seconds == pytest.approx(np.arange(90.0))
+            assert source.numbers("T_winding")[0] == 109
+
+
+def test_outside_is_the_air_only_where_no_part_is_named():
+    assert roles_of("Ext T winding")[0] is Role.WINDING
+    assert roles_of("T ext")[0] is Role.AMBIENT
+
+
+def test_channels_are_called_what_their_settings_call_them(tmp_path):
+    """Ranges of channels look like readings, and stand in a table of their own before the header."""
+    head = ["CH,Name,Input,Filter,Span", *(f'CH{k},{n},TEMP,Off,"-100","1370"' for k, n in enumerate(NAMES, 1))]
+    rows = [f"{k},2026/03/28 12:{k // 60:02d}:{k % 60:02d},000,{20 + k},21,5,LLLL" for k in range(90)]
+    text = [*head, "Data", "Number,Date&Time,ms,CH1,CH2,CH3,Alarm", "NO.,Time,ms,degC,degC,A,A1234", *rows]
+    (tmp_path / "a.csv").write_text("\n".join(text) + "\n")
+    source = read_source(tmp_path / "a.csv")
+    assert [f"CH{k} {n}" for k, n in enumerate(NAMES, 1)] == [*source.cells][3:6]
+    assert source.units["CH3 Current"] == "A"
+    assert np.ptp(clock_of(source).seconds) == 89
+
+
+def test_a_time_of_day_with_points_is_no_date(tmp_path):
+    rows = [f"28/03/2026;12.{k // 60:02d}.{k % 60:02d};{20 + k};5" for k in range(90)]
+    (tmp_path / "a.csv").write_text("\n".join(["Data;Ora;T avvolgimento [°C];I [A]", *rows]) + "\n")
+    assert clock_of(read_source(tmp_path / "a.csv")).seconds == pytest.approx(np.arange(90.0))
+
+
+def test_the_same_clock_beside_every_signal_is_the_clock(tmp_path):
+    rows = [f"{500 * k}\t{20 + k}\t{500 * k}\t{k}" for k in range(90)]
+    (tmp_path / "a.txt").write_text("\n".join(["Name\tT_winding\tName\tcurrent", *rows]) + "\n")
+    clock = clock_of(read_source(tmp_path / "a.txt"))
+    assert clock.seconds == pytest.approx(0.5 * np.arange(90.0))
+    assert "ms are assumed" in clock.doubt
+
+
+def test_vectors_in_structs_of_matlab(tmp_path):
+    from scipy.io import savemat
+
+    signals = [{"values": 20.0 + np.arange(90), "label": "T_winding"}, {"values": np.full(90, 5.0), "label": "I_rms"}]
+    savemat(tmp_path / "a.mat", {"run": {"time": np.arange(90.0), "signals": signals}, "n": np.arange(4.0)})
+    source = read_source(tmp_path / "a.mat")
+    assert [*source.cells] == ["time", "T_winding", "I_rms"]
+    assert clock_of(source).end_s == 89
+    assert "left out for their length: n" in " ".join(source.notes)
+    savemat(tmp_path / "a.mat", {"zeros": np.zeros(2 * 10**7)}, do_compression=True)
+    with pytest.raises(InputError, match="holds 20,000,000 rows"):
+        read_source(tmp_path / "a.mat")
+
+
+def test_of_a_recording_with_a_gap_the_longest_part_is_the_test():
+    t = np.concatenate([np.arange(0.0, 1000.0, 5.0), np.arange(2200.0, 3600.0, 5.0)])
+    record = Recording(Source({}, file=Path("a.csv")), Clock(t, None, (), ""), [])
+    window, notes = longest_part(record, 120.0)
+    assert window == (2200.0, 3595.0)
+    assert "no rows of a.csv from 995 s to 2200 s" in notes[0]
+    hourly = replace(record, clock=Clock(3600.0 * np.arange(9), None, (), ""))
+    assert longest_part(hourly, 120.0) == ((0.0, None), ())

@@ -1,10 +1,15 @@
 """A comparison or a fit that the user stops gives what is known, and says what was kept."""
 
+import signal
+from contextlib import suppress
+
 import pytest
 
 from tests.shared.command_line import answered
 from tests.shared.small_case import small_case
+from thermoscope import cli
 from thermoscope.commands.model import calibrate
+from thermoscope.files import STOPPED
 from validation.comparison import compare as comparison
 
 
@@ -94,3 +99,22 @@ def test_a_stopped_improvement_shows_the_steps_that_stay(tmp_path, monkeypatch):
     assert "1 revisions were written to" in " ".join(done.err.split())
     assert (case / "model.toml").exists()
     assert not (tmp_path / "a.json").exists()
+
+
+def test_a_stop_that_a_package_makes_an_error_of_is_a_stop(monkeypatch, capsys):
+    """C code that is loaded when Ctrl-C comes says that it could not be."""
+
+    def loading(*_, **__):
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        raise ImportError("initialization failed")
+
+    monkeypatch.setattr(signal, "default_int_handler", signal.getsignal(signal.SIGINT))
+    monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", "x"])
+    monkeypatch.setattr(cli, "narrowed_app", lambda arguments: loading)
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    signal.signal(signal.SIGINT, before)
+    assert end.value.code == STOPPED
+    assert "inputs are as they were" in capsys.readouterr().err

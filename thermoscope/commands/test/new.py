@@ -19,9 +19,9 @@ from geom.storage import write_whole
 from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
-from measured.importing.aligned import Recording, common, grouped, shift
+from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.case_files import folder_whole, write_case
-from measured.importing.clock import Clock, clock_of
+from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
@@ -29,6 +29,7 @@ from measured.importing.source import Source, read_source, signature
 from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.grid import LONGEST_S
+from measured.recordings.sheet import MAX_GAP_S
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
@@ -134,7 +135,11 @@ def read_recording(file: Path, period_s: float | None, tell: Progress) -> tuple[
     """A file and its clock.  period_s : between rows, where it has none"""
     tell(f"reading {file.name}")
     source = read_source(file)
-    clock = clock_of(source, period_s)
+    try:
+        clock = clock_of(source, period_s)
+    except InputError:
+        source = in_time_order(source)
+        clock = clock_of(source, period_s)
     span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
     if span > LONGEST_S:
         raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
@@ -243,10 +248,11 @@ def drafts_of(
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        part, note = common((first, *rest), window_s)
+        whole, cut = longest_part(first, MAX_GAP_S) if window_s == (0.0, None) else (window_s, ())
+        part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]
-        draft = Draft(name, (first, *rest), window_s=part, notes=(*note, *clocks))
+        draft = Draft(name, (first, *rest), window_s=part, notes=(*cut, *note, *clocks))
         out.append(dialogue.completed(draft))
     return out
 
