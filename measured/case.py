@@ -73,6 +73,7 @@ class Test:
     role : calibrate (parameters are fitted to it), validate (effects are chosen with it), hold-out (only predicted)
     frees : globs of the parameters that this test alone is to fix, before the others are fitted
     recorded : the inputs in finer steps, where there are any: what the laws are made of
+    blocks : first sample of each block of readings that a fit averages; None for a few hundred equal ones
     """
 
     name: str
@@ -84,6 +85,7 @@ class Test:
     initial: float | Mapping[str, float] = 20.0
     frees: tuple[str, ...] = ()
     recorded: Recorded | None = None
+    blocks: NDArray[np.int64] | None = None
     __test__: ClassVar[bool] = False  # its name makes pytest think so
 
     def __repr__(self) -> str:

@@ -33,6 +33,7 @@ from validation.inference.result import Diagnosis
 from validation.revision.revise import add
 
 NOISE_K, SIGMA_K = 0.1, 0.3
+DAY = 86400.0  # s
 CLOSE = 2.0  # samples that the begin and the end of a lid may be off by
 Inputs = Mapping[str, np.ndarray]
 
@@ -55,12 +56,19 @@ def network(rng: np.random.Generator, more: Mapping[str, dict]) -> Network:
     )
 
 
-def recorded(rng: np.random.Generator, truth: Network, names: str, step: float, more: Callable[[str], Inputs]) -> Case:
-    """One test for each letter, an hour and a half each, with a load that is switched; read with noise."""
+def recorded(
+    rng: np.random.Generator,
+    truth: Network,
+    names: str,
+    step: float,
+    more: Callable[[str], Inputs],
+    length: float = 5400.0,
+) -> Case:
+    """One test for each letter, by default an hour and a half each, with a load that is switched; read with noise."""
     tests, rows = [], [truth.places[p].mean for p in ("core", "shell")]
     for name in names:
-        t = np.arange(0.0, 5400.0, step)
-        u = {"load": rng.choice([0.0, 0.3, 0.6, 1.0], 10)[(t / 540.0).astype(int)], **more(name)}
+        t = np.arange(0.0, length, step)
+        u = {"load": rng.choice([0.0, 0.3, 0.6, 1.0], 10)[(10.0 * t / length).astype(int)], **more(name)}
         around = {"ambient": np.full_like(t, rng.uniform(18, 26))}
         start = float(around["ambient"][0])
         test = Test(name, "calibrate", t, u, around, (), start)
@@ -120,6 +128,25 @@ def lid(rng: np.random.Generator) -> str:
     return f"open {begin:.0f}-{begin + length:.0f} s; {said.verdict}: {said.words}"
 
 
+def incubator(rng: np.random.Generator) -> str:
+    """In a day of a sample every ten seconds a lid was opened three to seven times, for one to three minutes."""
+    count = int(rng.integers(3, 8))
+    begins = 60.0 * np.sort(rng.choice(np.arange(1, 14), count, replace=False)) * 100.0
+    begins += 10.0 * rng.integers(0, 300, count)
+    ends = begins + 10.0 * rng.integers(6, 19, count)
+    truth = network(rng, switched(rng.uniform(5.0, 20.0)))
+    t = np.arange(0.0, DAY, 10.0)
+    opened = np.sum([(t >= a) & (t < b) for a, b in zip(begins, ends, strict=True)], axis=0, dtype=float)
+    case = without_cause(recorded(rng, truth, "a", 10.0, lambda name: {"open": opened}, DAY))
+    said = diagnose(case, plan=False)
+    for one in accepted(case, said):
+        spans = np.array(one.event.spans.get("a", ()) if one.event else ())
+        if spans.shape == (count, 2) and np.abs(spans - np.column_stack([begins, ends])).max() <= CLOSE * 10.0:
+            return "right"
+    when = ", ".join(f"{a:.0f}-{b:.0f}" for a, b in zip(begins, ends, strict=True))
+    return f"open {when} s; {said.verdict}: {said.words} | {said.groups}"
+
+
 def probe(rng: np.random.Generator) -> str:
     """In two of four tests the probe of the shell read a share of the room."""
     share, moved = rng.uniform(0.3, 0.7), set(rng.choice(list("abcd"), 2, replace=False).tolist())
@@ -134,7 +161,7 @@ def probe(rng: np.random.Generator) -> str:
     return "right" if said.verdict != "adequate" and named else f"{said.verdict}: {said.words}"
 
 
-KINDS = {"fan": fan, "lid": lid, "probe": probe}
+KINDS = {"fan": fan, "lid": lid, "incubator": incubator, "probe": probe}
 
 
 def main() -> None:

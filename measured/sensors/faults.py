@@ -110,10 +110,11 @@ def broken_channels(tests: Iterable[Test]) -> list[Fault]:
 
 
 def without(tests: Sequence[Test], faults: Sequence[Fault]) -> tuple[Test, ...]:
-    """The tests without the readings that mean nothing."""
+    """The tests without the readings that mean nothing; one that has none of them is as it was."""
     bad = {(f.test, f.channel): f.bad for f in faults}
+    dirty = {f.test for f in faults}
 
     def cleaned(t: Test, c: Channel) -> Channel:
         return replace(c, y=np.where(bad[t.name, c.name], np.nan, c.y)) if (t.name, c.name) in bad else c
 
-    return tuple(replace(t, channels=tuple(cleaned(t, c) for c in t.channels)) for t in tests)
+    return tuple(replace(t, channels=tuple(cleaned(t, c) for c in t.channels)) if t.name in dirty else t for t in tests)

@@ -76,6 +76,7 @@ def _of_test(
 ) -> list[Segment]:
     n, length = len(test.time), stretch(len(test.channels), len(tangents), numbers)
     watch, start = Watch(network, test, values, tangents, FIT), groups(n, instants)
+    start = start if test.blocks is None else test.blocks
     means = [Blocks(start, 2 + len(tangents)) for _ in test.channels]
     for first in range(0, n, length):
         rows = slice(first, min(first + length, n))

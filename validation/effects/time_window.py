@@ -27,13 +27,13 @@ IN = " in "  # between an effect or a boundary and the condition it holds in
 
 @dataclass(frozen=True)
 class Event:
-    """Something that was different for a while.  spans : test -> when, from and to (s of the test), in order"""
+    """Something that was different for a while.  spans : test -> when, from and to (s of the test), all in order"""
 
     spans: Mapping[str, tuple[Span, ...]]
 
     @classmethod
     def of(cls, spans: Mapping[str, Iterable[Span]]) -> Event:
-        return cls({t: tuple(sorted((float(a), float(b)) for a, b in pairs)) for t, pairs in spans.items()})
+        return cls({t: tuple(sorted((float(a), float(b)) for a, b in spans[t])) for t in sorted(spans)})
 
     @property
     def name(self) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,13 +71,18 @@ def effect_columns(
 
     Parameters: `tests` of which only those are run in which an effect can act; `values` of what is not calibrated.
     """
-    network = extended(fit.network, effects)
-    new = network.parameters[-len(effects) :]
-    state = {**parameter_values(network, values), **fit.values}
-    active = [t for t in tests if any(can_act(e, t) for e in effects)]
-    J = {(s.test, s.channel): s.J for s in segments(network, active, state, new)}
-    still = [J.get((s.test, s.channel), np.zeros((s.r.size, len(new)))) for s in fit.parts]
-    return [replace(s, J=np.column_stack([s.J, columns])) for s, columns in zip(fit.parts, still, strict=True)]
+    acting, J = {t.name: tuple(k for k, e in enumerate(effects) if can_act(e, t)) for t in tests}, dict[Any, Array]()
+    for some in filter(
+        None, dict.fromkeys(acting.values())
+    ):  # what cannot act in a test would be run there all the same
+        network = extended(fit.network, [effects[k] for k in some])
+        state = {**parameter_values(network, values), **fit.values}
+        here = [t for t in tests if acting[t.name] == some]
+        for s in segments(network, here, state, network.parameters[-len(some) :]):
+            J[s.test, s.channel] = np.zeros((s.r.size, len(effects)))
+            J[s.test, s.channel][:, some] = s.J
+    K = len(effects)
+    return [replace(s, J=np.hstack([s.J, J.get((s.test, s.channel), np.zeros((s.r.size, K)))])) for s in fit.parts]
 
 
 def can_act(effect: Effect, test: Test) -> bool:

@@ -8,28 +8,38 @@ effect for a little longer, which is linear whatever the size.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, log10
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from geom.errors import NoSolution
+from lumped.model.multipliers import parameter_values
+from lumped.model.network import Network, Parameter
 from measured.case import Test
 from measured.doubt import USUAL
+from measured.sensors.blocks import groups
 from validation.calibration.calibrate import Fit
+from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
-from validation.effects.during import During
+from validation.effects.during import During, gated
 from validation.effects.time_window import Event, Span, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
 from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
-from validation.inference.score import Score, average_size, fit_score
+from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
 GRID_POINTS = 15  # instants around each end
+COARSEST = (
+    4.0  # samples between instants that tell one stretch from another; what carries weight is timed to the sample
+)
+MOVED = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 MOVES = 3  # of the ends and refitting with them: by then they stand within a sample
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
 
@@ -39,34 +49,30 @@ class TimedEvent:
     """An event with its ends at the samples.
 
     log_share : log evidence of all ends over that of the best ones, less the price of there being so many
-    ends : per span, test by test, 95 % of its begin and of its end (s)
     """
 
     event: Event
     log_share: float
-    ends: tuple[tuple[Span, Span], ...]
 
 
 def timed_event(
     evidence: Evidence, base: Effect, event: Event, reach_s: Mapping[str, float], values: Values
 ) -> TimedEvent:
-    """The event with the ends of every span at the samples in turn, the others where they are.
+    """The event with the ends of every span at the samples in turn, the longest first, the others where they are.
 
     Parameters: `base` the effect that it is taken for; `reach_s` test -> how far (s) an end may move.
     """
     spans, log_share = {t: list(pairs) for t, pairs in event.spans.items()}, 0.0
-    ends: list[tuple[Span, Span]] = []
     usual = float(np.mean([b - a for a, b in event.every]))
     tests = {t.name: t for t in evidence.tests}
-    for test, pairs in event.spans.items():
-        for i in range(len(pairs)):
-            others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-            length = usual if ends else None
-            one = timed_span(evidence, base, tests[test], pairs[i], others, reach_s[test], values, length)
-            spans[test][i] = one.event.spans[test][0]
-            log_share += one.log_share
-            ends += one.ends
-    return TimedEvent(Event.of(spans), log_share, tuple(ends))
+    every = [(t, i) for t, pairs in spans.items() for i in range(len(pairs))]
+    for n, (test, i) in enumerate(sorted(every, key=lambda at: -float(np.ptp(spans[at[0]][at[1]])))):
+        others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
+        length = usual if n else None
+        one = timed_span(evidence, base, tests[test], spans[test][i], others, reach_s[test], values, length)
+        spans[test][i] = one.event.spans[test][0]
+        log_share += one.log_share
+    return TimedEvent(Event.of(spans), log_share)
 
 
 def timed_span(
@@ -79,24 +85,68 @@ def timed_span(
     values: Values,
     usual_s: float | None = None,
 ) -> TimedEvent:
-    """Begin and end of one span: every two instants around them, each pair a difference of two steps.
+    """Begin and end of one span: every two instants around them, each pair a difference of two steps; again around the
+    best of these, until the instants are about as close as samples.
 
     usual_s : how long its repeats last, None for the first of them
     """
-    begins, ends = instants_around(test, span[0], reach_s), instants_around(test, span[1], reach_s)
-    at = np.concatenate([begins, ends])
-    step_u, step_V = step_scores(evidence.fit, evidence.tests, base, test, at, values, others)
-    a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
-    a, b = a[at[a] < at[b]], b[at[a] < at[b]]
-    u, V = pulse_scores(step_u, step_V, a, b)
-    usual = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd
-    bayes = average_size(u, np.maximum(V, 0.0), np.full(u.shape, usual), np.full(u.shape, base.sign))
-    best, weight = int(np.argmax(bayes)), np.exp(bayes - logsumexp(bayes))
-    step = float(np.median(np.diff(test.time)))
+    usual, step = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd, sample_step(test)
+    while True:
+        begins, ends = instants_around(test, span[0], reach_s), instants_around(test, span[1], reach_s)
+        at = np.concatenate([begins, ends])
+        fit, near = closer_look(evidence.fit, test, span, reach_s, values)
+        tests = [near if t.name == test.name else t for t in evidence.tests]
+        step_u, step_V = step_scores(fit, tests, base, near, at, values, others)
+        a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
+        a, b = a[at[a] < at[b]], b[at[a] < at[b]]
+        u, V = pulse_scores(step_u, step_V, a, b)
+        bayes = average_size(u, np.maximum(V, 0.0), np.full(u.shape, usual), np.full(u.shape, base.sign))
+        best = int(np.argmax(bayes))
+        span, reach_s = (float(at[a[best]]), float(at[b[best]])), next_reach(reach_s)
+        if reach_s <= COARSEST * step:
+            break
     count = stretch_count(test.time.size, None if usual_s is None else usual_s / step)
-    event = Event.of({test.name: [(at[a[best]], at[b[best]])]})
-    share = float(logsumexp(bayes - bayes[best]) - np.log(count))
-    return TimedEvent(event, share, ((central_span(at[a], weight), central_span(at[b], weight)),))
+    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best]) - np.log(count)))
+
+
+def sample_step(test: Test) -> float:
+    """Usual time between two samples (s)."""
+    return float(np.median(np.diff(test.time)))
+
+
+def next_reach(reach_s: float) -> float:
+    """How far (s) an end may lie from the best of the instants that were tried within a reach."""
+    return 2.0 * reach_s / GRID_POINTS
+
+
+def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values) -> tuple[Fit, Test]:
+    """The fit and the test with readings around both ends of a span in blocks as short as the instants that are tried
+    there; as they are, where the blocks of the fit are short enough.
+
+    values : of what is not calibrated
+    """
+    n, step = test.time.size, sample_step(test)
+    start, fine = groups(n), max(round(next_reach(reach_s) / step), 1)
+    if test.blocks is not None or 2 * fine > start[min(1, start.size - 1)]:
+        return fit, test
+    first = np.zeros(n, bool)
+    first[start] = True
+    for at in span:
+        low, high = np.searchsorted(test.time, [at - reach_s, at + reach_s])
+        first[low:high:fine] = True
+    near = replace(test, blocks=np.flatnonzero(first))
+    state = {**parameter_values(fit.network, values), **fit.values}
+    new = {s.channel: s for s in segments(fit.network, [near], state, fit.unknowns.parameters)}
+    old = {s.channel: s for s in fit.parts if s.test == test.name}
+    error = fit.error
+    if error:
+        columns = {
+            (test.name, c): np.column_stack([np.interp(s.time, old[c].time, x) for x in error.of(old[c]).T])
+            for c, s in new.items()
+        }
+        error = replace(error, columns={**error.columns, **columns})
+    parts = tuple(new.get(s.channel, s) if s.test == test.name else s for s in fit.parts)
+    return replace(fit, parts=parts, error=error), near
 
 
 def pulse_scores(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[Array, Array]:
@@ -155,18 +205,11 @@ def instants_around(test: Test, at: float, reach_s: float) -> Array:
 
     To a hundredth of a step at least: names of events hold them, and no reading knows more.
     """
-    t, step = test.time, float(np.median(np.diff(test.time)))
+    t, step = test.time, sample_step(test)
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
     count = int(min(GRID_POINTS, round((high - low) / step) + 1))
     whole = t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step)
     return np.unique(np.clip(np.round(whole, 2 - floor(log10(step))), t[0], t[-1]))
-
-
-def central_span(at: Array, weight: Array) -> Span:
-    """95 % of a weighted sample."""
-    order = np.argsort(at)
-    low, high = np.searchsorted(np.cumsum(weight[order]), [0.025, 0.975])
-    return float(at[order[low]]), float(at[order[min(high, at.size - 1)]])
 
 
 def retimed(
@@ -218,31 +261,99 @@ def throughout(evidence: Evidence, event: Event) -> bool:
 def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s: Mapping[str, float]) -> Event:
     """The event with the ends that fit best about a refit, every span in turn, the others where they are."""
     tests = {t.name: t for t in evidence.tests}
-    spans = {t: [refit_span(fit, effect, tests[t], s, reach_s[t]) for s in each] for t, each in event.spans.items()}
+    spans = {t: list(each) for t, each in event.spans.items()}
+    for t, each in spans.items():
+        for i in range(len(each)):
+            each[i] = refit_span(fit, effect, tests[t], each, i, reach_s[t])
     return Event.of(spans)
 
 
-def refit_span(fit: Fit, effect: During, test: Test, span: Span, reach_s: float) -> Span:
-    """Begin and end that fit best: first some instants around them, then every sample around the best of these."""
-    best, a = span, fit.values[effect.name]
-    a = a / (1.0 + a) if effect.base.mapping == "relative" else a  # one more piece of it: factors multiply, others add
-    for reach in (reach_s, 2.0 * reach_s / GRID_POINTS):
-        begins, ends = instants_around(test, best[0], reach), instants_around(test, best[1], reach)
-        at = np.concatenate([span, begins, ends])
-        u, V = step_scores(fit, [test], effect.base, test, at, fit.values, {})
-        i, j = np.meshgrid(2 + np.arange(begins.size), 2 + begins.size + np.arange(ends.size), indexing="ij")
-        gain = moved_gain(u, V, a, i.ravel(), j.ravel())
-        gain[(begins[:, None] >= ends[None, :]).ravel()] = -np.inf
-        k = int(np.argmax(gain))
-        if gain[k] > 0.0:
-            best = float(begins[k // ends.size]), float(ends[k % ends.size])
+def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
+    """Begin and end of the i-th of an event's spans in a test that fit best: first some instants around them, then
+    others around the best of these, and so on to every sample.
+
+    Each is run: what is open and has cooled a part down to the room shows no tangent of being open longer.
+    """
+    best, others = spans[i], [*spans[:i], *spans[i + 1 :]]
+    while reach_s >= 0.5 * sample_step(test):
+        closer, near = closer_look(fit, test, best, reach_s, fit.values)
+        misfit, known = Misfit.create(closer, near, effect.name), dict[Span, float]()
+
+        def tried(span: Span, known: dict[Span, float] = known, misfit: Misfit = misfit) -> float:
+            if span not in known:
+                now = Event.of({test.name: [*others, span]}).name
+                known[span] = (
+                    misfit.of(with_condition(fit.network, effect.condition, now)) if span[0] < span[1] else np.inf
+                )
+            return known[span]
+
+        for moves in MOVED * 2:
+            steps = instants_around(test, best[0], reach_s) - best[0], instants_around(test, best[1], reach_s) - best[1]
+            first, last = float(test.time[0]), float(test.time[-1])
+            new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in steps[moves[0] == 0]]
+            best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=tried)
+        reach_s = next_reach(reach_s)
     return best
 
 
-def moved_gain(u: Array, V: Array, a: float, i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-    """(n,) log likelihood gained by a begin at instant i and an end at j in place of the instants 0 and 1."""
-    first = a * (u[i] - u[0]) - a * (u[j] - u[1])
-    d, rows = np.zeros((i.size, u.size)), np.arange(i.size)
-    for at, sign in ((i, 1.0), (np.zeros_like(i), -1.0), (j, -1.0), (np.ones_like(j), 1.0)):
-        np.add.at(d, (rows, at), sign * a)
-    return np.asarray(first - 0.5 * np.sum((d @ V) * d, axis=1))
+def with_condition(network: Network, old: str, new: str) -> Network:
+    """The network with what held while one condition holds while another does in its place."""
+
+    def moved(x: Any) -> Any:
+        if not gated(x.law) or x.law.shape.name != old:
+            return x
+        return replace(x, law=replace(x.law, shape=replace(x.law.shape, name=new)))
+
+    return replace(network, links=tuple(map(moved, network.links)), sources=tuple(map(moved, network.sources)))
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """How well a fit's model does in one test if something in it is another, all else and the model error moved along
+    by their tangents.
+
+    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the test's segments
+    H : curvature;  b : steepest descent;  of what the other tests say, and of this one without the k-th
+    """
+
+    fit: Fit
+    test: Test
+    free: Parameter
+    here: Sequence[Whitened]
+    H: Array
+    b: Array
+
+    @classmethod
+    def create(cls, fit: Fit, test: Test, amplitude: str) -> Misfit:
+        """amplitude : that may become about twice as large, or nothing: further its tangent does not reach"""
+        (theta, sd), k = fit_prior(fit), fit.unknowns.names.index(amplitude)
+        theta[k], sd[k] = 0.0, abs(theta[k])
+        weight = sd**-2.0
+        H, b, here = np.diag(weight), -weight * theta, []
+        for s, x in zip(fit.parts, whitened(fit), strict=True):
+            at, some = x.at[:-1], slice(None)
+            if s.test == test.name:
+                some = at != k
+                here.append(Whitened(at[some], x.X[:, :-1][:, some], x.XX))
+            else:
+                b[at] += x.XX[:-1, -1]
+            H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
+        return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
+
+    def of(self, network: Network) -> float:
+        """Of another network with the same parameters: half the squares (nats) left; inf where it runs away."""
+        H, b, square = self.H.copy(), self.b.copy(), 0.0
+        k, values = self.fit.unknowns.names.index(self.free.name), {**parameter_values(network, {}), **self.fit.values}
+        try:
+            parts = segments(network, [self.test], values, [self.free])
+        except NoSolution:
+            return float("inf")
+        for s, (at, X, _) in zip(parts, self.here, strict=True):
+            z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
+            H[k, k] += z @ z
+            H[k, at] += (both := z @ X)
+            H[at, k] += both
+            b[at] += r @ X
+            b[k] += z @ r
+            square += float(r @ r)
+        return 0.5 * (square - float(b @ np.linalg.solve(H, b)))

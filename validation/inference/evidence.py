@@ -38,6 +38,7 @@ from validation.calibration.calibrate import (
 )
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.base import Effect
+from validation.effects.during import During
 from validation.effects.registry import catalogue, extended
 from validation.inference.columns import Linearised, effect_columns, exchange_columns, finite_change, split_columns
 from validation.inference.hypotheses import NOTHING, Cause, Hypothesis, Together, Weighed, catalogue_priors, weights
@@ -54,7 +55,7 @@ from validation.inference.score import (
 )
 from validation.noise import START, Noise, fit_noise
 from validation.parameters.reference import effect_sizes
-from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, widened, working
+from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, unbound, widened, working
 from validation.threads import side_by_side
 
 Array = NDArray[np.float64]
@@ -483,7 +484,8 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
     """The network with some causes, what is free in it, and the values of all that is not (whole causes at one)."""
     fit = evidence.fit
     network = evidence.hypothesis(members).extend(fit.network)
-    free = [widened(evidence.parameters[k]) for k in fitted_members(evidence, members)]
+    each = fitted_members(evidence, members)  # a lid that is opened or a fan may be of any size
+    free = [(unbound if isinstance(evidence.effects[k], During) else widened)(evidence.parameters[k]) for k in each]
     fixed = {evidence.names[k]: 1.0 for k in members if evidence.effects[k].whole}
     return network, Unknowns((*fit.unknowns.parameters, *free)), values_of(network, {**fit.values, **fixed})
 

@@ -50,7 +50,7 @@ NO_FITS: WarmFits = MappingProxyType({})
 FINE = 0.02  # nats at which what is told stands: a size is then within a quarter of its deviation of its optimum
 STRAIGHT = 0.9  # of the gain that tangents predict: a refit that got it needs none of its own
 BENDS = 10.0  # nats that a refit gains, beyond which the tangents of its start point elsewhere at its end
-HOPELESS = 20.0  # nats worse than nothing after a first refit: no second one makes up for that
+HOPELESS = 20.0  # nats worse than nothing, or than another start, after a first refit: no second one makes up for that
 FIRST, SECOND = 8, 6  # steps of a refit, and under tangents of its own: with three, some stopped tens of nats short
 WEIGHT = 0.01  # posterior probability from which a hypothesis is refitted
 PROMOTIONS, MOST = 4, 8  # what a refit promotes is refitted too; so many at once
@@ -64,28 +64,27 @@ RIVALS = 4  # effects that are tried beside the same others
 AGAIN = float(np.log(PRIOR["two"].share / (PRIOR["effect"].share + PRIOR["fault"].share)))  # as a second beside a first
 
 
-def refit(
-    evidence: Evidence,
-    members: Sequence[int],
-    theta: Array,
-    tangents: Sequence[Segment] = (),
-    objective: float | None = None,
-) -> Fit:
-    """All free parameters and the amplitudes of some causes, fitted anew; those that are whole are held at one.
+def first_refit(evidence: Evidence, members: Sequence[int], theta: Array, tangents: Sequence[Segment] = ()) -> Fit:
+    """All free parameters and the amplitudes of some causes, fitted anew by given tangents; those that are whole are
+    held at one.
 
     Parameters: `theta` where the fit begins; `tangents` segments with the columns of all these there, by default those
-    without the causes; `objective` there, by default that without the causes.
+    without the causes.
     """
     e, fit = evidence, evidence.fit
     network, unknowns, fixed = with_members(e, members)
     cache = CachedSegments(tangents or e.run.segments([e.causes[k] for k in fitted_members(e, members)]))
-    free = (network, e.tests, unknowns)
-    rough = minimise(*free, theta, fit.noise, fixed, FIRST, cache, worth=ENOUGH, error=fit.error)
-    far = any(e.effects[k].whole for k in members)  # exchanged plugs begin where the calibration is wrong
-    gain = (fit.objective if objective is None else objective) - rough.objective
-    straight = rough.gain_ratio > STRAIGHT and gain < BENDS
+    return minimise(network, e.tests, unknowns, theta, fit.noise, fixed, FIRST, cache, worth=ENOUGH, error=fit.error)
+
+
+def second_refit(evidence: Evidence, members: Sequence[int], rough: Fit, objective: float) -> Fit:
+    """A first refit gone on under tangents of its own, where it needs them.  objective : where it began"""
+    fit, far = evidence.fit, any(evidence.effects[k].whole for k in members)  # exchanged plugs begin where nothing fits
+    straight = rough.gain_ratio > STRAIGHT and objective - rough.objective < BENDS
     if straight or (rough.objective > fit.objective + HOPELESS and not far):
         return rough
+    network, unknowns, fixed = with_members(evidence, members)
+    free = (network, evidence.tests, unknowns)
     return minimise(*free, rough.theta, fit.noise, fixed, SECOND, draft=True, worth=ENOUGH, error=fit.error)
 
 
@@ -106,7 +105,7 @@ def neighbour_refit(evidence: Evidence, members: Sequence[int], neighbour: Neigh
         replace(s, J=np.column_stack([s.J[:, :p], *(s.J[:, p] if k == one else columns[k][i] for k in free)]))
         for i, s in enumerate(alone.parts)
     ]
-    return refit(evidence, members, theta, tangents, alone.objective)
+    return first_refit(evidence, members, theta, tangents)
 
 
 def continued_refit(evidence: Evidence, members: Sequence[int], before: Fit, fine: bool = False) -> Fit:
@@ -130,11 +129,7 @@ def starts(evidence: Evidence, members: Sequence[int]) -> list[Array]:
     # a tangent of a large effect points far beyond what physics allows: within three deviations and the bounds
     first = np.clip(np.clip(evidence.score.amplitude[free], -3.0 * sd, 3.0 * sd), 0.9 * low, 0.9 * high)
     far = {k: evidence.jumps[n][0] for k in free if (n := evidence.names[k]) in evidence.jumps}
-    points = [first]
-    if len(free) == 1 and far:
-        points += [np.array([a]) for a in evidence.effects[free[0]].large]
-    elif far:
-        points.append(np.array([far.get(k, f) for k, f in zip(free, first, strict=True)]))
+    points = [first, *([np.array([far.get(k, f) for k, f in zip(free, first, strict=True)])] if far else [])]
     return [np.concatenate([evidence.fit.theta, a]) for a in points]
 
 
@@ -155,10 +150,16 @@ def laplace(
         with suppress(NoSolution):
             fits.append(continued_refit(evidence, h.members, before, fine))
     else:
+        rough = []
         for i, theta in enumerate(starts(evidence, h.members)):
+            near = neighbour if i == 0 else None
             with suppress(NoSolution):  # a machine that would run away there begins elsewhere
-                near = neighbour if i == 0 else None
-                fits.append(neighbour_refit(evidence, h.members, near) if near else refit(evidence, h.members, theta))
+                one = neighbour_refit(evidence, h.members, near) if near else first_refit(evidence, h.members, theta)
+                rough.append((one, near[1].objective if near else evidence.fit.objective))
+        least = min((one.objective for one, _ in rough), default=np.inf) + HOPELESS
+        for one, begin in rough:
+            with suppress(NoSolution):
+                fits += [second_refit(evidence, h.members, one, begin)] if one.objective <= least else []
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.special import log_ndtr, logsumexp
 
+from lumped.model.once import once
 from measured.doubt import SIZES
 
 if TYPE_CHECKING:
@@ -49,25 +50,50 @@ class Gram:
         return replace(self, JZ=self.JZ[:, columns], ZZ=self.ZZ[np.ix_(columns, columns)], Zr=self.Zr[columns])
 
 
-def gram(parts: Sequence[Segment], noise: Noise, p: int, error: ModelError | None = None) -> dict[str, Gram]:
+class Whitened(NamedTuple):
+    """What a segment says of the nuisances alone.
+
+    at : nuisances that act in it, and -1;  X (n, at) : their whitened columns, and the residual;  XX : X'X
+    """
+
+    at: NDArray[np.int64]
+    X: Array
+    XX: Array
+
+    @classmethod
+    def of(cls, s: Segment, noise: Noise, p: int, error: ModelError | None) -> Whitened:
+        J = np.column_stack([s.J[:, :p], error.of(s)]) if error else s.J[:, :p]
+        # most columns are zero in most segments (a bias is of one sensor, a start of one test): whitening is what costs
+        at = np.flatnonzero(J.any(axis=0))
+        X = noise.whiten(s, np.column_stack([J[:, at], s.r]))
+        return cls(np.append(at, -1), X, X.T @ X)
+
+
+def gram(
+    parts: Sequence[Segment],
+    noise: Noise,
+    p: int,
+    error: ModelError | None = None,
+    known: Sequence[Whitened] | None = None,
+) -> dict[str, Gram]:
     """One Gram matrix per test.
 
     Parameters: `parts` segments whose J has p nuisance columns, then the effects' (K per unit); `error` the model
-    error, whose d columns count as further nuisances. Returns: test -> Gram of p + d nuisances.
+    error, whose d columns count as further nuisances; `known` the segments without effects, where that was worked out.
+    Returns: test -> Gram of p + d nuisances.
     """
-    blocks = [(s.J[:, :p], *([error.of(s)] if error else []), s.J[:, p:], s.r[:, None]) for s in parts]
-    p += error.size if error else 0
-    out: dict[str, Array] = {}
-    for s, columns in zip(parts, blocks, strict=True):
-        # most columns are zero in most segments (a bias is of one sensor, a start of one test): whitening is what costs
-        nonzero = [np.flatnonzero(X.any(axis=0)) for X in columns]
-        first = np.cumsum([0, *(X.shape[1] for X in columns)])
-        X = noise.whiten(s, np.column_stack([X[:, k] for X, k in zip(columns, nonzero, strict=True)]))
-        at = np.concatenate([k + begin for k, begin in zip(nonzero, first)])
-        G = out.setdefault(s.test, np.zeros((first[-1], first[-1])))
-        G[np.ix_(at, at)] += X.T @ X
+    q, out = p + (error.size if error else 0), dict[str, Array]()
+    for s, (at, X, XX) in zip(parts, known or [Whitened.of(s, noise, p, error) for s in parts], strict=True):
+        size = q + s.J.shape[1] - p + 1
+        G = out.setdefault(s.test, np.zeros((size, size)))
+        G[np.ix_(at, at)] += XX
+        if (k := p + np.flatnonzero(s.J[:, p:].any(axis=0))).size:
+            Z, here = noise.whiten(s, s.J[:, k]), k + q - p
+            G[np.ix_(here, here)] += Z.T @ Z
+            G[np.ix_(at, here)] += (cross := X.T @ Z)
+            G[np.ix_(here, at)] += cross.T
     return {
-        test: Gram(G[:p, :p], G[:p, p:-1], G[p:-1, p:-1], G[:p, -1], G[p:-1, -1], float(G[-1, -1]))
+        test: Gram(G[:q, :q], G[:q, q:-1], G[q:-1, q:-1], G[:q, -1], G[q:-1, -1], float(G[-1, -1]))
         for test, G in out.items()
     }
 
@@ -162,7 +188,17 @@ def score(G: Gram, theta: Array, prior_sd: Array, sign: Signs) -> Score:
 
 def fit_gram(fit: Fit, parts: Sequence[Segment]) -> dict[str, Gram]:
     """test -> Gram of segments [calibrated parameters | effects] under a fit's noise, its model error a nuisance."""
-    return gram(parts, fit.noise, len(fit.unknowns.parameters), fit.error)
+    p = len(fit.unknowns.parameters)
+    same = len(parts) == len(fit.parts) and all(
+        np.array_equal(s.r, f.r) and np.array_equal(s.J[:, :p], f.J) for s, f in zip(parts, fit.parts, strict=True)
+    )
+    return gram(parts, fit.noise, p, fit.error, whitened(fit) if same else None)
+
+
+@once
+def whitened(fit: Fit) -> list[Whitened]:
+    """A fit's own segments: they are asked for each time that further effects are scored about it."""
+    return [Whitened.of(s, fit.noise, len(fit.unknowns.parameters), fit.error) for s in fit.parts]
 
 
 def fit_prior(fit: Fit) -> tuple[Array, Array]:

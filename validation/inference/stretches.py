@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -85,12 +86,23 @@ class HatScores:
         signs = [(p, s * away) for p, s in ((path.place, -1.0), (path.other, 1.0)) if p in self.places]
         return [(self.start[test] + self.places.index(p) * m + np.arange(m), heat) for p, heat in signs]
 
-    def knot_scores(self, path: Path, test: str) -> tuple[Array, Array]:
-        """Score (m,) and covariance (m, m) of a path that is open at single knots."""
-        ends, s = self.ends(path, test), self.score
-        u = sum(heat * s.u[i] for i, heat in ends)
-        V = sum(np.outer(a, b) * s.V[np.ix_(i, j)] for i, a in ends for j, b in ends)
-        return np.asarray(u), np.asarray(V)
+    @cached_property
+    def _sums(self) -> dict[tuple[Path, str], tuple[Array, Array]]:
+        """What `stretch_sums` has worked out: the search for repeats asks for it again and again."""
+        return {}
+
+    def stretch_sums(self, path: Path, test: str) -> tuple[Array, Array]:
+        """Score and variance of a path that is open over stretches of a test's knots: every two edges i < j, one after
+        the other as of `np.triu_indices`."""
+        if (path, test) not in self._sums:
+            ends, s = self.ends(path, test), self.score
+            u = sum(heat * s.u[i] for i, heat in ends)
+            V = sum(np.outer(a, b) * s.V[np.ix_(i, j)] for i, a in ends for j, b in ends)
+            n = self.knots[test].size + 1
+            U, P, (i, j) = np.append(0.0, np.cumsum(u)), np.zeros((n, n)), np.triu_indices(n, 1)
+            P[1:, 1:] = np.cumsum(np.cumsum(V, axis=0), axis=1)
+            self._sums[path, test] = U[j] - U[i], P[j, j] - P[i, j] - P[j, i] + P[i, i]
+        return self._sums[path, test]
 
     def course(self, event: Event, path: Path) -> tuple[NDArray[np.int64], Array]:
         """Indices of the hats, and heat (W) in each, of a path of one unit that is open while an event lasts."""
@@ -160,11 +172,8 @@ def best_stretch(scores: HatScores, path: Path, test: str, others: Event | None 
 
     others : stretches that are there already, with the same amplitude; log_bayes is then that of all
     """
-    (u, V), knots = scores.knot_scores(path, test), scores.knots[test]
-    U, P = np.concatenate([[0.0], np.cumsum(u)]), np.zeros((u.size + 1, u.size + 1))
-    P[1:, 1:] = np.cumsum(np.cumsum(V, axis=0), axis=1)
-    i, j = np.triu_indices(u.size + 1, 1)
-    U, P = U[j] - U[i], P[j, j] - P[i, j] - P[j, i] + P[i, i]
+    (U, P), knots = scores.stretch_sums(path, test), scores.knots[test]
+    i, j = np.triu_indices(knots.size + 1, 1)
     if others:
         (k, w), (linear, square) = scores.course(others, path), scores.sums(others, path)
         cross = sum(heat * (scores.score.V[np.ix_(n, k)] @ w) for n, heat in scores.ends(path, test))
@@ -246,14 +255,12 @@ def lasts_throughout(scores: HatScores, event: Event) -> bool:
 
 
 def worth(scores: HatScores, s: Interval) -> float:
-    """Evidence less the price of when: the log of how many stretches there are among the knots."""
-    usual, price, first = float(np.mean([b - a for a, b in s.event.every])), 0.0, True
-    for test, spans in s.event.spans.items():
-        knots = scores.knots[test]
-        for _ in spans:
-            price += float(np.log(stretch_count(knots.size, None if first else usual / float(knots[1] - knots[0]))))
-            first = False
-    return s.log_bayes - price
+    """Evidence less the price of when: the log of how many stretches there are among the knots, of the first in the
+    test that has most of them."""
+    usual = float(np.mean([b - a for a, b in s.event.every]))
+    knots = sorted((scores.knots[t] for t, spans in s.event.spans.items() for _ in spans), key=lambda k: -k.size)
+    counts = [stretch_count(k.size, usual / float(k[1] - k[0]) if n else None) for n, k in enumerate(knots)]
+    return s.log_bayes - float(np.sum(np.log(counts)))
 
 
 def distinct(by_worth: Sequence[Interval], most: int) -> list[Interval]:

@@ -223,14 +223,15 @@ def freed(network: Network, names: Collection[str]) -> Network:
     """The network with the data alone to say how large some effects are.
 
     The prior of an effect speaks of machines at large. For one that is in the model because the readings ask for it, it
-    would press the rest of the effect into whatever else may move. So would the bound of its usual size, which no
-    physics sets for what is counted in watts; shares and factors keep theirs.
+    would press the rest of the effect into whatever else may move.
     """
+    return replace(network, parameters=tuple(unbound(p) if p.name in names else p for p in network.parameters))
 
-    def free(p: Parameter) -> Parameter:
-        return replace(widened(p), high=LARGER * p.high if p.unit.startswith("W") else p.high)
 
-    return replace(network, parameters=tuple(free(p) if p.name in names else p for p in network.parameters))
+def unbound(p: Parameter) -> Parameter:
+    """A parameter that the data decide, beyond the bound of its usual size too, which no physics sets for what is
+    counted in watts; shares and factors keep theirs."""
+    return replace(widened(p), high=LARGER * p.high if p.unit.startswith("W") else p.high)
 
 
 def widened(parameter: Parameter) -> Parameter:

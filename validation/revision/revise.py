@@ -13,6 +13,7 @@ from geom.table import Table
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
+from lumped.model.once import once
 from measured.case import AddedEffect, Case, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
@@ -29,6 +30,7 @@ from validation.effects.time_window import checked, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
     Check,
+    FoldPrediction,
     bound_check,
     failures,
     fall,
@@ -197,7 +199,8 @@ def _revised(
     profiled: Sequence[str] = (),
     search: Search | None = None,
 ) -> Revision:
-    case = replace(case, tests=without(case.tests, broken_channels(case.tests)))
+    if broken := broken_channels(case.tests):
+        case = replace(case, tests=without(case.tests, broken))
     before = errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
@@ -235,16 +238,28 @@ def _effect_checks(
     case: Case, fit: Fit, names: Sequence[str], new: Model, tests: Sequence[Test], changes: Sequence[Change]
 ) -> tuple[Check, ...]:
     """Does the model with the effects predict what was left out better than the one before, fitted to the same?"""
-    training = replace(case.training(), model=replace(case.model, reference=new.reference))
+    telling = telling_tests(fit, names)
+    middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
+    bare, values, known = _fit_before(case)
+    if (at := (middle, *telling)) not in known:
+        known[at] = [fold_prediction(bare, fold, values) for fold in folds(tests, telling, middle)]
+    after = [fold_prediction(fit, x, parameter_values(fit.network, new.values)) for x in folds(tests, telling, middle)]
+    checks = prediction_checks(known[at], after, telling)
+    return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
+
+
+@once
+def _fit_before(case: Case) -> tuple[Fit, dict[str, float], dict[tuple, list[FoldPrediction]]]:
+    """The model as it stands, fitted to all tests but the held-out ones, its values, and what it predicts of them.
+
+    Every effect that is tried on it is held against the same.
+    """
+    training, tests = case.training(), _plain(case.usable)
+    reference = replace(case_reference(training), tests=tuple(t.name for t in training.tests))
+    training = replace(training, model=replace(case.model, reference=reference))
     (plain,) = staged_fit(training, tests, start(training))
     bare = _sure(plain, tests, replace(case.model, values=_values(case.model, [plain])), case)
-    telling = telling_tests(fit, names)
-    parts = folds(tests, telling, middle_instant(fit, names, telling[0]) if len(telling) == 1 else None)
-    before, after = (
-        [fold_prediction(one, fold, parameter_values(one.network, values)) for fold in parts]
-        for one, values in ((bare, {**case.model.values, **bare.values}), (fit, new.values))
-    )
-    return (*(bound_check(fit, n) for n in names), *prediction_checks(before, after, telling), _lost(changes, tests))
+    return bare, parameter_values(bare.network, {**case.model.values, **bare.values}), {}
 
 
 def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
@@ -292,7 +307,7 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
 
 def _plain(tests: Sequence[Test]) -> list[Test]:
     """The tests without stages: an effect is judged on all of them together."""
-    return [replace(t, frees=()) for t in tests]
+    return [replace(t, frees=()) if t.frees else t for t in tests]
 
 
 def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import partial, wraps
 from itertools import pairwise, product
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.model.network import Network
+from lumped.model.once import once
 from measured.case import Case
 from validation.threads import one_blas_thread
 from validation.yardstick.black_box import BlackBoxLessons
@@ -54,6 +56,27 @@ class Plain(Protocol):
 
 
 Fitter = Callable[[Sequence[int]], Plain]  # from the numbers of the records that teach it
+Folds = list[list[Record]]
+R = TypeVar("R")
+
+
+@once
+def _known(network: Network) -> dict[tuple[Any, ...], tuple[Any, Any]]:
+    """What was learnt from tests of a network, with these tests."""
+    return {}
+
+
+def once_for_tests(work: Callable[[Case], R]) -> Callable[[Case], R]:
+    """`work` of a case's tests and declared network, done once for the same ones: no effect or value changes it."""
+
+    @wraps(work)
+    def remembered(case: Case) -> R:
+        known, key = _known(case.model.network), (work, *map(id, case.tests))
+        if key not in known:
+            known[key] = case.tests, work(case)
+        return known[key][1]  # type: ignore[no-any-return]
+
+    return remembered
 
 
 @dataclass(frozen=True)
@@ -98,6 +121,7 @@ def _errors_in(of: Mapping[str, float]) -> dict[str, float | None]:
     return {f"{kind}_K": error if np.isfinite(error) else None for kind, error in of.items()}
 
 
+@once_for_tests
 @one_blas_thread
 def yardstick(case: Case) -> Yardstick | None:
     """The plain models of a case; None where nothing can be learnt: no sensor, no test to fit, or too few rows."""
@@ -105,6 +129,12 @@ def yardstick(case: Case) -> Yardstick | None:
     if prepared is None:
         return None
     folds, columns = prepared
+    alone = _free_network(replace(case, tests=case.usable))
+    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == (
+        columns.inputs,
+        columns.boundaries,
+        *columns.steady,
+    )
     step = row_step(case.usable, columns)
     records = [r for fold in folds for r in fold]
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
@@ -112,7 +142,7 @@ def yardstick(case: Case) -> Yardstick | None:
     which = {
         "persistence": _best(_persistences(folds, columns), folds),
         "black_box": _best(_black_boxes(folds, columns), folds),
-        "free_network": _best(_free_networks(folds, columns), folds),
+        "free_network": alone[2] if alone and same else _best(_free_networks(folds, columns), folds),
     }
     models = {kind: fit(range(len(folds))) for kind, (fit, _) in which.items()}
     errors = {kind: [*left, *(error_of(models[kind], r) for r in unseen)] for kind, (_, left) in which.items()}
@@ -132,7 +162,7 @@ def yardstick(case: Case) -> Yardstick | None:
     )
 
 
-def folds_of(case: Case) -> tuple[list[list[Record]], Columns] | None:
+def folds_of(case: Case) -> tuple[Folds, Columns] | None:
     """The tests a fit may use as tables, what is left out at a time; None where nothing can be learnt from them."""
     columns = table_columns(case.usable, case.tests)
     if not columns.sensors:
@@ -144,15 +174,19 @@ def folds_of(case: Case) -> tuple[list[list[Record]], Columns] | None:
     return _folds(records), columns
 
 
+@once_for_tests
+def _free_network(case: Case) -> tuple[Folds, Columns, tuple[Fitter, list[Array]]] | None:
+    """The best free network that a case's tests teach, with its errors; None where nothing can be learnt."""
+    prepared = folds_of(case)
+    return prepared and (*prepared, _best(_free_networks(*prepared), prepared[0]))
+
+
 @one_blas_thread
 def free_network_terms(case: Case) -> tuple[Term, ...]:
     """What a free network needs; nothing where nothing can be learnt."""
     case = replace(case, tests=case.usable)  # a held-out test that lacks an input must not take it from the others
-    prepared = folds_of(case)
-    if prepared is None:
-        return ()
-    folds, columns = prepared
-    return needed_terms(_best(_free_networks(folds, columns), folds)[0], folds, columns, case)
+    learnt = _free_network(case)
+    return needed_terms(learnt[2][0], learnt[0], learnt[1], case) if learnt else ()
 
 
 def persistence_error(case: Case) -> tuple[float, tuple[str, ...]] | None:

@@ -32,13 +32,11 @@ from validation.inference.refit import (
     laplace,
     larger_sets,
     neighbour_tangents,
-    refit,
     refitted,
     shares,
-    starts,
     weighty_refits,
 )
-from validation.inference.score import fit_gram, total
+from validation.inference.score import fit_gram, gram, total
 from validation.noise import Level, Noise
 
 NAMES = ("convection@flange.right", "loss.constant@poles", "loss.constant@bearing.left", "sensor.bias@yoke")
@@ -58,6 +56,14 @@ def evidence():
 def covariance(noise, s):
     level = noise.at(s)
     return level.white**2 * level.shape().matrix(s.time)
+
+
+def test_columns_about_a_fit_make_the_same_matrix_as_all_of_it_anew(evidence):
+    fit = evidence.fit
+    known, anew = fit_gram(fit, evidence.parts), gram(evidence.parts, fit.noise, evidence.p, fit.error)
+    for test, G in anew.items():
+        for name, block in vars(G).items():
+            np.testing.assert_allclose(getattr(known[test], name), block, rtol=1e-9, atol=1e-9 * np.abs(block).max())
 
 
 def test_log_evidence_is_that_of_the_dense_normal_distribution(evidence):
@@ -160,9 +166,9 @@ def to_the_end(evidence, network, unknowns, theta, held):
 
 def test_a_refit_that_goes_on_ends_no_worse_than_one_from_the_start_and_finely_at_its_optimum(evidence):
     (k,) = [evidence.names.index(NAMES[0])]
-    before = refit(evidence, [k], starts(evidence, [k])[0])
+    before = laplace(evidence, Weighed((k,))).fit
     sharp = sharpened(evidence)
-    onwards, anew = continued_refit(sharp, [k], before), refit(sharp, [k], starts(sharp, [k])[0])
+    onwards, anew = continued_refit(sharp, [k], before), laplace(sharp, Weighed((k,))).fit
     assert onwards.objective < anew.objective + 0.5  # half a nat: fits stop at a tenth or so
     fine = continued_refit(sharp, [k], onwards, fine=True)
     end = to_the_end(sharp, *with_members(sharp, [k])[:2], fine.theta, with_members(sharp, [k])[2])
@@ -172,7 +178,7 @@ def test_a_refit_that_goes_on_ends_no_worse_than_one_from_the_start_and_finely_a
 def test_tangents_beside_a_refit_are_differences_there(evidence):
     """Of the second of two effects, where the first was fitted alone."""
     one, other = (evidence.names.index(n) for n in NAMES[:2])
-    alone = refit(evidence, [one], starts(evidence, [one])[0])
+    alone = laplace(evidence, Weighed((one,))).fit
     (columns,) = neighbour_tangents(evidence, one, alone, [other]).values()
     step = 1.0
     values = {**evidence.fit.values, **alone.unknowns.values(alone.theta)}

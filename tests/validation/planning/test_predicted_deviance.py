@@ -11,7 +11,8 @@ from measured.case import Case, Model
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, scored
-from validation.inference.refit import refit, starts
+from validation.inference.hypotheses import Weighed
+from validation.inference.refit import laplace
 from validation.planning.candidate_tests import CANDIDATE_TESTS
 from validation.planning.experiments import next_tests
 from validation.planning.rivals import (
@@ -59,7 +60,7 @@ def raced(more=None):
         tests = (*tests, truth.test(more, "calibrate", lambda time, rng: plan.inputs, hours=4.0))
     case = Case("rubbing", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
-    fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
+    fits = tuple(laplace(evidence, Weighed((k,))).fit for k in (0, 1))
     return evidence, CompetingModels((0, 1), fits, evidence.fit.noise)
 
 

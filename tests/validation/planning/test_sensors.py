@@ -9,7 +9,8 @@ from playground import SENSORS, Truth, network
 from measured.case import Case, Model
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, scored
-from validation.inference.refit import refit, starts
+from validation.inference.hypotheses import Weighed
+from validation.inference.refit import laplace
 from validation.planning.rivals import DECISIVE, GAP, CompetingModels, deviance_difference, separation
 from validation.planning.sensors import access, free_places, next_sensors, with_sensors
 
@@ -27,7 +28,7 @@ def raced(*more):
     tests = Truth(10, heated, sensors=(*SENSORS, *more)).case().tests[:2]
     case = Case("heated", Model(network()), tests)
     evidence = scored(case, [effect(name) for name in RIVALS], calibrated_case(case))
-    fits = tuple(refit(evidence, [k], starts(evidence, [k])[0]) for k in (0, 1))
+    fits = tuple(laplace(evidence, Weighed((k,))).fit for k in (0, 1))
     return evidence, CompetingModels((0, 1), fits, evidence.fit.noise)
 
 

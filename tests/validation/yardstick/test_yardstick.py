@@ -58,6 +58,11 @@ def test_persistence_is_what_the_readings_stray_from_their_first(sound, measure)
     assert measure.tests[test.name]["persistence"] == measure.hold_out["persistence"]
 
 
+def test_what_is_added_to_a_model_asks_for_no_other_yardstick(sound, measure):
+    assert yardstick(replace(sound, model=replace(sound.model, values={"link.joint": 2.0}))) is measure
+    assert yardstick(replace(sound, tests=sound.tests[:2])) is not measure
+
+
 def test_what_is_held_out_teaches_nothing(sound, measure):
     wild = sound.tests[2]
     wild = replace(wild, channels=tuple(replace(c, y=c.y[::-1] + 50.0) for c in wild.channels))

@@ -1,0 +1,72 @@
+"""When exactly: ends of what holds for a while, in long records and whatever the order of the tests."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from two_bodies import bench, two_bodies
+
+from lumped.integration.simulate import Record, simulate
+from measured.case import Case, Channel, Model, Test
+from validation.effects import effect
+from validation.effects.time_window import Event
+from validation.inference.events import closer_look, refit_ends, timed_event
+from validation.inference.evidence import calibrated_case, scored
+from validation.inference.hypotheses import Weighed
+from validation.inference.refit import laplace
+
+DAY, STEP_S = 21600.0, 10.0
+
+
+def day_with_a_lid(begin, end, size):
+    """Six hours of a sample every ten seconds, in which a lid was open once."""
+    rng, net = np.random.default_rng(1), two_bodies()
+    lid = effect(f"convection.constant@body in {Event.of({'day': [(begin, end)]}).name}")
+    truth, time = lid.extend(net), np.arange(0.0, DAY, STEP_S)
+    load = rng.uniform(0.3, 1.0, 10)[(time / (DAY / 10.0)).astype(int)]
+    test = Test("day", "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
+    rows = [net.places[p].mean for p in ("body", "core")]
+    y = simulate(truth, Record(time, test.signals, test.boundaries, 20.0), {lid.name: size}, rows).y
+    y = y + 0.05 * rng.standard_normal(y.shape)
+    channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
+    return Case("day", Model(net), (replace(test, channels=channels),))
+
+
+@pytest.mark.parametrize(
+    "size", [5.0, 40.0]
+)  # W/K; by the larger one the body is halfway to the room's temperature at the end
+def test_ends_in_a_day_are_found_to_the_sample(size):
+    """Begun some minutes off, which is where windows of a long record put them; blocks of the fit are two minutes."""
+    case = day_with_a_lid(10_000.0, 10_090.0, size)
+    wrong = effect("convection.constant@body in day:9600-10400s")
+    evidence, where = scored(case, [wrong], calibrated_case(case)), wrong.event
+    for _ in range(3):
+        fit = laplace(evidence, Weighed((0,))).fit
+        where = refit_ends(evidence, fit, evidence.effects[0], where, {"day": 600.0})
+        moved = effect(f"convection.constant@body in {where.name}")
+        evidence = scored(case, [moved], evidence.fit)
+    assert np.array(where.spans["day"]) == pytest.approx(np.array([(10_000.0, 10_090.0)]), abs=2.0 * STEP_S)
+
+
+def test_a_closer_look_has_the_same_readings_in_shorter_blocks():
+    case = bench()
+    fit, test = calibrated_case(case), case.tests[0]
+    closer, near = closer_look(fit, test, (2000.0, 2600.0), 60.0, fit.values)
+    assert np.diff(near.blocks).min() == 1
+    for s, old in zip(closer.parts, fit.parts, strict=True):
+        assert (s.time.size > old.time.size) == (s.test == test.name)
+        assert closer.error.of(s).shape == (s.time.size, fit.error.size)
+        assert np.mean(s.r) == pytest.approx(np.mean(old.r), abs=0.05)
+
+
+def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():
+    """A lid that is open in two tests, the ends of each span found beside the others."""
+    case = bench((("noon", ((1000.0, 1500.0),)), ("dusk", ((3000.0, 3400.0), (4000.0, 4500.0)))), 5.0)
+    film, held, events = effect("convection.constant@body"), {"noon": [(950.0, 1550.0)], "dusk": [(2900.0, 3500.0)]}, []
+    for tests in (case.tests, case.tests[::-1]):
+        fit = calibrated_case(replace(case, tests=tests))
+        evidence = scored(replace(case, tests=tests), [film], fit)
+        where = Event.of({t.name: held[t.name] for t in tests if t.name in held})
+        events.append(timed_event(evidence, film, where, dict.fromkeys(held, 100.0), fit.values))
+    assert events[0].event.name == events[1].event.name
+    assert events[0].log_share == pytest.approx(events[1].log_share, abs=1e-3)
