@@ -85,6 +85,13 @@ def cell(value: Any) -> str:
     return str(value)
 
 
+def percent(probability: float) -> str:
+    """A probability as every page, list and picture says it: "> 99 %", "97 %", "< 1 %"."""
+    if probability >= 0.995:
+        return "> 99 %"
+    return f"{100 * probability:.0f} %" if probability >= 0.005 else "< 1 %"
+
+
 def with_interval(value: float | None, low: float | None, high: float | None) -> str:
     """A value with its interval: three digits tell what an interval leaves sure."""
     one, *two = (f"{x:.3g}" if x is not None and math.isfinite(x) else "-" for x in (value, low, high))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
-from geom.table import Table
+from geom.table import Table, percent
 from geom.text import table
 from validation.tables import TableRow, diagnosis_tables
 
@@ -252,7 +252,7 @@ class Remainder:
         if not self.effect:
             return f"{text}; no second effect explains it."
         return (
-            f"{text}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
+            f"{text}; {self.effect} would bring it to {self.brought_K:.1f} K (odds {percent(self.probability)}). "
             f"To tell: {self.test}."
         )
 
@@ -307,7 +307,7 @@ class Diagnosis:
 
     def __repr__(self) -> str:
         likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]
-        rows = [[x.words, f"{100 * x.probability:.1f} %"] for x in likely[:MOST_ODDS]]
+        rows = [[x.words, percent(x.probability)] for x in likely[:MOST_ODDS]]
         return f"{self.verdict}: {self.words}\n{table(['explanation', 'probability'], rows)}"
 
     def tables(self) -> tuple[Table, ...]:

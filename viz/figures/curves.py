@@ -12,7 +12,7 @@ import numpy as np
 
 from geom.errors import InputError
 from validation.comparison.uncertainty import RULE
-from viz.colours import LIGHT, ORANGE, VERMILION
+from viz.colours import LIGHT, ORANGE, VERDICT
 from viz.data import Comparison, short
 from viz.figures import paper
 from viz.labels import end_labels
@@ -41,24 +41,23 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; those that are over are coloured, named in bold."""
+    """Measured - modelled per sensor over time; each in the colour of its sensor."""
     figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     channels = _read(comparison)
     shade(ax, comparison)
     curves = [comparison.residual_curve(channel) for channel in channels]
     for c in curves:
-        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.6 if c.colour != LIGHT.faint else 1.0)
+        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6)
         alone(ax, t, c.y, c.colour)
     ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
-    inks = [LIGHT.ink if c.colour == LIGHT.faint else c.colour for c in curves]
-    end_labels(ax, ends, [c.name for c in curves], inks)
+    end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
-    ax.set_title(f"grey is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set_title(f"green is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
     return paper.save(figure, png)
 
 
@@ -82,10 +81,9 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
         )
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    error = comparison.rmse(channel)
-    ax.set_title(f"rms {error:.1f} K", loc="right", fontweight="normal")
-    if error > limit:
-        ax.set_title(f"rms {error:.1f} K", loc="right", color=VERMILION, fontweight="bold")
+    sensor = comparison.sensor(channel)
+    weight = "normal" if sensor.verdict == "within" else "bold"
+    ax.set_title(f"rms {sensor.rmse_K:.1f} K", loc="right", color=sensor.colour, fontweight=weight)
 
 
 def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0.0) -> None:

@@ -100,5 +100,5 @@ def _cell(value: Any) -> str:
     word = cell(value).replace("->", "→").replace(" ... ", " … ")
     if word in ("", "-"):
         return "–"
-    css = {"over": "bad", "within": "ok"}.get(word)
+    css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
     return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)

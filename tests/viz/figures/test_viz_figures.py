@@ -10,7 +10,7 @@ from PIL import Image
 
 from extras.bench import figure as screening
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT
+from viz.colours import BLUE, VERDICT
 from viz.data import Comparison
 from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
@@ -68,7 +68,7 @@ SHOWS = {
     "predicted": ["yoke", "± 1.7 K", "armature", "no sensor", "± 11.4 K", "road-1", "95 % band (°C)"],
     "curves": ["flange.right", "earlier model", "temperature (°C)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
-    "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],
+    "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
     "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
     "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
@@ -86,11 +86,11 @@ def test_figure_is_drawn_and_labelled(name, tmp_path):
     assert [word for word in SHOWS[name] if word not in text] == []
 
 
-def test_wrong_sensor_is_coloured_and_the_others_are_faint():
+def test_a_curve_has_the_colour_of_its_sensor():
     c = comparison()
     colours = {ch.name: c.residual_curve(ch).colour for ch in c.test.channels}
     assert colours.pop("flange.right") == BLUE
-    assert set(colours.values()) == {LIGHT.faint}
+    assert set(colours.values()) == {VERDICT["within"]}
 
 
 def test_sensor_that_was_never_read_is_left_out():
