@@ -19,7 +19,7 @@ from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.viewer import viewer_page
 from viz.colours import VERDICT
-from viz.data import sensors
+from viz.data import sensors, short
 from viz.figures.errors import before_after
 from viz.figures.paper import svg
 
@@ -75,7 +75,7 @@ def test_what_was_found_is_one_sentence(told):
     undone = replace(told["right"], history=told["right"].history.back_to(1))
     assert runs.found_words(undone, told["compare"]) == ""
     worst = max((c["rmse_K"], c["channel"], c["limit_K"]) for t in told["compare"]["tests"] for c in t["channels"])
-    assert f"at most {worst[0]:.1f} K, {worst[1]} in" in found
+    assert f"at most {worst[0]:.1f} K, {short(worst[1])} in" in found
     assert f"(limit {worst[2]:.1f})" in found
 
 

@@ -21,6 +21,7 @@ from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
 from measured.doubt import split_answers
+from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
@@ -223,6 +224,7 @@ def found_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     """
     from validation.effects import effect
     from validation.revision.revise import TOGETHER
+    from viz.data import short
 
     last, added = folder.history.last, dict[str, Revision]()
     for revision in folder.history.revisions:
@@ -241,7 +243,7 @@ def found_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
     done, on = "Found" if now < was else "Added", "Held out" if held_out else "Error"
-    left = f"at most {error:.1f} K, {name} in {test} (limit {limit:.1f})"
+    left = f"at most {error:.1f} K, {short(name)} in {test} (limit {limit:.1f})"
     return f"{done}: {words}. {on} {was:.2f} -> {now:.2f} K. Left: {left}."
 
 
@@ -261,6 +263,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
                 "unit": p.unit,
                 "ci95": [a, b],
                 "prior": [p.value, low, high],
+                "of_measurement": of_measurement(p),
                 "identified": b - a < BLIND * (high - low),
             }
         )

@@ -80,4 +80,4 @@ def _label(sensor: Sensor, hidden: bool) -> Label:
     value = "" if sensor.residual_K is None else f"  {signed(sensor.residual_K)} K"
     name = short(sensor.name)
     name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"
-    return Label(sensor.xyz, f"{name}{value}", sensor.colour, hidden)
+    return Label(sensor.xyz, f"{name}{value}".strip(), sensor.colour, hidden)

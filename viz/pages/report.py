@@ -19,6 +19,7 @@ from validation import tables
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import bands, candidates, curves, errors
+from viz.figures.intervals import intervals
 from viz.machine.missing import placed
 from viz.pages import html, words
 
@@ -136,9 +137,12 @@ def _missing(r: Report) -> str:
     if r.diagnosis is None or not r.diagnosis["candidates"]:
         return ""
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
+    said = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     parts = [
-        html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance."),
+        html.plot(said, "odds", "Each leading cause and its odds; pale: with something else.") if said else "",
         html.table(tables.candidates_table(by_score[:12])),
+        html.more("Evidence of each by itself", evidence),
         html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]
@@ -182,7 +186,9 @@ def _values(r: Report) -> str:
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
     left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
     rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
-    return html.section("Calibrated values", html.table(tables.parameters_table("", fixed)), rest)
+    drawn = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
+    sizes = html.plot(intervals(drawn), "sizes", "Values on the scale of what was expected of them.") if drawn else ""
+    return html.section("Calibrated values", sizes, html.table(tables.parameters_table("", fixed)), rest)
 
 
 def _sensors(r: Report) -> str:

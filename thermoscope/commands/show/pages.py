@@ -165,8 +165,9 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     earlier = runs.before_last(folder)
     if earlier is not None:
         both, titles = into / "field-before-after.png", (f"{s.when}, before the last step", f"{s.when}, now")
-        viz.pair(s.nodes, s.field(earlier), s.field(), titles=titles, limits=s.limits, png=both)
-        out[f"End of {s.test.name} before and after the last step of the model."] = both
+        fields, row = (s.field(earlier), s.field()), (s.sensors_before, s.sensors)
+        viz.pair(s.nodes, *fields, titles=titles, sensors=row, limits=s.limits, png=both).close()
+        out[f"End of {s.test.name} before and after the last step of the model, and what that changed."] = both
     return out
 
 
