@@ -9,7 +9,7 @@ from math import isfinite
 import numpy as np
 
 from geom.errors import InputError
-from geom.table import Table
+from geom.table import Table, TableResult
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
@@ -75,7 +75,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Revision:
+class Revision(TableResult):
     """What a revision did. accepted says whether the error fell where it should; the new model is given either way."""
 
     action: str

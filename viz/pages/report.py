@@ -58,6 +58,11 @@ class Report:
     viewer: str = ""
     found: str = ""
 
+    def _repr_html_(self) -> str:
+        """The whole page, in a frame of its own so that its style stays there."""
+        style = "width: 100%; height: 40em; border: 0"
+        return f'<iframe title="report" srcdoc="{escape(render(self), quote=True)}" style="{style}"></iframe>'
+
 
 def write_report(report: Report, path: str | Path) -> Path:
     """Write the page and return its path."""
