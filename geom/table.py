@@ -6,9 +6,12 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from html import escape
 from typing import Any
 
 from geom.errors import MissingDependency
+
+MOST_ROWS = 30  # of a table in a notebook
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,36 @@ class Table:
         frame.attrs["title"] = self.title
         return frame
 
+    def html(self) -> str:
+        """For a notebook: its first rows, the marked ones strong."""
+        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
+        lines = [[cell(value) for value in row] for row in self.rows[:MOST_ROWS]]
+        cells = [
+            "".join(f"<t{'h' if any(c in self.marked for c in line) else 'd'}>{escape(c)}" for c in line)
+            for line in lines
+        ]
+        body = "".join(f"<tr>{line}" for line in cells)
+        more = len(self.rows) - len(lines)
+        left = f"<p>... and {more} more: to_frame() has all</p>" if more else ""
+        return f"<p>{escape(self.title)}</p><table><tr>{head}</tr>{body}</table>{left}"
+
+
+class TableResult:
+    """A result that shows itself in a notebook by its tables, and gives the first as a DataFrame."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """What it says, the most important first."""
+        raise NotImplementedError
+
+    def to_frame(self) -> Any:
+        """The first table that has rows, as a pandas.DataFrame. Raises MissingDependency without pandas."""
+        every = self.tables()
+        return next((t for t in every if t.rows), every[0]).frame()
+
+    def _repr_html_(self) -> str:
+        head = f"<p><b>{escape(repr(self).splitlines()[0])}</b></p>"
+        return head + "".join(t.html() for t in self.tables() if t.rows)
+
 
 def value_at(holder: object, path: str) -> Any:
     """What an object or mapping has under "KEY" or "KEY.KEY"; None where it has none."""
@@ -83,6 +116,13 @@ def cell(value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(cell(v) for v in value)
     return str(value)
+
+
+def percent(probability: float) -> str:
+    """A probability as every page, list and picture says it: "> 99 %", "97 %", "< 1 %"."""
+    if probability >= 0.995:
+        return "> 99 %"
+    return f"{100 * probability:.0f} %" if probability >= 0.005 else "< 1 %"
 
 
 def with_interval(value: float | None, low: float | None, high: float | None) -> str:

@@ -13,7 +13,7 @@ import typer
 
 import viz as viz  # so named in the wheel as well
 from geom.errors import InputError, MissingDependency
-from geom.table import Table
+from geom.table import Table, percent
 from thermoscope.case_folder.folder import find_case
 from thermoscope.case_folder.settings import read_settings
 from thermoscope.commands.explain.diagnose import diagnosed, diagnosis_summary
@@ -98,7 +98,7 @@ def remaining_error(diagnosis: Mapping[str, Any], errors: Mapping[str, Any]) -> 
     rows = [(c, t["name"]) for t in errors["tests"] for c in t["channels"] if c["verdict"] == "over"]
     if not rows:
         return "Every sensor is within its limit in every test."
-    worst, test = max(rows, key=lambda row: row[0]["rmse_K"] / row[0]["limit_K"])
+    worst, test = max(rows, key=lambda row: row[0]["rmse_K"])
     sentences = [r["words"] for r in diagnosis.get("remainder", []) if r["channel"] == worst["channel"]]
     if sentences:
         return str(sentences[0])
@@ -114,7 +114,7 @@ def next_likely(diagnosis: Mapping[str, Any]) -> str:
     for row in diagnosis["odds"]:
         more = [e for e in row["effects"] if e not in diagnosis["named"]]
         if len(row["effects"]) == len(diagnosis["named"]) + 1 and more[0] in tests and not row.get("tests"):
-            return f"; likeliest {more[0]} ({100 * row['probability']:.0f} %): {tests[more[0]]}"
+            return f"; likeliest {more[0]} ({percent(row['probability'])}): {tests[more[0]]}"
     return ""
 
 

@@ -18,7 +18,7 @@ from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
-from geom.table import Table as Table, cell as cell
+from geom.table import Table as Table, cell as cell, percent as percent
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
 from geom.text import visible as visible
 from fem.solvers.snapshots import Recipe as Recipe
@@ -218,10 +218,10 @@ from validation.parameters.unknowns import (
     working as working,
 )
 from validation.revision import revise as revise
-from validation.tables import bases_table as bases_table, offers as offers
+from validation.tables import bases_table as bases_table, fall as fall, offers as offers
 from validation.threads import one_blas_thread as one_blas_thread
 from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as Theme, heat as heat_colours
-from viz.data import Comparison as Comparison, Sensor as Sensor, sensors as data_sensors, short as short
+from viz.data import Comparison as Comparison, Sensor as Sensor, short as short
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
 from viz.live.curves import confusion as confusion, sensor as sensor
@@ -260,6 +260,7 @@ from thermoscope.case_folder.runs import (
     before_last as before_last,
     by_interest as by_interest,
     comparison_of as comparison_of,
+    found_words as found_words,
     mean_rows as mean_rows,
     named_rows as named_rows,
     sensors as sensors,
@@ -319,7 +320,6 @@ __all__ = [
     "TomlTable",
     "USUAL_DOUBT",
     "USUAL_QUANTITIES",
-    "data_sensors",
     "heat_colours",
     "heat_source",
     "integration_stages",

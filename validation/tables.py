@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from geom.table import Table, cell, with_interval
+from geom.table import Table, cell, percent, with_interval
 
 Document = Mapping[str, Any]
 LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in the document alone
@@ -88,14 +88,14 @@ def diagnosis_tables(document: Document) -> tuple[Table, ...]:
 def explanations_table(explanations: Iterable[Document], partners: bool = True) -> Table:
     """Each leading cause with its probability, and what may be there beside it.  partners : as a column of their own"""
     likely = [x for x in explanations if x["probability"] > LEAST_PROBABILITY]
-    columns = f"*%=probability | *explanation=words{' | beside it=partners' * partners}"
+    columns = f"*odds=probability | *explanation=words{' | beside it=partners' * partners}"
     return Table.of("What the readings say", likely, columns, probability=_percent, partners=partner_words)
 
 
 def partner_words(explanation: Document) -> str:
     """The likeliest partners of a cause."""
     likely = [p for p in explanation["partners"] if p["probability"] > LEAST_PROBABILITY][:MOST_PARTNERS]
-    return "; ".join(f"{p['words']} ({_percent(p)} %)" for p in likely)
+    return "; ".join(f"{p['words']} ({_percent(p)})" for p in likely)
 
 
 def weighty_candidates(candidates: Sequence[Document]) -> Sequence[Document]:
@@ -106,8 +106,8 @@ def weighty_candidates(candidates: Sequence[Document]) -> Sequence[Document]:
 def candidates_table(candidates: Iterable[Document]) -> Table:
     """Size with interval and detection limit, and what each buys."""
     columns = (
-        "effect | *%=probability | *size (95 %)=size | *detectable=smallest_detectable | *unit | "
-        "*refitted (K)=refitted | held out (K)=held_out | evidence (nats)=score | threshold | decision"
+        "effect | *odds=probability | *size (95 %)=size | *detectable=smallest_detectable | *unit | "
+        "*error refitted=refitted | held out=held_out | evidence (nats)=score | threshold | decision"
     )
     return Table.of(
         "Candidates",
@@ -115,15 +115,25 @@ def candidates_table(candidates: Iterable[Document]) -> Table:
         columns,
         ["named", "group"],
         size=lambda c: with_interval(c["amplitude"]["value"], *c["amplitude"]["ci95"]),
-        refitted=lambda c: _arrow(c.get("rmse_K")),
-        held_out=lambda c: _arrow(c.get("holdout_rmse_K")),
+        refitted=lambda c: fall(c.get("rmse_K")),
+        held_out=lambda c: fall(c.get("holdout_rmse_K")),
         probability=_percent,
         unit=lambda c: unit_of(c["amplitude"]),
     )
 
 
-def _arrow(pair: Mapping[str, float] | None) -> str:
-    return f"{pair['before']:.2f} -> {pair['after']:.2f}" if pair else "-"
+def fall(pair: Mapping[str, float] | None) -> str:
+    """ "-64 %": how an error changes with an effect, all else fitted anew; empty where nothing was refitted.
+
+    The errors themselves are told of models that stand, by `model add` and `test compare`.
+    """
+    return f"{100 * (pair['after'] / pair['before'] - 1):+.0f} %" if pair and pair["before"] else ""
+
+
+def gain_words(candidate: Document) -> str:
+    """What a candidate would do to the error of each test; empty where it was not refitted."""
+    each = [f"{fall(t)} in {t['test']}{' (never used)' * t['held_out']}" for t in candidate.get("tests", [])]
+    return f"Error with it, all else fitted anew: {', '.join(each)}." if each else ""
 
 
 def unit_of(record: Document) -> str:
@@ -132,7 +142,7 @@ def unit_of(record: Document) -> str:
 
 
 def _percent(record: Document) -> str:
-    return f"{100 * record['probability']:.1f}" if "probability" in record else ""
+    return percent(record["probability"]) if "probability" in record else ""
 
 
 def events_table(events: Iterable[Document], likely: bool = True) -> Table:
@@ -141,7 +151,7 @@ def events_table(events: Iterable[Document], likely: bool = True) -> Table:
     return Table.of(
         "What may have differed for a while" if likely else "Stretches in which hardly anything differed",
         [e for e in numbered if likely == (e["probability"] > LEAST_PROBABILITY)],
-        "to add=add | when=words | %=probability (%) | most likely=effect | size=value | unit",
+        "to add=add | when=words | odds=probability | most likely=effect | size=value | unit",
         effect=lambda e: e["effect"].partition(" in ")[0],
         unit=unit_of,
         probability=_percent,

@@ -19,6 +19,7 @@ _MODULES = {
     "machine.network": "network_in_machine",
     "machine.animation": "animate",
     "figures.curves": "measured_and_model,residuals",
+    "figures.intervals": "intervals",
     "figures.errors": "before_after,staircase",
     "figures.candidates": "scores,posterior,confusion",
     "recordings.recording": "write_recording",

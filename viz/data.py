@@ -10,7 +10,7 @@ import numpy as np
 from geom.arrays import Array
 from geom.errors import InputError
 from measured.case import Channel, Test
-from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
+from viz.colours import BLUE, LIGHT, ORANGE, VERDICT
 
 LONG_S = 5 * 3600.0  # beyond 300 min an axis reads better in hours
 LATE = "labels: measured minus model, mean of the last fifth"  # of `sensors`
@@ -46,6 +46,11 @@ class Sensor:
         if (abs(self.residual_K) if self.rmse_K is None else self.rmse_K) <= self.limit_K:
             return "within"
         return "hot" if self.residual_K > 0 else "cold"
+
+    @property
+    def colour(self) -> str:
+        """Of its verdict: the same in pictures, curves, lists, the viewer, the report and the workbench."""
+        return VERDICT[self.verdict]
 
 
 @dataclass(frozen=True)
@@ -114,16 +119,13 @@ class Comparison:
         return [replace(m, name=words[m.name], y=read.y - m.y) for m in models]
 
     def residual_curve(self, channel: Channel) -> Curve:
-        """Measured - modelled (K), coloured where the sensor is over.
+        """Measured - modelled (K) in the colour of the sensor."""
+        return Curve(short(channel.name), self.residual(channel), self.sensor(channel).colour)
 
-        Faint where the rms is within the limit; else by sign: vermilion where the machine, once warm, is hotter than
-        the model, blue where it is colder.
-        """
-        y = self.residual(channel)
-        finite = y[np.isfinite(y)]
-        within = not finite.size or np.sqrt(np.mean(finite**2)) <= self.limit_K(channel)
-        hot = not within and finite[len(finite) // 2 :].mean() > 0
-        return Curve(short(channel.name), y, LIGHT.faint if within else VERMILION if hot else BLUE)
+    def sensor(self, channel: Channel, xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Sensor:
+        """The channel as its dot shows it, at a place (m)."""
+        residual = self.residual(channel)
+        return Sensor(channel.name, xyz, late_mean(residual), self.limit_K(channel), self.rmse(channel))
 
     def limit_K(self, channel: Channel) -> float:
         """The largest error of a sensor that counts as agreement (K)."""
@@ -132,20 +134,25 @@ class Comparison:
     def rmse(self, channel: Channel) -> float:
         return float(np.sqrt(np.nanmean(self.residual(channel) ** 2)))
 
+    def _repr_html_(self) -> str:
+        from viz.figures.curves import measured_and_model
+        from viz.pages.html import plot
+
+        return plot(measured_and_model(self), f"held-{self.test.name}", f"{self.test.name} ({self.test.role})")
+
 
 def short(channel: str) -> str:
     """A column's name without what the axis says already: 'T_flange_right_degC' -> 'flange right'."""
     return channel.removeprefix("T_").removesuffix("_degC").removesuffix("_C").replace("_", " ")
 
 
+def late_mean(residual: Array) -> float | None:
+    """Mean (K) of the last fifth of a test, where the machine is warm; None where nothing was read then."""
+    late = residual[int(0.8 * len(residual)) :]
+    return float(np.nanmean(late)) if np.isfinite(late).any() else None
+
+
 def sensors(comparison: Comparison, positions: Mapping[str, Sequence[float]]) -> tuple[Sensor, ...]:
     """Sensors of a test at their positions (m) with the mean residual of its last fifth, where the machine is warm."""
-    out = []
-    for c in comparison.channels:
-        if c.name in positions:
-            x, y, z = positions[c.name]
-            late = comparison.residual(c)[int(0.8 * len(comparison.test.time)) :]
-            late = late[np.isfinite(late)]
-            residual = float(late.mean()) if late.size else None
-            out.append(Sensor(c.name, (x, y, z), residual, comparison.limit_K(c), comparison.rmse(c)))
-    return tuple(out)
+    mine = [(c, positions[c.name]) for c in comparison.channels if c.name in positions]
+    return tuple(comparison.sensor(c, (x, y, z)) for c, (x, y, z) in mine)

@@ -38,17 +38,19 @@ def spread_labels(values: Sequence[float], low: float, high: float, gap: float) 
 def end_labels(
     ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5
 ) -> None:
-    """Names at the right edge of the axes, each at the height where its line ends."""
+    """Names at the right edge of the axes, each tied to the end of its line."""
     low, high = ax.get_ylim()
     order = np.argsort(ends)
     heights = spread_labels([float(ends[i]) for i in order], low, high, 0.055 * (high - low))
     ax.set_ylim(low, high)
+    across = ax.get_yaxis_transform()
     for i, y in zip(order, heights, strict=True):
+        ax.plot([1.0, 1.012], [ends[i], y], transform=across, color=colours[i], lw=0.7, clip_on=False)
         ax.annotate(
             names[i],
             (1.0, y),
             xycoords=("axes fraction", "data"),
-            xytext=(6, 0),
+            xytext=(9, 0),
             textcoords="offset points",
             va="center",
             color=colours[i],

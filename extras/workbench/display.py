@@ -80,7 +80,8 @@ class Display:
         self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
         (test, sensor), scale = rows.largest(look), self._scale
-        self._scale = max(test, scale[0]), max(sensor, scale[1])
+        ever = [error for r in history.revisions for pair in r.rmse_K.values() for error in pair]
+        self._scale = max(test, scale[0], *ever), max(sensor, scale[1])
         self.state.tests = rows.tests(look, self._scale[0], {name: a for name, (a, _) in last.rmse_K.items()})
         self.choose_test()
 

@@ -100,11 +100,12 @@ class Session:
         revision, document, look = result
         good = bool(document["accepted"]) or action == "remove"
         verdict = "accepted" if good else "not accepted"
+        text = f"{f'{action} {effect}'.strip()}: {verdict}; {document['why']}"
         self._refused = None if good else revision
         with self.state:
             self.state.outcome = {
                 "good": good,
-                "text": f"{f'{action} {effect}'.strip()}: {verdict}; {document['why'].replace('->', '→')}",
+                "text": (document["found"] if good and document["found"] else text).replace("->", "→"),
             }
             if good:
                 self._write(self.history.and_then(revision), look)

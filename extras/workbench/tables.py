@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from extras.workbench.appearance import Appearance
-from thermoscope.plugin import History, amplitude, offers, short, verdict
-from thermoscope.plugin import data_sensors as sensors
+from thermoscope.plugin import History, amplitude, fall, offers, short, verdict
+from thermoscope.plugin import percent as odds
 
 Row = dict[str, Any]
 MOST_ROWS = 12  # candidates of a tab
@@ -30,7 +30,8 @@ def tests(look: Appearance, scale: float, before: Mapping[str, float]) -> list[R
 
 def channels(look: Appearance, test: str, scale: float) -> list[Row]:
     """A row per sensor of a test: what it misses (K), and whether that is more than its uncertainty."""
-    tone = {s.name: s.verdict for s in sensors(look.curves[test], dict.fromkeys(_names(look, test), (0.0, 0.0, 0.0)))}
+    comparison = look.curves[test]
+    tone = {c.name: comparison.sensor(c).verdict for c in comparison.channels}
     return [
         {
             "name": c["channel"],
@@ -40,7 +41,7 @@ def channels(look: Appearance, test: str, scale: float) -> list[Row]:
             "width": percent(c["rmse_K"], scale),
             "sigma": f"{c['sigma_K']:.2g}",
             "verdict": c["verdict"],
-            "tone": "within" if c["verdict"] == "within" else tone.get(c["channel"], "unknown"),
+            "tone": tone.get(c["channel"], "unknown"),
         }
         for c in look.test(test)["channels"]
     ]
@@ -77,11 +78,11 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
         {
             "effect": c["effect"],
             "title": c.get("title", ""),
-            "score": f"{100 * c['probability']:.0f} %",
+            "score": odds(c["probability"]),
             "width": percent(c["probability"], 1.0),
             "amplitude": amplitude(c),
-            "error": arrow(c["rmse_K"]),
-            "held": arrow(c["holdout_rmse_K"]),
+            "error": fall(c["rmse_K"]),
+            "held": fall(c["holdout_rmse_K"]),
             "alike": ", ".join(c["confused_with"][:3]),
             "decision": c["decision"],
             "test": c.get("isolating_test", ""),
@@ -111,11 +112,3 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
 
 def percent(value: float, whole: float) -> float:
     return round(100.0 * min(value / whole, 1.0), 2) if whole > 0 else 0.0
-
-
-def arrow(pair: Mapping[str, float] | None) -> str:
-    return f"{pair['before']:.2f} → {pair['after']:.2f} K" if pair else ""
-
-
-def _names(look: Appearance, test: str) -> list[str]:
-    return [c.name for c in look.curves[test].channels]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
+from geom.table import Table, TableResult
 from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, more_exact, reordered
 from lumped.integration.failure import failure
@@ -62,7 +63,7 @@ class Stand:
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(TableResult):
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
     end : for a run that goes on;  steps : those it took;  path : (n_steps, n_states) where each ended, if kept
@@ -85,6 +86,12 @@ class Run:
         It takes some three times as long as the run itself, and only when asked for.
         """
         return np.asarray(np.abs(self.y - self.finer().y).max(axis=0, initial=0.0))
+
+    def tables(self) -> tuple[Table, ...]:
+        """Every output over time, in the order in which they were asked for."""
+        names = [f"output {j} (degC)" for j in range(self.y.shape[1])]
+        rows = np.column_stack([self.time, self.y]).tolist()
+        return (Table("Outputs over time", ["time (s)", *names], rows),)
 
     def __repr__(self) -> str:
         outputs, steps = counted(self.y.shape[1], "output"), counted(self.steps.knot.size, "step")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import NoSolution
+from geom.table import Table, TableResult
 from geom.text import table
 from lumped.integration.compiled import compiled
 from lumped.integration.reach import Reach
@@ -23,7 +24,7 @@ ABOVE_K = 30.0  # still air takes nothing without a difference: a start without 
 
 
 @dataclass(frozen=True)
-class Steady:
+class Steady(TableResult):
     """z (n_states + n_boundaries) degC; y (n_rows,); dy (n_rows, n_tangents)."""
 
     names: tuple[str, ...]
@@ -35,6 +36,10 @@ class Steady:
         if len(self.names) > SCREEN:
             return f"<Steady: {len(self.names)} temperatures, by name>"
         return table(["place", "degC"], [[name, self[name]] for name in self.names])
+
+    def tables(self) -> tuple[Table, ...]:
+        """A row for each place."""
+        return (Table("Steady temperatures", ["place", "degC"], [[name, self[name]] for name in self.names]),)
 
     def __getitem__(self, name: str) -> float:
         """Temperature (degC) of a named state or boundary."""

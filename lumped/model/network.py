@@ -21,6 +21,7 @@ import numpy as np
 
 from geom.description.roles import Identity
 from geom.errors import InputError
+from geom.table import Table, TableResult
 from geom.text import counted
 from lumped.model.quantities import INPUTS
 from lumped.model.structure import Array, Link, Parameter, Place, Recovery, Row, Source, Structure
@@ -30,11 +31,17 @@ __all__ = ["Array", "Link", "Network", "Parameter", "Place", "Recovery", "Row", 
 
 
 @dataclass(frozen=True)
-class Network(Structure):
+class Network(Structure, TableResult):
     """A structure, what it says of itself, and networks made from it."""
 
     def __repr__(self) -> str:
         return f"<{self.title}: {self.sizes}; boundaries {', '.join(self.boundaries) or 'none'}>"
+
+    def tables(self) -> tuple[Table, ...]:
+        """What may be calibrated."""
+        return (
+            Table.of("What may be calibrated", self.parameters, "parameter=name | value | unit | prior sd=prior_sd"),
+        )
 
     @property
     def sizes(self) -> str:

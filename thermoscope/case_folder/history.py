@@ -53,7 +53,8 @@ class Revision:
         out["effects"], out["why"] = list(self.effects), self.why
         out["values"] = {k: float(f"{v:.8g}") for k, v in self.values.items()}
         out["intervals"] = {k: [float(f"{x:.5g}") for x in pair] for k, pair in self.intervals.items()}
-        out["rmse_K"] = {t: {"before": round(a, 4), "after": round(b, 4)} for t, (a, b) in self.rmse_K.items()}
+        rmse = {t: [float(f"{x:.6g}") for x in pair] for t, pair in self.rmse_K.items()}
+        out["rmse_K"] = {t: {"before": a, "after": b} for t, (a, b) in rmse.items()}
         more = {"evidence": dict(self.evidence), "answers": dict(self.answers)}
         more |= {"reference": _reference_document(self.reference)} if self.reference else {}
         return {**out, **{key: table for key, table in more.items() if table}}

@@ -21,13 +21,14 @@ from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
 from measured.doubt import split_answers
+from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.content import result_key
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
-from validation.effects.during import During
-from validation.parameters.unknowns import effects_of, standing, to_value, working
+from validation.effects.during import During, effect_words
+from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, working
 from validation.threads import side_by_side
 
 if TYPE_CHECKING:
@@ -215,6 +216,37 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
     ]
 
 
+def found_words(folder: Folder, errors: Mapping[str, Any]) -> str:
+    """In one sentence what was found and is in the model, what it did to the error, and the largest that it leaves.
+
+    The error before is that of the calibrated model without it on the same tests: the held-out ones, else all.
+    errors : a `compare` document of the model.  Empty where nothing was added.
+    """
+    from validation.effects import effect
+    from validation.revision.revise import TOGETHER
+    from viz.data import short
+
+    last, added = folder.history.last, dict[str, Revision]()
+    for revision in folder.history.revisions:
+        for name in revision.effect.split(TOGETHER) if revision.action == "add" else ():
+            added[name] = revision
+    names = [name for name in added if name in last.effects]
+    if not names:
+        return ""
+    before = {t: pair[0] for t, pair in min((added[n] for n in names), key=lambda r: r.number).rmse_K.items()}
+    tests = [t for t in errors["tests"] if t["name"] in before]
+    held_out = [t for t in tests if t["role"] == "hold-out"]
+    n = [sum(c["n"] for c in t["channels"]) for t in held_out or tests]
+    pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in held_out or tests])
+    was, now = np.sqrt(np.average(pairs**2, axis=0, weights=n))
+    words = " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
+    error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
+    limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
+    done, on = "Found" if now < was else "Added", "Held out" if held_out else "Error"
+    left = f"at most {error:.1f} K, {short(name)} in {test} (limit {limit:.1f})"
+    return f"{done}: {words}. {on} {was:.2f} -> {now:.2f} K. Left: {left}."
+
+
 def parameters(folder: Folder) -> list[dict[str, Any]]:
     """The values of the last revision with their intervals, as `calibrate` lists them."""
     last = folder.history.last
@@ -231,6 +263,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
                 "unit": p.unit,
                 "ci95": [a, b],
                 "prior": [p.value, low, high],
+                "of_measurement": of_measurement(p),
                 "identified": b - a < BLIND * (high - low),
             }
         )

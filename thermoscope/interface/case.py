@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
+from geom.table import Table, TableResult
 from geom.text import counted, table
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
@@ -31,7 +32,7 @@ def silent(message: str) -> None:
 
 
 @dataclass(frozen=True)
-class Case:
+class Case(TableResult):
     """Measurements and the model held against them.
 
     folder : what the files hold, with the model as it stands here;  on_disk : the history that model.toml holds
@@ -44,13 +45,18 @@ class Case:
     progress: Progress = silent
 
     def __repr__(self) -> str:
-        rows = [[t.name, t.role, len(t.channels), (t.time[-1] - t.time[0]) / 60.0] for t in self.folder.case.tests]
+        (content,) = self.tables()
         effects = f" with {', '.join(self.effects)}" if self.effects else ""
         unsaved = f", {counted(len(self.steps), 'step')} not saved" if self.steps else ""
         return (
             f"Case '{self.name}', revision {self.folder.history.last.number}{effects}{unsaved}\n"
-            f"{table(['test', 'role', 'sensors', 'minutes'], rows)}"
+            f"{table(content.columns, content.rows)}"
         )
+
+    def tables(self) -> tuple[Table, ...]:
+        """A row for each test."""
+        rows = [[t.name, t.role, len(t.channels), (t.time[-1] - t.time[0]) / 60.0] for t in self.folder.case.tests]
+        return (Table("", ["test", "role", "sensors", "minutes"], rows),)
 
     @property
     def name(self) -> str:
@@ -176,11 +182,24 @@ def open(path: str | Path, progress: Progress = silent) -> Case:
     return Case(folder, folder.history, progress=progress)
 
 
-def effects() -> Mapping[str, type[Effect]]:
+class Effects(dict[str, "type[Effect]"], TableResult):
+    """Kinds of effects by name; shown as a table."""
+
+    def __repr__(self) -> str:
+        (content,) = self.tables()
+        return f"{len(self)} kinds of effects\n{table(content.columns, content.rows)}"
+
+    def tables(self) -> tuple[Table, ...]:
+        """What each is, what it needs to be seen, and the test that would prove it."""
+        columns = "effect=kind | title | unit | needs | proof=isolating_test | source"
+        return (Table.of("", self.values(), columns, needs=lambda kind: ", ".join(kind.needs)),)
+
+
+def effects() -> Effects:
     """Every kind of effect by name, those of other packages too (entry points "thermoscope.effects").
 
     Each says its title, unit, typical size, needs, source and isolating_test.
     """
     from validation.effects.registry import kinds
 
-    return kinds()
+    return Effects(kinds())

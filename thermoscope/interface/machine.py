@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError, NoSolution
+from geom.table import Table, TableResult
 from geom.text import counted, table
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.interface.case import Progress, silent
@@ -29,20 +30,24 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Field:
+class Field(TableResult):
     """A steady temperature field and what the network says of the same operating point."""
 
     built: Built
     check: CrossCheck
 
     def __repr__(self) -> str:
-        every = sorted(self.parts.values(), key=lambda part: -part.fem_max_C)
-        rows = [[p.place, p.fem_mean_C, p.fem_max_C, p.network_mean_C, p.network_max_C] for p in every]
-        headers = ["part", "mean (degC)", "hottest", "network: mean", "hottest"]
+        (content,) = self.tables()
         return (
             f"Steady field of '{self.built.machine.name}': {self.heat_W:.0f} W of loss, "
-            f"energy balance {self.energy_balance:.1e}\n{table(headers, rows)}"
+            f"energy balance {self.energy_balance:.1e}\n{table(content.columns, content.rows)}"
         )
+
+    def tables(self) -> tuple[Table, ...]:
+        """Temperatures (degC) of every part, the hottest first: of the field, and of the network."""
+        every = sorted(self.parts.values(), key=lambda part: -part.fem_max_C)
+        columns = "part=place | mean (degC)=fem_mean_C | hottest=fem_max_C | network: mean=network_mean_C"
+        return (Table.of("", every, f"{columns} | network: hottest=network_max_C"),)
 
     @property
     def T(self) -> Array:
@@ -76,7 +81,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Machine:
+class Machine(TableResult):
     """A machine at every stage: geometry, mesh, field and network."""
 
     built: Built
@@ -85,6 +90,10 @@ class Machine:
         parts, tets = counted(len(self.built.machine.parts), "part"), len(self.mesh.tets)
         rated = ", ".join(f"{name} = {value:g}" for name, value in self.rated.items())
         return f"<Machine '{self.name}': {parts}, {tets} tetrahedra, {len(self.network.states)} states; rated {rated}>"
+
+    def tables(self) -> tuple[Table, ...]:
+        """Its parts with their materials."""
+        return (Table.of("", self.built.machine.parts, "part=name | material"),)
 
     @property
     def name(self) -> str:

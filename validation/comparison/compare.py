@@ -9,7 +9,7 @@ import numpy as np
 
 from geom.description.roles import Identity
 from geom.errors import ThermoscopeError
-from geom.table import Table
+from geom.table import Table, TableResult
 from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
@@ -94,7 +94,7 @@ class TestError:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(TableResult):
     """A model held against the tests of its case; floor_K is what the sensors alone would leave.
 
     identities : what its parts, nodes, fluids and boundaries are, said or guessed

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
-from geom.table import Table
+from geom.table import Table, TableResult, percent
 from geom.text import table
-from validation.tables import TableRow, diagnosis_tables
+from validation.tables import TableRow, candidates_table, diagnosis_tables
 
 if TYPE_CHECKING:
     from validation.bases.which_base import BaseDeviance
@@ -23,7 +23,7 @@ MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # explanations of a diagnosis that is p
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Candidate(TableResult):
     """One effect that may be missing.
 
     score : log evidence against nothing missing (nats);  threshold : from which it is more probable than nothing
@@ -55,6 +55,10 @@ class Candidate:
     note: str = ""
     probability: float = 0.0
     tests: tuple[tuple[str, float, float, bool], ...] = ()
+
+    def tables(self) -> tuple[Table, ...]:
+        """The row that a diagnosis shows of it."""
+        return (candidates_table([self.document()]),)
 
     def document(self) -> dict:
         special = ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K", "tests")
@@ -252,7 +256,7 @@ class Remainder:
         if not self.effect:
             return f"{text}; no second effect explains it."
         return (
-            f"{text}; {self.effect} would bring it to {self.brought_K:.1f} K (probability {self.probability:.2f}). "
+            f"{text}; {self.effect} would bring it to {self.brought_K:.1f} K (odds {percent(self.probability)}). "
             f"To tell: {self.test}."
         )
 
@@ -261,7 +265,7 @@ class Remainder:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosis(TableResult):
     """The answer. named : the effects to add, best first (one per group); words : the verdict in a sentence.
 
     bases : every base that a test may have stood on, where the network knows several
@@ -307,7 +311,7 @@ class Diagnosis:
 
     def __repr__(self) -> str:
         likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]
-        rows = [[x.words, f"{100 * x.probability:.1f} %"] for x in likely[:MOST_ODDS]]
+        rows = [[x.words, percent(x.probability)] for x in likely[:MOST_ODDS]]
         return f"{self.verdict}: {self.words}\n{table(['explanation', 'probability'], rows)}"
 
     def tables(self) -> tuple[Table, ...]:

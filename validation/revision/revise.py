@@ -9,7 +9,7 @@ from math import isfinite
 import numpy as np
 
 from geom.errors import InputError
-from geom.table import Table
+from geom.table import Table, TableResult
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
@@ -54,7 +54,10 @@ TOGETHER = " + "  # between the names of effects that are added in one step
 
 @dataclass(frozen=True)
 class Change:
-    """Error of one test (K) before and after; `fitted` with sensors as the fit has them, None before a fit."""
+    """Error of one test (K) before and after; `fitted` with sensors as the fit has them, None before a fit.
+
+    readings : of all its sensors, by which the error of several tests weighs them where it is told
+    """
 
     name: str
     role: str
@@ -62,6 +65,7 @@ class Change:
     after: float
     fitted_before: float | None = None
     fitted_after: float | None = None
+    readings: int = 1
 
     def document(self) -> dict:
         return {
@@ -73,7 +77,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Revision:
+class Revision(TableResult):
     """What a revision did. accepted says whether the error fell where it should; the new model is given either way."""
 
     action: str
@@ -217,7 +221,7 @@ def _revised(
     after = errors(replace(case, model=new))
     new = replace(new, reference=replace(reference, errors=after.sensor_errors))
     changes = tuple(
-        Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K)
+        Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K, sum(c.n for c in a.channels))
         for b, a in zip(before.tests, after.tests, strict=True)
     )
     sure = [_sure(fit, tests, new, case) for fit in fits]
@@ -381,7 +385,7 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     if not outside:
         return ["no held-out test"]
     called = "held-out tests" if all(c.role == "hold-out" for c in outside) else "other tests"
-    was, now = mean_square(outside, "before"), mean_square(outside, "after")
+    was, now = (mean_square(outside, side, [c.readings for c in outside]) for side in ("before", "after"))
     change = f"{called} {fall(was, now)}"
     worst = max(outside, key=lambda c: c.after - c.before)
     return [
@@ -389,6 +393,6 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     ]
 
 
-def mean_square(changes: Sequence[Change], side: str) -> float:
+def mean_square(changes: Sequence[Change], side: str, weights: Sequence[int] | None = None) -> float:
     values = [getattr(c, side) for c in changes]
-    return float(np.sqrt(np.mean(np.square(values)))) if values else float("nan")
+    return float(np.sqrt(np.average(np.square(values), weights=weights))) if values else float("nan")

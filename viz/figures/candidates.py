@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.arrays import Array
+from geom.table import percent as odds
 from viz.colours import BLUE, LIGHT, ORANGE, PURPLE, VERMILION
 from viz.figures import paper
 from viz.labels import minus
@@ -59,10 +60,10 @@ def posterior(
     alone = [100.0 * x["alone"] if x["partners"] else p for x, p in zip(best, percent, strict=True)]
     ax.barh(range(len(best)), np.subtract(percent, alone), left=alone, height=0.62, color="white", alpha=0.55)
     for y, (x, p) in enumerate(zip(best, percent, strict=True)):
-        ax.text(p, y, f"\u00a0{p:.0f} %" if p < 99.5 else "\u00a0> 99 %", va="center", fontsize=8.5)
+        ax.text(p, y, f"\u00a0{odds(x['probability'])}", va="center", fontsize=8.5)
         if likely := [n for n in x["partners"] if n["probability"] >= LEAST_PROBABILITY]:
             more = f" and {len(likely) - 1} more" if len(likely) > 1 else ""
-            note = f"\u00a0with {likely[0]['words']} {100.0 * likely[0]['probability']:.0f} %{more}"
+            note = f"\u00a0with {likely[0]['words']} {odds(likely[0]['probability'])}{more}"
             ax.text(0.0, y - 0.36, note, va="top", fontsize=8, color=LIGHT.ink, alpha=0.75)
     ax.set(xlabel="probability (%); pale: with something else", xlim=(0.0, 112.0), ylim=(-0.9, len(best) - 0.5))
     ax.set_title(title, loc="left", fontweight="bold")

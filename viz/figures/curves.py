@@ -12,7 +12,7 @@ import numpy as np
 
 from geom.errors import InputError
 from validation.comparison.uncertainty import RULE
-from viz.colours import LIGHT, ORANGE, VERMILION
+from viz.colours import LIGHT, ORANGE, VERDICT
 from viz.data import Comparison, short
 from viz.figures import paper
 from viz.labels import end_labels
@@ -26,12 +26,25 @@ if TYPE_CHECKING:
 
 @paper.styled
 def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | Path | None = None) -> Figure:
-    """A panel per sensor: readings with the band that counts as within, the model, and the earlier model if given."""
-    channels, title = _read(comparison), f"{comparison.test.name}: measured and modelled"
-    time = f"time ({comparison.clock[1]})"
-    figure, axes = paper.panels(len(channels), columns, (3.4, 2.2), title, time, "temperature (°C)")
+    """A panel per sensor: readings with the band that counts as within, the model, and the earlier model if given.
+
+    Below them a row of what the test was driven with.
+    """
+    channels, title = _read(comparison), f"{comparison.test.name}: measured and modelled (°C), and what drove it"
+    time, across = f"time ({comparison.clock[1]})", min(columns, len(channels))
+    inputs, above = varying_inputs(comparison)[: max(across, 2)], -(-len(channels) // across) * across
+    figure, axes = paper.panels(above + len(inputs), across, (3.4, 2.1), title, time)
     for ax, channel in zip(axes, channels, strict=False):
         _panel(ax, comparison, channel)
+    for ax in axes[len(channels) : above]:
+        ax.set_visible(False)
+    (t, _), thin = comparison.clock, comparison.thin
+    for ax, (name, values) in zip(axes[above:], inputs, strict=False):
+        ax.fill_between(t[thin], 0.0, values[thin], color=LIGHT.faint, alpha=0.35, lw=0)
+        ax.plot(t[thin], values[thin], color=LIGHT.ink, lw=0.9)
+        stem, _, unit = name.rpartition("_")
+        ax.set_title(f"{stem.replace('_', ' ')} ({unit.replace('mps', 'm/s')})" if stem else unit)
+        ax.margins(x=0)
     names = comparison.temperatures(channels[0])
     for i, curve in enumerate(sorted(names, key=lambda c: c.dashed)):  # once, top left, in the colour of their lines
         place: dict[str, Any] = {"transform": axes[0].transAxes, "va": "top", "fontsize": 8.5}
@@ -41,25 +54,33 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; those that are over are coloured, named in bold."""
-    figure, (ax,) = paper.subplots(8.4, 3.8)
-    (t, unit), thin = comparison.clock, comparison.thin
+    """Measured - modelled per sensor over time; each in the colour of its sensor."""
     channels = _read(comparison)
+    figure, (ax,) = paper.subplots(8.4, max(3.8, 0.2 * len(channels) + 1.0))
+    (t, unit), thin = comparison.clock, comparison.thin
     shade(ax, comparison)
     curves = [comparison.residual_curve(channel) for channel in channels]
     for c in curves:
-        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.6 if c.colour != LIGHT.faint else 1.0)
+        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6)
         alone(ax, t, c.y, c.colour)
     ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
-    inks = [LIGHT.ink if c.colour == LIGHT.faint else c.colour for c in curves]
-    end_labels(ax, ends, [c.name for c in curves], inks)
+    end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(
         xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
     )
-    ax.set_title(f"grey is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set_title(f"green is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
     return paper.save(figure, png)
+
+
+def varying_inputs(comparison: Comparison) -> list[tuple[str, np.ndarray]]:
+    """(name, values) of the inputs that change during the test: currents, speeds and flows first."""
+    t = np.asarray(comparison.test.time)
+    every = [(n, np.broadcast_to(np.asarray(v, float), t.shape)) for n, v in comparison.test.inputs.items()]
+    order = ("current", "speed", "flow")
+    rank = {name: next((i for i, word in enumerate(order) if word in name), len(order)) for name, _ in every}
+    return sorted((x for x in every if np.unique(x[1][np.isfinite(x[1])]).size > 1), key=lambda x: rank[x[0]])
 
 
 def _read(comparison: Comparison) -> tuple[Channel, ...]:
@@ -82,10 +103,9 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
         )
     ax.set_title(short(channel.name))
     ax.margins(x=0)
-    error = comparison.rmse(channel)
-    ax.set_title(f"rms {error:.1f} K", loc="right", fontweight="normal")
-    if error > limit:
-        ax.set_title(f"rms {error:.1f} K", loc="right", color=VERMILION, fontweight="bold")
+    sensor = comparison.sensor(channel)
+    weight = "normal" if sensor.verdict == "within" else "bold"
+    ax.set_title(f"rms {sensor.rmse_K:.2f} K", loc="right", color=sensor.colour, fontweight=weight)
 
 
 def alone(ax: Axes, t: np.ndarray, y: np.ndarray, colour: str, within: float = 0.0) -> None:

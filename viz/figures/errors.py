@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT, ORANGE
+from viz.colours import BLUE, LIGHT, VERMILION
 from viz.figures import paper
 from viz.labels import end_labels
 
@@ -20,21 +20,26 @@ PALE = "#8DB9DB"
 
 @paper.styled
 def before_after(
-    tests: Sequence[Mapping[str, Any]], *, floor_K: float | None = None, title: str = "", png: str | Path | None = None
+    tests: Sequence[Mapping[str, Any]],
+    *,
+    floor_K: float | None = None,
+    most_K: float = 0.0,
+    title: str = "",
+    png: str | Path | None = None,
 ) -> Figure:
-    """Error of every test before and after, as an `add` document lists them; held-out tests in bold.
+    """A bar per test: what is left of its error, and pale what fell; what rose is vermilion. Held-out tests in bold.
 
-    tests : [{"name", "role", "rmse_K": {"before", "after"}}]
+    tests : [{"name", "role", "rmse_K": {"before", "after"}}] as in an `add` document;  most_K : the largest error ever
     """
     if not tests:
         raise InputError("no tests to draw", "before_after", "the `tests` list of an add, remove or calibrate result")
-    figure, (ax,) = paper.subplots(8.4, 0.55 * len(tests) + 1.3)
+    figure, (ax,) = paper.subplots(8.4, 0.45 * len(tests) + 1.3)
     for y, test in enumerate(reversed(tests)):
-        for aside, word, colour in ((0.19, "before", ORANGE), (-0.19, "after", BLUE)):
-            error = test["rmse_K"][word]
-            ax.barh(y + aside, error, height=0.34, color=colour)
-            name = f" {word}" if y == len(tests) - 1 else ""
-            ax.text(error, y + aside, f"\u00a0{error:.2f} K{name}", va="center", fontsize=8.5)
+        before, after = test["rmse_K"]["before"], test["rmse_K"]["after"]
+        ax.barh(y, min(before, after), height=0.6, color=BLUE)
+        change = {"color": VERMILION} if after > before else {"color": PALE, "alpha": 0.5}
+        ax.barh(y, abs(after - before), left=min(before, after), height=0.6, **change)
+        ax.text(max(before, after), y, f"\u00a0{before:.2f} → {after:.2f} K", va="center", fontsize=8.5)
     ax.set_yticks(range(len(tests)), [f"{t['name']}\n({t['role']})" for t in reversed(tests)])
     for label, test in zip(ax.get_yticklabels(), reversed(tests), strict=True):
         label.set_fontweight("bold" if test["role"] == "hold-out" else "normal")
@@ -42,8 +47,8 @@ def before_after(
         ax.axvline(floor_K, color=LIGHT.faint, lw=0.9, ls=":", zorder=0)
         ax.text(floor_K, 1.0, "sensors' uncertainty", transform=ax.get_xaxis_transform(), fontsize=8, va="bottom")
     ax.grid(False, axis="y")
-    ax.set(xlabel="rms error (K)", title=title)
-    ax.margins(x=0.12)
+    most = max([most_K, *(error for t in tests for error in t["rmse_K"].values())])
+    ax.set(xlabel="rms error (K); pale: what fell", title=title, xlim=(0.0, 1.18 * most))
     return paper.save(figure, png)
 
 

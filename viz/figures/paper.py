@@ -10,7 +10,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
-from viz.colours import BLUE, LIGHT, VERMILION
+from viz.colours import BLUE, LIGHT, VERDICT, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,6 +44,7 @@ _STYLE: dict[Any, Any] = {
     "text.parse_math": False,
 }
 _CSS = {LIGHT.ink: "ink", LIGHT.faint: "faint", LIGHT.paper: "paper", BLUE: "blue", VERMILION: "red"}
+_CSS |= {VERDICT["hot"]: "warn", VERDICT["within"]: "good"}
 
 
 def subplots(width: float, height: float, rows: int = 1, columns: int = 1) -> tuple[Figure, list[Axes]]:

@@ -50,7 +50,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
 
 
 def residuals(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
-    """Measured - modelled of every sensor over time (K); those that are over are coloured."""
+    """Measured - modelled of every sensor over time (K); each in the colour of its sensor."""
     (t, unit), thin = comparison.clock, comparison.thin
     out = figure(theme, title={"text": f"{as_text(comparison.test.name)}: what the model misses", "x": 0.02})
     for c in comparison.channels:
@@ -119,7 +119,7 @@ def confusion(names: Sequence[str], cosine: Array, *, theme: Theme = LIGHT) -> g
 
 
 def _line(out: go.Figure, x: list, curve: Curve, row: int, theme: Theme) -> None:
-    colour = theme.ink if curve.ink else theme.faint if curve.colour == LIGHT.faint else curve.colour
+    colour = theme.ink if curve.ink else curve.colour
     line = {"color": colour, "width": 2.0 if row == 1 else 1.6, "dash": "dash" if curve.dashed else "solid"}
     style = {"line": line, "showlegend": row == 1, "row": row, "col": 1, "hovertemplate": "%{y:.2f}"}
     out.add_scatter(x=x, y=plain(curve.y), mode="lines", name=as_text(curve.name), **style)

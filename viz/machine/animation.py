@@ -93,7 +93,7 @@ class Pulses:
 
     def show(self, sensors: Sequence[Sensor], second: float) -> None:
         """The sensors as they are at this instant of the film (s); they stay in the order in which they came."""
-        colours = np.array([rgb(VERDICT[s.verdict]) for s in sensors], np.uint8).reshape(-1, 3)
+        colours = np.array([rgb(s.colour) for s in sensors], np.uint8).reshape(-1, 3)
         wrong = np.array([s.verdict in ("hot", "cold") for s in sensors], bool)
         phase = second * HERTZ % 1.0
         self._dots("pulse", wrong, colours, DOT * (1.4 + SWELL * np.sin(np.pi * phase)), 1)

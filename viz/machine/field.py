@@ -6,6 +6,7 @@ field.cutaway(split(mesh), T, sensors=sensors, png="field.png")
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from geom.arrays import Array
 from viz.colours import LIGHT, Theme, heat, missing, power
-from viz.data import Sensor
+from viz.data import LATE, Sensor
 from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
 from viz.rendering.callouts import draw_on_top, label_room
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
 
 UNIT = "°C"
+PANELS = (1920, 560)  # pixels of three pictures side by side
 
 
 def cutaway(
@@ -116,23 +118,38 @@ def pair(
     after: Array,
     *,
     titles: tuple[str, str] = ("before", "after"),
+    sensors: tuple[Sequence[Sensor], Sequence[Sensor]] = ((), ()),
     limits: tuple[float, float] | None = None,
     wedge: Wedge | None = QUARTER,
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
 ) -> pyvista.Plotter:
-    """Two fields side by side on one colour scale, its limits (degC) those of both if not given."""
-    fields = [on_nodes(nodes, before), on_nodes(nodes, after)]
-    limits = limits or (min(f.min() for f in fields), max(f.max() for f in fields))
-    p, view = scene.plotter(theme, (1280, 600), (1, 2)), view or View()
-    surface = cut_away(nodes, wedge)
-    for i, field in enumerate(fields):
+    """Two fields side by side on one colour scale, and after minus before (K) on its own.
+
+    sensors : of either, with what the model misses, which stands beside the dots of the worst
+    limits : of the scale (degC), those of both if not given
+    """
+    first, last = on_nodes(nodes, before), on_nodes(nodes, after)
+    ends = limits or (min(first.min(), last.min()), max(first.max(), last.max()))
+    most = float(np.abs(last - first).max())
+    p, view, surface = scene.plotter(theme, PANELS, (1, 3)), view or View(), cut_away(nodes, wedge)
+    numbers = [tuple(replace(s, name="") for s in row) for row in sensors]
+    for i, (field, T_limits, colours, row, words) in enumerate(
+        [
+            (first, ends, heat(), numbers[0], titles[0]),
+            (last, ends, heat(), numbers[1], titles[1]),
+            (last - first, (-most, most), missing(), (), "the change"),
+        ]
+    ):
         p.subplot(0, i)
-        paint(p, surface, field, limits, theme)
-        scene.headline(p, titles[i], theme)
-        scene.look(p, surface.framed, view, Room(0.0, 0.16))
-    scene.colour_bar(p, UNIT, theme, position_x=0.84, width=0.034)
+        scene.look(p, frame_points(surface, row), view, Room(0.13, 0.26, TITLE, NOTE))
+        marks = marked(surface, row, LABELS, np.array(p.camera.position))
+        paint_cut(p, surface, marks.cut, field, T_limits, theme, colours)
+        if i:  # the first is on the scale of the second
+            scene.colour_bar(p, UNIT if i == 1 else "K", theme, position_x=0.86, width=0.034)
+        scene.headline(p, words, theme)
+        marks.draw(p, surface, view, theme, LATE if row else "")
     return scene.save(p, png)
 
 

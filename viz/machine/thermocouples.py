@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.arrays import Array
-from viz.colours import VERDICT, Theme
+from viz.colours import Theme
 from viz.data import Sensor, short
 from viz.labels import signed
 from viz.rendering import scene
@@ -80,4 +80,4 @@ def _label(sensor: Sensor, hidden: bool) -> Label:
     value = "" if sensor.residual_K is None else f"  {signed(sensor.residual_K)} K"
     name = short(sensor.name)
     name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"
-    return Label(sensor.xyz, f"{name}{value}", VERDICT[sensor.verdict], hidden)
+    return Label(sensor.xyz, f"{name}{value}".strip(), sensor.colour, hidden)

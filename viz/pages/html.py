@@ -97,8 +97,8 @@ def _caption(caption: str) -> str:
 def _cell(value: Any) -> str:
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
-    word = cell(value).replace("->", "→").replace(" ... ", " … ")
+    word = cell(value).replace("->", "→").replace(" ... ", " … ").replace(" %", "\u00a0%")
     if word in ("", "-"):
         return "–"
-    css = {"over": "bad", "within": "ok"}.get(word)
+    css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
     return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)

@@ -8,7 +8,7 @@ more in a frame of its own, needs scripts.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from validation import tables
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
 from viz.figures import bands, candidates, curves, errors
+from viz.figures.intervals import intervals
 from viz.machine.missing import placed
 from viz.pages import html, words
 
@@ -37,6 +38,7 @@ class Report:
     pictures : caption -> PNG (path or bytes)
     error_budget : test -> places, as in `compare`
     viewer : the page of viz.viewer as text, to turn and play the machine in
+    found : what was added to the model and what it did, in a sentence, as `model add` prints it
     assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
     """
 
@@ -54,6 +56,12 @@ class Report:
     earlier: bool = False
     error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
     viewer: str = ""
+    found: str = ""
+
+    def _repr_html_(self) -> str:
+        """The whole page, in a frame of its own so that its style stays there."""
+        style = "width: 100%; height: 40em; border: 0"
+        return f'<iframe title="report" srcdoc="{escape(render(self), quote=True)}" style="{style}"></iframe>'
 
 
 def write_report(report: Report, path: str | Path) -> Path:
@@ -71,16 +79,15 @@ def render(report: Report) -> str:
 def _top(r: Report) -> str:
     diagnosis = None if r.earlier else r.diagnosis
     tone, sentence = words.verdict(diagnosis, r.comparison)
+    if r.found and diagnosis is None:
+        tone, sentence = "good" if r.found.startswith("Found") else "info", r.found.replace("->", "→")
     head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
-    return head + html.text(words.story(r.history), words.detail(diagnosis), r.description) + _cards(r)
+    return head + html.text(words.detail(diagnosis), r.description) + _cards(r)
 
 
 def _cards(r: Report) -> str:
     items = []
-    for (name, role), path in errors.error_paths(r.history).items():
-        if role == "hold-out":
-            items.append((f"{path[0]:.2f} → {path[-1]:.2f} K", f"error on {name}, never used to fit or choose"))
     if r.comparison is not None:
         items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
@@ -100,7 +107,8 @@ def _error(r: Report) -> str:
     floor = None if r.comparison is None else float(r.comparison["floor_K"])
     plain = None if r.comparison is None else best_plain_K(r.comparison)
     last = r.history[-1]
-    bars = errors.before_after(last["tests"], floor_K=floor)
+    most = max(error for path in errors.error_paths(r.history).values() for error in path)
+    bars = errors.before_after(last["tests"], floor_K=floor, most_K=most)
     title = f"Last step ({last['action']} {last.get('effect') or ''}".strip() + "): tests in bold were never used."
     stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
@@ -134,9 +142,12 @@ def _missing(r: Report) -> str:
     if r.diagnosis is None or not r.diagnosis["candidates"]:
         return ""
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
+    evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
+    said = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     parts = [
-        html.plot(candidates.scores(by_score), "scores", "Candidates by score; beyond the black mark is not chance."),
+        html.plot(said, "odds", "Each leading cause and its odds; pale: with something else.") if said else "",
         html.table(tables.candidates_table(by_score[:12])),
+        html.more("Evidence of each by itself", evidence),
         html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]
@@ -180,19 +191,26 @@ def _values(r: Report) -> str:
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
     left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
     rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
-    return html.section("Calibrated values", html.table(tables.parameters_table("", fixed)), rest)
+    drawn = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
+    sizes = html.plot(intervals(drawn), "sizes", "Values on the scale of what was expected of them.") if drawn else ""
+    return html.section("Calibrated values", sizes, html.table(tables.parameters_table("", fixed)), rest)
 
 
 def _sensors(r: Report) -> str:
     if r.comparison is None:
         return ""
     rule = f"<p>Error is measured − model; {RULE}.</p>"
-    return html.section("Every sensor", rule, *(_sensors_of(test) for test in r.comparison["tests"]))
+    shown = {c.test.name: c for c in r.curves}
+    return html.section("Every sensor", rule, *(_sensors_of(t, shown.get(t["name"])) for t in r.comparison["tests"]))
 
 
-def _sensors_of(test: Document) -> str:
+def _sensors_of(test: Document, shown: Comparison | None) -> str:
+    """A row per sensor; what is over in the colour of its dot.  shown : the test's curves, where they are drawn"""
     name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-    return html.more(name, html.table(tables.sensors_table("", [test])), expanded=test["role"] == "hold-out")
+    side = {c.name: f"over ({shown.sensor(c).verdict})" for c in shown.channels} if shown else {}
+    rows = [{**c, "verdict": side.get(c["channel"], "over")} if c["verdict"] == "over" else c for c in test["channels"]]
+    table = replace(tables.sensors_table("", [{**test, "channels": rows}]), marked=["over", *side.values()])
+    return html.more(name, html.table(table), expanded=test["role"] == "hold-out")
 
 
 def _numerical(r: Report) -> str:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from validation.tables import gain_words
 from viz.figures.candidates import amplitude
 
 Document = Mapping[str, Any]
-TONE = {"adequate": "good", "named": "warn", "group": "warn", "several": "warn", "outside": "warn"}
+TONE = {"adequate": "good", "outside": "warn"}  # a cause that is found is news, no warning
 
 
 def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[str, str]:
@@ -41,31 +42,13 @@ def _elsewhere(diagnosis: Document) -> str:
     return f"{'; '.join(parts)}: look at the sheet before the model." if parts else ""
 
 
-def story(history: Sequence[Document]) -> str:
-    """What the last addition that still counts did to the tests that were never used; empty without one."""
-    additions = [
-        r for r in history if r["action"] == "add" and r["effect"] in history[-1].get("effects", [r["effect"]])
-    ]
-    if not additions:
-        return ""
-    hold_out = [t for t in additions[-1]["tests"] if t["role"] == "hold-out"]
-    parts = [f"{t['rmse_K']['before']:.2f} K to {t['rmse_K']['after']:.2f} K on {t['name']}" for t in hold_out]
-    effect = spoken([additions[-1]["effect"]])
-    if not parts:
-        return f"The model was extended by {effect}."
-    return f"Extending the model by {effect} brought the error from {' and from '.join(parts)}, never used to fit it."
-
-
 def detail(diagnosis: Document | None) -> str:
     """Amplitude and gain of the best named candidate; empty when nothing is named."""
     best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
     if best is None:
         return ""
-    name, hold_out = spoken([best["effect"]]), best.get("holdout_rmse_K")
-    rmse, tests = hold_out or best.get("rmse_K"), "tests never used" if hold_out else "the tests used"
-    without = f" All else fitted anew, the error on {tests} is {rmse['before']:.2f} K without it" if rmse else ""
-    gain = f"{without} and {rmse['after']:.2f} K with it." if rmse else ""
-    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}.{gain}"
+    name = spoken([best["effect"]])
+    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}. {gain_words(best)}".rstrip()
 
 
 def spoken(effects: Sequence[str], last: str = "and") -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT, VERDICT, heat
+from viz.colours import BLUE, LIGHT, heat
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
@@ -177,7 +177,7 @@ def _markers(
     import rerun as rr
 
     colours = [
-        scale.rgba(VERDICT[Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).verdict])
+        scale.rgba(Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).colour)
         for row in residual
         for channel, r in zip(channels, row, strict=True)
     ]

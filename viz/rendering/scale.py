@@ -1,12 +1,11 @@
-"""Colour scales whose ends and marks are round numbers."""
+"""Colour scales that span the data, marked at round numbers."""
 
 from __future__ import annotations
 
 import math
 
-INTERVALS = (
-    8  # at most between marks before the ends are widened: few enough to read, and little of the range is wasted
-)
+INTERVALS = 8  # between marks at most: few enough to read
+FINE = 10  # parts of an interval to which the ends are widened: a scale from 12 to 93 wastes nothing, and says both
 LEAST = 0.8  # K or W: a uniform field has two ends 0.1 apart
 
 
@@ -18,23 +17,24 @@ def step_of(span: float) -> float:
 
 
 def rounded(low: float, high: float) -> tuple[float, float]:
-    """The range widened to whole steps; one that is round already stays as it is."""
+    """The range widened to whole tenths of the steps between its marks; one that is round already stays as it is."""
     while True:
-        step = step_of(high - low)
-        first = math.floor(low / step + 1e-9)
-        last = max(math.ceil(high / step - 1e-9), first + 1)
-        ends = round(first * step, 12), round(last * step, 12)
+        fine = step_of(high - low) / FINE
+        first = math.floor(low / fine + 1e-6)
+        last = max(math.ceil(high / fine - 1e-6), first + 1)
+        ends = round(first * fine, 12), round(last * fine, 12)
         if ends == (low, high):
             return ends
         low, high = ends
 
 
 def marks(low: float, high: float) -> list[float]:
-    """The round numbers of a rounded range, both ends among them."""
+    """Both ends of a rounded range, and the round numbers between that are half a step or more from them."""
     step = step_of(high - low)
-    return [round(low + i * step, 12) for i in range(round((high - low) / step) + 1)]
+    first, last = math.ceil(low / step + 0.5 - 1e-9), math.floor(high / step - 0.5 + 1e-9)
+    return [low, *(round(i * step, 12) for i in range(first, last + 1)), high]
 
 
 def decimals(span: float) -> int:
     """Digits after the point that tell the marks of a range apart."""
-    return max(0, -math.floor(math.log10(step_of(span)) + 1e-9))
+    return max(0, -math.floor(math.log10(step_of(span) / FINE) + 1e-9))

@@ -167,8 +167,9 @@ def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT, letters: int =
 
 
 def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
-    """A small line below the picture."""
-    _line(p, text, (0.02, 0.025), 9, theme, "footnote")
+    """A small line below the picture, as large as fits."""
+    fits = int(0.97 * p.renderer.GetSize()[0] / (LETTER * max(len(text), 1)))
+    _line(p, text, (0.02, 0.025), min(9, fits), theme, "footnote")
 
 
 def _line(

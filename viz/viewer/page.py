@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -17,7 +17,7 @@ from geom.description.machine import Machine
 from geom.meshing.mesh import NamedMesh
 from geom.plugins import plugins
 from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
-from viz.data import Comparison, short
+from viz.data import Comparison, late_mean, short
 from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
@@ -213,13 +213,17 @@ def _tests(tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]) 
 
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[str, Any]:
-    """Sensors, their readings and those of every model at the page's instants: a column each. No place is null."""
+    """Sensors, their readings and those of every model at the page's instants: a column each. No place is null.
+
+    rmse, late : of every model a number (K) per sensor, over the whole test and its last fifth: they tell its colour
+    """
     comparison, clock = test.comparison, np.asarray(test.comparison.test.time, float)
     at = np.clip(np.searchsorted(clock, test.times), 0, len(clock) - 1)
     last = [] if test.before is None or comparison.before is None else [comparison.before]
     models = [comparison.model, *last, *(e.readings for e in test.earlier)]
     places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in comparison.channels]
     pairs = zip(comparison.channels, places, strict=True)
+    held = [replace(comparison, model=of, before=None) for of in models]
     return {
         "sensors": [
             {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)}
@@ -227,6 +231,8 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
         ],
         "measured": _columns([c.y for c in comparison.channels], at),
         "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],
+        "rmse": [[one.rmse(c) for c in comparison.channels] for one in held],
+        "late": [[late_mean(one.residual(c)) for c in comparison.channels] for one in held],
     }
 
 

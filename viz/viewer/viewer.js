@@ -451,9 +451,9 @@ class Viewer {
     const k = Math.round(this.place), { measured } = this.test;
     const all = this.test.sensors.map((s, j) => {
       const read = measured[k * measured.columns + j], y = Number.isNaN(read) ? null : read, residual = this.residual(j, k, this.right);
-      const off = residual === null ? -1 : Math.abs(residual), judged = residual !== null && s.limit !== null;
-      const verdict = !judged ? 3 : off <= s.limit ? 0 : residual > 0 ? 1 : 2;
-      const weight = s.channel === this.chosen ? Infinity : judged ? off / s.limit : off;
+      const [rmse, late] = [this.test.rmse, this.test.late].map((of) => (of[this.right] ?? of[0])[j]), judged = late !== null && s.limit !== null;
+      const verdict = !judged ? 3 : rmse <= s.limit ? 0 : late > 0 ? 1 : 2;  // of the whole test, as everywhere
+      const weight = s.channel === this.chosen ? Infinity : late === null ? -1 : Math.abs(late) / (s.limit ?? 1);
       return { ...s, y, residual, verdict, weight };
     });
     this.sensors = all.filter((s) => s.xyz);

@@ -27,6 +27,7 @@ from thermoscope.plugin import (
     initial_state,
     mean_rows,
     model_of,
+    percent,
     say,
     stem_of,
 )
@@ -192,7 +193,7 @@ def _interval(value: float, sd: float) -> list[float]:
 
 def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
-        return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({100 * probability:.0f} %)"
+        return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({percent(probability)})"
     size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
     return f"sensor {where} {kind}{size}"
 

@@ -14,7 +14,7 @@ from measured.doubt import USUAL, widened
 from validation.comparison.compare import Comparison as Errors
 from validation.comparison.compare import channel_error, compare, errors
 from validation.comparison.uncertainty import COVERAGE, RULE
-from viz.colours import LIGHT, VERMILION
+from viz.colours import VERDICT
 from viz.data import Comparison, sensors
 from viz.figures.curves import residuals
 from viz.pages import report
@@ -81,12 +81,11 @@ def test_table_dot_curve_bar_and_page_say_the_same(off):
     assert mine.verdict == ("within" if abs(off) < mine.limit_K else "over")
     assert (mine.verdict == "within") == (dot.verdict == "within") == (bar["tone"] == "within")
     colour = shown.residual_curve(channel).colour
-    assert (colour == LIGHT.faint) == (mine.verdict == "within")
+    assert colour == VERDICT[dot.verdict]
     if off > mine.limit_K:
         assert dot.verdict == bar["tone"] == "hot"
-        assert colour == VERMILION
-    page = report._sensors(SimpleNamespace(comparison=found.document()))
-    assert f">{mine.verdict}<" in page
+    page = report._sensors(SimpleNamespace(comparison=found.document(), curves=[shown]))
+    assert f">{mine.verdict}{'' if dot.verdict == 'within' else f' ({dot.verdict})'}<" in page
     assert f"{mine.limit_K:.3g}" in page
 
 
@@ -95,7 +94,7 @@ def test_the_rule_is_said_where_it_is_used():
     shown = Comparison(one.tests[0], {c.name: c.y for c in one.tests[0].channels}, compare(one).limits["warm"])
     said = [t.get_text() for ax in residuals(shown).axes for t in (ax.title, ax._right_title)]
     assert any(RULE in words for words in said)
-    assert RULE in report._sensors(SimpleNamespace(comparison=compare(one).document()))
+    assert RULE in report._sensors(SimpleNamespace(comparison=compare(one).document(), curves=[]))
 
 
 def test_one_rms_of_a_test():

@@ -10,11 +10,12 @@ from PIL import Image
 
 from extras.bench import figure as screening
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT
+from viz.colours import BLUE, VERDICT
 from viz.data import Comparison
 from viz.figures import bands as uncertain
 from viz.figures import candidates as scores
 from viz.figures import curves, errors, paper
+from viz.figures.intervals import intervals
 from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor
 
@@ -52,9 +53,26 @@ PLACES = [
     uncertain.Predicted("sensor T_yoke_degC", WARM, 0.03 * (WARM - 20.0), WARM + 1.0),
     uncertain.Predicted("armature", WARM + 20.0, 0.2 * (WARM - 20.0)),
 ]
+VALUE = {
+    "name": "link.a-b",
+    "value": 1.2,
+    "unit": "1",
+    "ci95": [1.1, 1.3],
+    "prior": [1.0, 0.5, 2.0],
+    "identified": True,
+}
+
+
+def driven(c):
+    """With an input that changes: it is drawn below the sensors."""
+    flow = np.linspace(0.0, 2.0, len(c.test.time))
+    return replace(c, test=replace(c.test, inputs={"fan_flow_mps": flow, "steady_A": 3.0}))
+
+
 DRAW = {
     "predicted": lambda png: uncertain.predicted(HOUR, PLACES, title="road-1", png=png),
-    "curves": lambda png: curves.measured_and_model(comparison(before=True), png=png),
+    "curves": lambda png: curves.measured_and_model(driven(comparison(before=True)), png=png),
+    "intervals": lambda png: intervals([VALUE], png=png),
     "residuals": lambda png: curves.residuals(comparison(), png=png),
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
@@ -65,10 +83,11 @@ DRAW = {
     "confusion": lambda png: scores.confusion(["a@x", "b@y"], np.array([[1.0, 0.83], [0.83, 1.0]]), png=png),
 }
 SHOWS = {
+    "intervals": ["link.a-b", "1.2 (1.1 … 1.3)", "how sure they are"],
     "predicted": ["yoke", "± 1.7 K", "armature", "no sensor", "± 11.4 K", "road-1", "95 % band (°C)"],
-    "curves": ["flange.right", "earlier model", "temperature (°C)"],
+    "curves": ["flange.right", "earlier model", "measured and modelled (°C)", "fan flow (m/s)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
-    "before_after": ["4.85 K", "0.93 K", "road-2", "rms error (K)"],
+    "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
     "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
     "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
@@ -86,11 +105,11 @@ def test_figure_is_drawn_and_labelled(name, tmp_path):
     assert [word for word in SHOWS[name] if word not in text] == []
 
 
-def test_wrong_sensor_is_coloured_and_the_others_are_faint():
+def test_a_curve_has_the_colour_of_its_sensor():
     c = comparison()
     colours = {ch.name: c.residual_curve(ch).colour for ch in c.test.channels}
     assert colours.pop("flange.right") == BLUE
-    assert set(colours.values()) == {LIGHT.faint}
+    assert set(colours.values()) == {VERDICT["within"]}
 
 
 def test_sensor_that_was_never_read_is_left_out():
@@ -107,7 +126,7 @@ def test_long_test_is_drawn_in_hours_with_few_points():
     many = 50_000
     time = np.linspace(0.0, 36_000.0, many)
     channels = tuple(replace(ch, y=np.interp(time, 10 * c.test.time, ch.y)) for ch in c.test.channels)
-    test = replace(c.test, time=time, channels=channels)
+    test = replace(c.test, time=time, channels=channels, inputs={})
     model = {k: np.interp(time, 10 * c.test.time, y) for k, y in c.model.items()}
     svg = paper.svg(curves.measured_and_model(Comparison(test, model, c.limits)), "long")
     assert "time (h)" in svg

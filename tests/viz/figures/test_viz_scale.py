@@ -17,8 +17,9 @@ def test_ends_are_round_hold_the_range_and_stay(span):
 
 
 def test_a_known_range():
-    """Blue at 14 and yellow at 72 degC had marks at 14, 25, 37, 49, 61 and 72."""
-    assert marks(*rounded(14.2, 71.9)) == [10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
+    """The ends are those of the data, not 0 and 100 for 12 to 92 degC; what would touch them is left out."""
+    assert marks(*rounded(14.2, 71.9)) == [14.0, 20.0, 30.0, 40.0, 50.0, 60.0, 72.0]
+    assert rounded(12.0, 92.0) == (12.0, 92.0)
 
 
 def test_a_range_even_about_zero_stays_even():

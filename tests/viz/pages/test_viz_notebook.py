@@ -1,9 +1,13 @@
 """Results show themselves: what a notebook would display carries the numbers and is safe to show."""
 
+import numpy as np
 from fictional import comparison, documents
 
-import viz.notebook
+import thermoscope as ts
+from geom.table import Table, TableResult
+from lumped.integration.steady import Steady
 from lumped.model.build import bare_network
+from measured.case import Model
 from validation.comparison.compare import ChannelError, Comparison, TestError
 from validation.inference.result import Candidate, Diagnosis
 from validation.revision.revise import Change, Revision
@@ -24,13 +28,14 @@ def test_errors_are_a_table_and_names_are_escaped():
 
 def test_a_diagnosis_says_its_verdict():
     d = Diagnosis("named", "missing: convection", ("convection@flange",), (), (FOUND,), (), (), (), 5.0, 0.5, 7.9)
-    assert "Missing from the model: convection at flange." in d._repr_html_()
-    assert "12.3 (10 … 14)" in d._repr_html_()
+    assert "named: missing: convection" in d._repr_html_()
+    assert "12.3 (10 ... 14)" in d._repr_html_()
 
 
 def test_a_step_shows_both_errors():
     change = Change("road-2", "hold-out", 4.85, 0.93)
-    r = Revision("add", "x@y", None, True, "fell", (change,), (), COMPARED, COMPARED, True)
+    model = Model(bare_network("one", {"a": 5.0}, ("ambient",)))
+    r = Revision("add", "x@y", model, True, "fell", (change,), (), COMPARED, COMPARED, True)
     assert "4.85" in r._repr_html_()
     assert "0.93" in r._repr_html_()
 
@@ -44,5 +49,22 @@ def test_curves_network_and_report_show_themselves():
     assert "<script" not in framed
 
 
-def test_every_class_listed_has_its_own_picture():
-    assert all(kind._repr_html_ is show for kind, show in viz.notebook.SHOWS.items())
+def test_every_public_result_is_a_table_and_a_frame():
+    """What `import thermoscope` promises as a result says itself in HTML and as a DataFrame."""
+    network = bare_network("one", {"a": 5.0}, ("ambient",))
+    steady = Steady(("a", "ambient"), np.array([40.0, 20.0]), np.zeros(0), None)
+    shown = [COMPARED, FOUND, network, steady, ts.effects(), ts.open("tclab")]
+    assert all(isinstance(one, TableResult) for one in shown)
+    assert all("<table>" in one._repr_html_() for one in [COMPARED, FOUND, steady, ts.effects(), ts.open("tclab")])
+    assert list(steady.to_frame()["degC"]) == [40.0, 20.0]
+    assert list(FOUND.to_frame()["effect"]) == ["convection@flange"]
+    assert {"title", "proof"} <= set(ts.effects().to_frame().columns)
+    assert len(ts.effects().to_frame()) == len(ts.effects()) > 20
+    for kind in (ts.Case, ts.Comparison, ts.Diagnosis, ts.Revision, ts.Field, ts.Machine, ts.Run, ts.Steady):
+        assert issubclass(kind, TableResult)
+        assert kind.tables is not TableResult.tables
+
+
+def test_what_is_long_is_cut_and_counted():
+    table = Table("t", ["n"], [[i] for i in range(100)])
+    assert "and 70 more" in table.html()

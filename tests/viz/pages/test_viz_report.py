@@ -11,7 +11,7 @@ from viewer_pages import NODES, PLACE, recorded
 
 from extras.workbench.policy import report_policy
 from viz.pages.report import Report, render, write_report
-from viz.pages.words import story, verdict
+from viz.pages.words import verdict
 from viz.viewer.page import document as viewer_document
 from viz.viewer.page import render as viewer_page
 
@@ -159,12 +159,6 @@ def test_a_wrong_base_is_what_the_report_says_first():
     bases = [{"test": "b", "base": b, "declared": said, "excluded": out} for b, said, out in rows]
     sentence = verdict({**documents()[1], "verdict": "data", "bases": bases}, None)[1]
     assert sentence.startswith("b did not stand on the base its sheet says (none), but on bench or plate")
-
-
-def test_an_addition_that_was_undone_is_no_story():
-    back = {"number": 3, "action": "step back", "effect": "", "effects": [], "tests": []}
-    assert "from 4.85 K to 0.93 K on road-2" in story(HISTORY)
-    assert story([*HISTORY, back]) == ""
 
 
 def told(**ahead):

@@ -9,24 +9,24 @@ const context = (kind) => kind === "2d"
   : new Proxy({}, { get: (o, k) => k === k.toUpperCase() ? 1 : () => ({}) });
 const element = () => ({
   value: "0", style: {}, options: [{}, {}, {}, {}], selectedIndex: 0, selectedOptions: [{}], parentNode: {}, width: 100, height: 100, clientWidth: 100, clientHeight: 100,
-  getContext: context, replaceChildren() {}, append() {}, prepend() {}, remove() {}, firstChild: { prepend() {} }, lastChild: {},
+  getContext: context, replaceChildren() {}, append() {}, appendChild() {}, prepend() {}, remove() {}, setAttribute() {}, firstChild: { prepend() {} }, lastChild: {},
   querySelectorAll: () => [],
 });
 const known = { data: { ...element(), textContent: between('id="data">', "</script>") } };
-globalThis.document = { getElementById: (id) => known[id] ??= element(), createElement: element, documentElement: element(), body: { classList: { toggle() {} } } };
+globalThis.document = { getElementById: (id) => known[id] ??= element(), createElement: element, createElementNS: element, documentElement: element(), body: { classList: { toggle() {} } } };
 globalThis.location = { hash: "" };
 globalThis.Option = class {};
 globalThis.window = globalThis.parent = globalThis;
 globalThis.matchMedia = () => ({});
 globalThis.getComputedStyle = () => ({ getPropertyValue: () => "#000" });
-globalThis.devicePixelRatio = 1; globalThis.onkeydown = globalThis.onresize = globalThis.onmessage = null;
+globalThis.devicePixelRatio = 1; globalThis.innerWidth = 800; globalThis.onkeydown = globalThis.onresize = globalThis.onmessage = null;
 let ready;
 globalThis.requestAnimationFrame = () => ready();
 new Promise((done) => { ready = done; }).then(() => {
   known.left.onchange({ target: { value: process.argv[3] } });
   known.right.onchange({ target: { value: process.argv[4] } });
   const { values, owner, sensors } = globalThis.viewer;
-  const drawn = { values: [...values.slice(0, 2 * owner.length)], residuals: sensors.map((s) => s.residual) };
+  const drawn = { values: [...values.slice(0, 2 * owner.length)], residuals: sensors.map((s) => s.residual), verdicts: sensors.map((s) => s.verdict) };
   process.stdout.write(JSON.stringify(drawn), () => process.exit(0));
 });
 setTimeout(() => { console.error(known.fault && known.fault.textContent); process.exit(1); }, 20000);

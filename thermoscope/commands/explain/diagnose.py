@@ -130,7 +130,7 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
         return []
     first, words = candidates[0], _words(candidates)
     lines = [f"Detection limit: these tests show it from {limit(first)} on."]
-    lines += [bought(first)] if first.get("tests") and first["decision"] != "no" else []
+    lines += [tables.gain_words(first)] if first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name, name) for name in first["confused_with"])
@@ -158,11 +158,3 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
 def limit(candidate: Mapping[str, Any]) -> str:
     """The smallest size that the tests would show, with its unit."""
     return f"{cell(candidate['smallest_detectable'])} {tables.unit_of(candidate['amplitude'])}".strip()
-
-
-def bought(candidate: Mapping[str, Any]) -> str:
-    """The error (K) in each test without and with the effect, all else fitted anew both times."""
-    tests = candidate["tests"]
-    each = [f"{t['test']}{'*' if t['held_out'] else ''} {t['before']:.2f} -> {t['after']:.2f}" for t in tests]
-    star = " (* never used)" if any(t["held_out"] for t in tests) else ""
-    return f"Refitted without -> with it, error (K): {', '.join(each)}{star}."

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from geom.table import Table, with_interval
+from geom.table import Table, percent, with_interval
 from geom.text import visible
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
@@ -22,7 +22,7 @@ from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
-from validation.tables import next_tests, offers
+from validation.tables import fall, next_tests, offers
 
 if TYPE_CHECKING:
     from validation.inference.result import Candidate, Diagnosis
@@ -98,8 +98,8 @@ def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
-    fell = f", refitted {c.rmse_K[0]:.2f} -> {c.rmse_K[1]:.2f} K" if c.rmse_K else ""
-    return f"{c.effect}: {c.title}, {size}, probability {100 * c.probability:.0f} %{fell}"
+    fell = f", error {fall({'before': c.rmse_K[0], 'after': c.rmse_K[1]})}" if c.rmse_K else ""
+    return f"{c.effect}: {c.title}, {size}, odds {percent(c.probability)}{fell}"
 
 
 def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str) -> Summary:

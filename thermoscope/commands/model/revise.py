@@ -16,15 +16,14 @@ from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
-from thermoscope.case_folder.runs import at_revision, by_interest, ends, mean_rows
+from thermoscope.case_folder.runs import at_revision, by_interest, ends, found_words, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
-from validation.effects.during import effect_words
-from validation.parameters.unknowns import scene_of, strain_words
+from validation.parameters.unknowns import strain_words
 from validation.tables import parameters_table, revision_tables
 
 if TYPE_CHECKING:
@@ -101,34 +100,21 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
-    keep = result.worth_keeping or anyway
+    keep, found = result.worth_keeping or anyway, ""
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
+        if result.action == "add":
+            after = replace(folder, case=at_revision(folder, longer.last), history=longer)
+            found = found_words(after, result.after.document())
     places = unmeasured(folder, result)
     nuisance_words = strain_words(replace(folder.case, model=result.model))
     more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
-    more |= {"words": words(folder, result), "worst": largest_error(result)}
+    more |= {"found": found}
     document = {**result.document(), **more}
     give(document, target, lambda: revision_summary(document, folder, case))
     return 0 if result.accepted or anyway else 1
-
-
-def words(folder: Folder, result: revise.Revision) -> str:
-    """What was added, in plain words; "" of another step."""
-    from validation.effects import effect
-    from validation.revision.revise import TOGETHER
-
-    names = result.effect.split(TOGETHER) if result.action == "add" and result.effect else []
-    return " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
-
-
-def largest_error(result: revise.Revision) -> dict[str, Any]:
-    """The record with the largest error after the step."""
-    records = [(c, t.name) for t in result.after.tests for c in t.channels]
-    worst, test = max(records, key=lambda row: row[0].rmse_K)
-    return {"channel": worst.channel, "test": test, "rmse_K": worst.rmse_K}
 
 
 def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
@@ -192,6 +178,7 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
     parts: list[Table | str] = [
         errors,
+        *([f"Accepted: {document['why']}."] if document["accepted"] and document["found"] else []),
         *failed,
         _unmeasured_words(document["unmeasured"]),
         _hidden_starts(document["parameters"]),
@@ -208,12 +195,10 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
 
 def _outcome_words(document: Mapping[str, Any]) -> list[str]:
     """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
-    why, worst, nuisances = document["why"], document["worst"], document["strained"]
-    if document["accepted"] and document["words"]:
-        left = f"Left: at most {worst['rmse_K']:.1f} K, {worst['channel']} in {worst['test']}."
-        return [f"Found: {document['words']}. Accepted: {why}.", left, nuisances]
-    name = f"{document['action']} {document['effect'] or ''}".strip()
-    return [nuisances, f"{name}: {'accepted' if document['accepted'] else 'not accepted'}; {why}."]
+    if document["accepted"] and document["found"]:
+        return [document["found"], document["strained"]]
+    name, judged = f"{document['action']} {document['effect'] or ''}".strip(), "" if document["accepted"] else "not "
+    return [document["strained"], f"{name}: {judged}accepted; {document['why']}."]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:

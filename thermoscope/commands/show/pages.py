@@ -80,6 +80,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
         earlier,
         documents(folder.budgets),
         viewed,
+        runs.found_words(folder, compared),
     )
     return write_report(page, into / "report.html")
 
@@ -164,8 +165,9 @@ def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -
     earlier = runs.before_last(folder)
     if earlier is not None:
         both, titles = into / "field-before-after.png", (f"{s.when}, before the last step", f"{s.when}, now")
-        viz.pair(s.nodes, s.field(earlier), s.field(), titles=titles, limits=s.limits, png=both)
-        out[f"End of {s.test.name} before and after the last step of the model."] = both
+        fields, row = (s.field(earlier), s.field()), (s.sensors_before, s.sensors)
+        viz.pair(s.nodes, *fields, titles=titles, sensors=row, limits=s.limits, png=both).close()
+        out[f"End of {s.test.name} before and after the last step of the model, and what that changed."] = both
     return out
 
 
@@ -191,8 +193,11 @@ def every_revision(folder: Folder) -> list[Case]:
 
 def residual_at_end(case: Case, test: Test) -> dict[str, float]:
     """Sensor -> measured - modelled (K) over the last fifth of a test, where the machine is warm."""
-    model, late = runs.readings(case, test), slice(int(0.8 * len(test.time)), None)
-    return {c.name: float(np.nanmean((c.y - model[c.name])[late])) for c in test.channels if np.isfinite(c.y).any()}
+    from viz.data import late_mean
+
+    model = runs.readings(case, test)
+    late = {c.name: late_mean(c.y - model[c.name]) for c in test.channels}
+    return {name: K for name, K in late.items() if K is not None}
 
 
 def assumptions(folder: Folder) -> list[str]:

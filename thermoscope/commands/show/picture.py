@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,6 +24,7 @@ from thermoscope.case_folder import runs
 from thermoscope.case_folder.error_field import error_field
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.commands.open_case import open_case
+from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
@@ -48,7 +49,7 @@ def picture(
         typer.Argument(
             metavar="WHAT",
             help="machine, temperature, field, difference, misses, uncertainty, exploded, parts, mesh, flux, network, "
-            "losses, curves, bands, residuals or errors.",
+            "losses, curves, bands, residuals, errors, odds or sizes.",
         ),
     ],
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="A PNG file.")] = None,
@@ -111,6 +112,12 @@ class Subject:
     def sensors(self) -> tuple[Sensor, ...]:
         """Those with a position."""
         return viz.sensors(self.comparison, self.folder.positions)
+
+    @property
+    def sensors_before(self) -> tuple[Sensor, ...]:
+        """The same against the model before its last step; none where there was none."""
+        now = self.comparison
+        return () if now.before is None else viz.sensors(replace(now, model=now.before), self.folder.positions)
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -188,6 +195,14 @@ def _losses(s: Subject, png: Path) -> None:
     viz.sankey_of_losses(flows, title=f"{when}: losses, and where they go", png=png)
 
 
+def _odds(s: Subject, png: Path) -> None:
+    diagnosis = last_diagnosis(s.folder)
+    if diagnosis is None:
+        right = f"first: thermoscope explain diagnose {s.folder.settings.path}"
+        raise InputError("was not diagnosed yet", s.folder.case.name, right)
+    viz.posterior(diagnosis["explanations"], title=f"{s.folder.case.name}: what the readings say", png=png)
+
+
 def _exploded(s: Subject, png: Path) -> None:
     viz.exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png).close()
 
@@ -203,6 +218,8 @@ FLAT: dict[str, Callable[[Subject, Path], Any]] = {
     "residuals": lambda s, png: viz.residuals(s.comparison, png=png),
     "errors": lambda s, png: viz.staircase(runs.steps(s.folder), png=png),
     "losses": _losses,
+    "odds": _odds,
+    "sizes": lambda s, png: viz.intervals(runs.parameters(s.folder), png=png),
 }
 PICTURES: dict[str, Callable[[Subject, Path], Any]] = {
     "field": draw_field,
