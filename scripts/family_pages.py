@@ -72,9 +72,9 @@ def _outlines(family: Family) -> list[str]:
     rows = [f"| `[[outlines.{name}]]` | {words} |" for name, words in family.outlines.items()]
     words = (
         "Shapes in the plane, each group `copies` times around the axis: `loops_mm` is a list of shapes, each a list "
-        "of points `[x, y]` or `[x, y, bulge]` in mm, drawn around +x; a bulge, as in DXF, is tan(sweep / 4) of the edge "
-        "that leaves the point. Shapes may touch, not cut each other. `thermoscope model import` writes such files "
-        "([import](../how-to/import.md))."
+        "of points `[x, y]` or `[x, y, bulge]` in mm, drawn around +x; a bulge, as in DXF, is tan(sweep / 4) of the "
+        "edge that leaves the point. Shapes may touch, not cut each other. `thermoscope model import` writes such "
+        "files ([import](../how-to/import.md))."
     )
     return ["", "## Outlines", "", words, "", "| shapes | are |", "|---|---|", *rows]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -106,10 +106,10 @@ class Draft:
         return "\n".join([*lines, ""])
 
     def table(self) -> Table:
-        """What was taken, what is assumed, what was not understood: the last first, they are what a reader must know."""
+        """What was not understood, what is assumed, what was taken: first what a reader must know."""
         order = {LEFT: 0, ASSUMED: 1, TAKEN: 2}
         rows = sorted((e.document() for e in self.entries), key=lambda row: order[row["kind"]])
-        return replace(Table.of("", rows, "*kind | *key | *value | *source", [LEFT]), folded="source")
+        return Table.of("", rows, "*kind | *key | *value | *source", [LEFT])
 
 
 def new_draft(name: Any, path: Path, program: str) -> Draft:

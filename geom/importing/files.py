@@ -7,9 +7,10 @@ from pathlib import Path
 from geom.errors import InputError
 from geom.importing.assumptions import USUAL_TEMPLATE
 from geom.importing.draft import Draft
+from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
 
-IMPORTERS = {".json": read_pyleecan}
+IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
 
 
 def import_draft(path: Path, family_template: str = USUAL_TEMPLATE) -> Draft:

@@ -70,3 +70,87 @@ def saved(folder, machine, name="small.json"):
     path = folder / name
     path.write_text(machine if isinstance(machine, str) else json.dumps(machine))
     return path
+
+
+MOT = """[Header]
+Program_Name=Motor-CAD
+Program_Version=2024.1
+Title=small
+[Calc_Options]
+Motor_Type=BPM
+[Design_Options]
+Housing_Type=Water_Jacket
+BPM_Rotor=Surface_Radial
+[Winding_Design]
+Slot_Type=Parallel_Tooth
+ConductorsPerSlot=40
+Copper_Diameter=1
+Liner_Thickness=0.25
+Imp_Goodness_[Active]=0.8
+MagThrow=3
+[Dimensions]
+Housing_Dia=150
+Stator_Lam_Dia=110
+Stator_Bore=60
+Stator_Lam_Length=40
+Rotor_Lam_Length=40
+Slot_Number=12
+Tooth_Width=8
+Slot_Depth=14
+Tooth_Tip_Depth=1
+Slot_Opening=3
+Tooth_Tip_Angle=20
+Slot_Corner_Radius=1
+Airgap=1
+Pole_Number=4
+Magnet_Thickness=4
+Magnet_Arc_[ED]=150
+Shaft_Dia=20
+Bearing_Dia_[F]=40
+Motor_Length=140
+Endcap_Thickness_[F]=8
+Wdg_Extension_[F]=4
+EWdg_Overhang_[F]=20
+WJ_Channel-Lam=6
+WJ_Channel_Height=6
+WJ_Channel_Width=12
+WJ_Channel_Spacing=5
+[Water_Jacket_Data]
+Housing_Water_Jacket_Fluid_Name=EGW 50/50
+WJ_Fluid_Volume_Flow_Rate=5E-5
+HousingWJ_Inlet_Temperature=30
+[Interface_Gaps]
+Stator_Lam_-_Housing=0.02
+[Losses_At_RPM_Ref]
+Stator_Copper_Loss_@Ref_Speed=100
+Magnet_Iron_Loss_@Ref_Speed=10
+[Loss_RPM_Ref]
+Ref_Speed_-_Magnet_Iron_Loss=2000
+[Loss_RPM_Coeff]
+Speed_Coeff_-_Magnet_Iron_Loss=2
+[Mat_Conductivity]
+Thermal_Conductivity_Slot_Liner=0.2
+[Miscellaneous]
+Shaft_Speed=1500
+[Temperature Validation]
+Temperature_Validation_Legend[3]=Winding (Avg)
+Temperature_Validation_Temperature[3]=71.5
+"""
+V_SHAPE = """PoleVAngle_Array[0]=120
+PoleArc_Array[0]=130
+BridgeThickness_Array[0]=2
+MagnetThickness_Array[0]=3
+MagnetBarWidth_Array[0]=14
+"""
+
+
+def motor_cad(more="", **changes):
+    """A small surface-magnet machine with a jacket.  changes : key -> value, None to leave a key out;  more : lines"""
+    lines = []
+    for line in MOT.splitlines():
+        key = line.partition("=")[0]
+        if key not in changes:
+            lines.append(line)
+        elif changes[key] is not None:
+            lines.append(f"{key}={changes[key]}")
+    return "\n".join(lines).replace("[Water_Jacket_Data]", f"{more}[Water_Jacket_Data]") + "\n"
