@@ -12,13 +12,16 @@ from geom.description.bases import based
 from geom.description.machine import SECTIONS, Machine
 from geom.description.materials import material
 from geom.description.names import checked_name
+from geom.description.outlines import read_outlines
 from geom.description.part import Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.families import radial_flux, series_dc
+from geom.families.drawn import DRAWN
 from geom.families.family import Family
 from geom.families.proportions import remedy
+from geom.importing.files import IMPORTERS, import_draft
 from geom.plugins import plugins
 from geom.solids.step import machine_in_step
 
@@ -35,7 +38,7 @@ def library() -> dict[str, Path]:
 
 def families() -> dict[str, Family]:
     """All families by name, those of other packages too (entry points "thermoscope.families")."""
-    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC)
+    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC, DRAWN)
     return {family.name: family for family in (*builtin, *plugins("families").values())}
 
 
@@ -48,8 +51,14 @@ def load_machine(source: str | Path) -> Machine:
     path = library().get(str(source), Path(source))
     if path.suffix.lower() in (".step", ".stp"):
         return import_step(path)
+    if path.suffix.lower() in IMPORTERS:
+        return machine_from(import_draft(path).sections(), str(path))
     if path.suffix != ".toml" or not path.is_file():
-        raise InputError(f"no machine {str(source)!r}", "", f"a .toml or .step file, or one of: {', '.join(library())}")
+        raise InputError(
+            f"no machine {str(source)!r}",
+            "",
+            f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}",
+        )
     return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
 
 
@@ -77,10 +86,13 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
     family = _family(header, where)
     table = sections.get("geometry", {})
     values = read_geometry(family.parameters, table, where)
+    if family.outlines or "outlines" in sections:
+        values.outlines = read_outlines(family.outlines, sections.get("outlines", {}), where)
     try:
         built = family.build(values)
     except InputError as error:
-        right = "; ".join(words for words in (error.right, remedy(family, table, error)) if words)
+        cure = "" if sections.get("outlines") else remedy(family, table, error)
+        right = "; ".join(words for words in (error.right, cure) if words)
         raise InputError(error.what, f"{where} {error.where}", right) from error
     built = _with_materials(built, sections.get("materials", {}), where)
     machine = Machine(
@@ -89,7 +101,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
         description=header.get("description", family.doc),
         parts=tuple(part for part in built if part.solid),
         fluids=tuple(part for part in built if not part.solid),
-        sections={name: table for name, table in sections.items() if name not in ("machine", "geometry")},
+        sections={name: table for name, table in sections.items() if name not in ("machine", "geometry", "outlines")},
         geometry=values,
         face_names=family.face_names,
         source=header.get("source", ""),

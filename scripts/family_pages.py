@@ -37,13 +37,14 @@ _MEASURED = (
 
 def family_page(family: Family, picture: str) -> str:
     """Markdown; `picture` is the path of the drawing as seen from the page."""
-    shipped = [name for name in library() if load_machine(name).family == family.name]
+    shipped = ", ".join(f"`{name}`" for name in library() if load_machine(name).family == family.name)
+    machines = f" Machines in the library: {shipped}." if shipped else ""
     free, measured = (_rows(family, scaled) for scaled in (False, True))
     return "\n".join(
         [
             f"# Family `{family.name}`",
             "",
-            f"{family.doc}. Machines in the library: {', '.join(f'`{name}`' for name in shipped)}.",
+            f"{family.doc}.{machines}",
             "",
             f"![Sections across and along the axis of the default machine, mm]({picture})",
             "",
@@ -58,9 +59,24 @@ def family_page(family: Family, picture: str) -> str:
             "| ratio | default | allowed | or | default | allowed | meaning |",
             "|---|---|---|---|---|---|---|",
             *measured,
+            *_outlines(family),
             "",
         ]
     )
+
+
+def _outlines(family: Family) -> list[str]:
+    """What [[outlines.NAME]] may draw."""
+    if not family.outlines:
+        return []
+    rows = [f"| `[[outlines.{name}]]` | {words} |" for name, words in family.outlines.items()]
+    words = (
+        "Shapes in the plane, each group `copies` times around the axis: `loops_mm` is a list of shapes, each a list "
+        "of points `[x, y]` or `[x, y, bulge]` in mm, drawn around +x; a bulge, as in DXF, is tan(sweep / 4) of the "
+        "edge that leaves the point. Shapes may touch, not cut each other. `thermoscope model import` writes such "
+        "files ([import](../how-to/import.md))."
+    )
+    return ["", "## Outlines", "", words, "", "| shapes | are |", "|---|---|", *rows]
 
 
 def _rows(family: Family, measured: bool) -> list[str]:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
 from inspect import cleandoc
+from keyword import iskeyword
 from pathlib import Path
 from types import CodeType
 from typing import Any
@@ -41,7 +42,7 @@ GROUPS = {
     "": ("", "demo,check"),
     "model": (
         "Machines, networks, and the model as it stands.",
-        "machines,build,crosscheck,calibrate,revise.add,revise.remove,revise.undo",
+        "machines,import_file.import,build,crosscheck,calibrate,revise.add,revise.remove,revise.undo",
     ),
     "test": ("Recordings: bring them in, look at them, hold the model against them.", "new,doctor,compare,quantities"),
     "explain": ("What is missing, and what would show it.", "diagnose,improve,effects,answer"),
@@ -73,7 +74,8 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
             parts[group] = typer.Typer(help=words, **PLAIN)
             app.add_typer(parts[group], name=group, short_help=words)
     for (group, name), module in home_modules().items():
-        run = getattr(import_module(module), name) if requested(group, name) else _help_alone(module, name)
+        function = f"{name}_" if iskeyword(name) else name
+        run = getattr(import_module(module), function) if requested(group, name) else _help_alone(module, function)
         parts[group].command(name, short_help=run.__doc__)(run)  # else the list of commands cuts it
     for extra in extras:
         for one in extra.registered_commands:

@@ -16,6 +16,7 @@ SECTIONS = (
     "machine",
     "ratings",
     "geometry",
+    "outlines",
     "materials",
     "contacts",
     "films",

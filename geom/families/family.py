@@ -16,6 +16,7 @@ class Family:
 
     build : values in SI (see parameters.read_geometry) -> solids and fluids, or InputError if they do not fit
     face_names : (part, fluid) -> name, where it differs from the rule of `Machine.face_name`
+    outlines : shapes that [outlines] of a file may have, with what they are; values have them as `outlines`
     ports : values in SI -> where liquids enter and leave;  features : what formulas ask beside the solids
     """
 
@@ -26,3 +27,4 @@ class Family:
     face_names: Mapping[tuple[str, str], str] = field(default_factory=dict)
     ports: Callable[[Geometry], tuple[Port, ...]] = lambda g: ()
     features: Callable[[Geometry], Features] = lambda g: Features()
+    outlines: Mapping[str, str] = field(default_factory=dict)

@@ -6,7 +6,7 @@ The axis is z, the shaft extension is on the right (high z), the base lies at -y
 from __future__ import annotations
 
 from geom.description import shapes
-from geom.description.geometry import Features, Geometry
+from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid
 from geom.description.roles import Role
 from geom.families.family import Family
@@ -18,7 +18,7 @@ from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
 from geom.families.shaft_fan import shaft_fan
 
-_FACES = {
+FACES = {
     ("housing", "ambient"): "housing.fins",
     ("housing", "jacket"): "jacket.wall",
     **{(f"jacket.{end}.tube", "jacket"): f"jacket.{end}.bore" for end in ("inlet", "outlet")},
@@ -55,12 +55,8 @@ def _fluids(g: Geometry, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def _features(g: Geometry) -> Features:
-    return Features(air_gap=g.stator.air_gap)
-
-
 _PMSM = "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket"
 _TEFC = "Totally enclosed cage machine with axial or radial fins"
 _WITH_MAGNETS = (*parameters.COMMON, *parameters.MAGNETS, *parameters.FAN)
-PMSM = Family("pmsm", _PMSM, _WITH_MAGNETS, build_pmsm, _FACES, ports, _features)
-TEFC = Family("tefc", _TEFC, parameters.TEFC, build_tefc, _FACES, ports, _features)
+PMSM = Family("pmsm", _PMSM, _WITH_MAGNETS, build_pmsm, FACES, ports, parameters.features)
+TEFC = Family("tefc", _TEFC, parameters.TEFC, build_tefc, FACES, ports, parameters.features)

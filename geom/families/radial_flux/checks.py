@@ -13,10 +13,11 @@ from geom.families.radial_flux.rotors import shapes_of_magnets
 from geom.families.shaft_fan import check_fan
 
 
-def check(g: Geometry, at: Layout) -> None:
-    """Raise InputError for the first rule that does not hold."""
+def check(g: Geometry, at: Layout, drawn: bool = False) -> None:
+    """Raise InputError for the first rule that does not hold.  drawn : slots are outlines, not tapered or parallel"""
     fit = Fit(g)
-    _check_stator(fit, g, at)
+    if not drawn:
+        _check_stator(fit, g, at)
     _check_frame(fit, g, at)
     _check_housing(fit, g, at)
     check_fan(fit, g.shaft.diameter, 2 * at.cap_radius)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from geom.description.geometry import Geometry
+from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Measure, Parameter, choice
 from geom.description.parameters import length as mm
 from geom.families.radial_flux.layout import Layout
@@ -36,6 +36,11 @@ content = Measure(
 )
 length = Measure("the length over the end-caps", lambda g: g.frame.length)
 turn = Measure("the stack's length over turns + 1", lambda g: g.stator.stack_length / (g.housing.turns + 1))
+
+
+def features(g: Geometry) -> Features:
+    """What formulas ask beside the solids."""
+    return Features(air_gap=g.stator.air_gap)
 
 
 def _even_pitch(g: Geometry) -> float:

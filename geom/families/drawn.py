@@ -1,0 +1,179 @@
+"""Radial-flux machines with a cross-section that the file draws: slots, magnets, pockets, bars and coils as outlines.
+
+Frame, housing, bearings and base are those of the other machines with a round housing. Without [outlines] the stator
+has tapered slots and the rotor is plain iron.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from geom.description import shapes
+from geom.description.geometry import Geometry
+from geom.description.outlines import Outline, Outlines, corners, notched_loop, refuse_cuts
+from geom.description.parameters import Measure, Parameter, choice
+from geom.description.parameters import length as mm
+from geom.description.part import Part, extrude, fluid
+from geom.description.profile import Profile
+from geom.description.roles import Role
+from geom.errors import InputError
+from geom.families.family import Family
+from geom.families.fit import Fit
+from geom.families.radial_flux import FACES, parameters
+from geom.families.radial_flux.checks import check
+from geom.families.radial_flux.housing import coolant, enclosure, ports
+from geom.families.radial_flux.layout import Layout
+from geom.families.radial_flux.stator import stator
+from geom.families.shaft_fan import shaft_fan
+
+NAMES = {
+    "slots": "cut into the bore, from the bore to the bore",
+    "wires": "what the winding fills",
+    "vents": "holes through the stator",
+    "notches": "cut into the rotor's surface, from the surface to the surface",
+    "pockets": "holes through the rotor, those of magnets too",
+    "magnets": "in their pockets or on the rotor",
+    "bars": "of the cage",
+    "coils": "of a wound rotor",
+}
+rotor = Measure("the bore less the gap on either side", lambda g: g.stator.bore_diameter - 2 * g.stator.air_gap)
+inside = Measure("shaft to rotor surface", lambda g: rotor.span(g) / 2 - g.shaft.diameter / 2)
+PARAMETERS = (
+    *(replace(p, low=0.005, high=0.95) if p.key.endswith("fill") else p for p in parameters.COMMON),
+    mm("rotor.core_diameter", 0, 5, 3000, rotor(0.8, 1.0), "iron of the rotor; 0: up to the air gap", off=True),
+    mm("rotor.stack_length", 0, 5, 3000, parameters.stack(0.8, 1.0), "of the rotor; 0: as the stator's", off=True),
+    choice("rotor.inside", ("bored", "solid"), "laminations around the shaft, or to the axis between two stubs of it"),
+    mm("rotor.end", 5, 0.5, 300, parameters.end_space(0.1, 0.6), "rings of the cage, or end turns of a wound rotor"),
+    mm("rotor.ring", 10, 0.5, 600, inside(0.1, 0.8), "radial height of the cage's rings"),
+    Parameter("rotor.fill", 0.45, 0.005, 0.95, "share of conductor in a coil of a wound rotor"),
+    *parameters.FAN,
+)
+
+
+class _Places(Layout):
+    """Radii and positions of a drawn machine (m), and what is drawn."""
+
+    def __init__(self, g: Geometry) -> None:
+        super().__init__(g)
+        drawn: Outlines = getattr(g, "outlines", None) or {name: () for name in NAMES}
+        self.drawn = drawn
+        self.surface = g.rotor.core_diameter / 2 or self.rotor
+        stack = g.rotor.stack_length or g.stator.stack_length
+        self.iron0, self.iron1 = self.middle - stack / 2, self.middle + stack / 2
+        if drawn["wires"]:
+            self.wire0, self.wire1 = min(corners(drawn["wires"])), max(corners(drawn["wires"]))
+        self.mouth = max([self.slot0 if not drawn["wires"] else self.bore, *corners(drawn["slots"])])
+        self.valley = min([self.surface, *corners(drawn["notches"])])
+
+
+def build_drawn(g: Geometry) -> tuple[Part, ...]:
+    """Solids and fluids of a machine with a drawn cross-section. Raises InputError for parts that do not fit."""
+    at = _Places(g)
+    _check(g, at)
+    fan = shaft_fan(g.fan, g.shaft.diameter / 2, at.cowl0, 0.0)
+    return (*_shaft(g, at), *_rotor(g, at), *_stator(g, at), *enclosure(g, at), *fan, *_fluids(g, at))
+
+
+def _check(g: Geometry, at: _Places) -> None:
+    fit, drawn = Fit(g), at.drawn
+    check(g, at, drawn=bool(drawn["slots"] or drawn["wires"]))
+    fit.need(at.surface <= at.rotor + 1e-9, "rotor.core_diameter", f"at most {2e3 * at.rotor:.5g}, to leave the gap")
+    fit.need(g.shaft.diameter / 2 < at.valley, "shaft.diameter", f"less than {2e3 * at.valley:.5g} mm, the rotor")
+    room = min(at.iron0 - at.cap0, at.cap1 - at.iron1)
+    fit.need(room > 0.0, "rotor.stack_length", "less, to clear the end-caps")
+    if drawn["bars"] or drawn["coils"]:
+        fit.below(0.98 * room, "rotor.end", ", the end space")
+    if drawn["bars"]:
+        fit.below(max(corners(drawn["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
+    refuse_cuts(drawn, ("slots", "notches"))
+    _inside(drawn, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
+    _inside(drawn, ("pockets", "bars", "coils", "notches"), (g.shaft.diameter / 2, at.surface + 1e-7), "the rotor")
+    _inside(drawn, ("magnets",), (g.shaft.diameter / 2, at.bore), "the bore")
+
+
+def _inside(drawn: Outlines, names: tuple[str, ...], span: tuple[float, float], what: str) -> None:
+    for name in names:
+        for radius in corners(drawn[name]):
+            if not span[0] <= radius <= span[1]:
+                right = f"corners from {span[0] * 1e3:.5g} to {span[1] * 1e3:.5g} mm from the axis, {what}"
+                raise InputError(f"a corner lies {radius * 1e3:.5g} mm from the axis", f"[[outlines.{name}]]", right)
+
+
+def _shaft(g: Geometry, at: _Places) -> tuple[Part, ...]:
+    disc, start, end = shapes.disc(g.shaft.diameter / 2), 0.8 * at.cowl0, at.length + g.shaft.extension
+    spans = ((start, end),) if g.rotor.inside == "bored" else ((start, at.iron0), (at.iron1, end))
+    return (Part("shaft", "steel", tuple((disc, *span) for span in spans), role=Role.SHAFT),)
+
+
+def _around(groups: tuple[Outline, ...]) -> list[Profile]:
+    return [profile for group in groups for profile in group.around()]
+
+
+def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
+    drawn = at.drawn
+    bore = (shapes.circle_loop(g.shaft.diameter / 2),) if g.rotor.inside == "bored" else ()
+    holes = tuple(profile.outer for profile in _around(drawn["pockets"]))
+    core = Profile(notched_loop(at.surface, drawn["notches"]), (*bore, *holes))
+    yield Part("rotor.core", "electrical-steel", ((core, at.iron0, at.iron1),), role=Role.ROTOR)
+    left, right = (at.iron0 - g.rotor.end, at.iron0), (at.iron1, at.iron1 + g.rotor.end)
+    if drawn["magnets"]:
+        prisms = extrude(_around(drawn["magnets"]), at.iron0, at.iron1)
+        yield Part("magnets", "magnet-ndfeb", prisms, role=Role.MAGNET)
+    if bars := extrude(_around(drawn["bars"]), at.iron0, at.iron1):
+        top = max(corners(drawn["bars"]))
+        ring = shapes.ring(top - g.rotor.ring, top)
+        yield Part("rotor.cage", "aluminium-cast", (*bars, (ring, *left), (ring, *right)), role=Role.CAGE)
+    if drawn["coils"]:
+        radii = list(corners(drawn["coils"]))
+        ring, filling = shapes.ring(min(radii), max(radii)), (g.rotor.fill, g.winding.impregnation)
+        coils = extrude(_around(drawn["coils"]), at.iron0, at.iron1)
+        yield Part("winding.field", "winding", coils, filling, role=Role.WINDING, turns=True)
+        for end, span in (("left", left), ("right", right)):
+            name = f"winding.field.{end}"
+            yield Part(name, "end-winding", ((ring, *span),), filling, role=Role.WINDING, turns=True)
+
+
+def _stator(g: Geometry, at: _Places) -> tuple[Part, ...]:
+    drawn = at.drawn
+    if not drawn["wires"]:
+        return stator(g, at)
+    vents = tuple(profile.outer for profile in _around(drawn["vents"]))
+    core = Profile(shapes.circle_loop(at.core), (notched_loop(at.bore, drawn["slots"]), *vents))
+    wires, w, ring = _around(drawn["wires"]), g.winding, shapes.ring(at.wire0, at.wire1)
+    loose = (w.end_fill, w.end_impregnation)
+    left = (*extrude(wires, at.coil0, at.core0), (ring, at.ring0, at.coil0))
+    right = (*extrude(wires, at.core1, at.coil1), (ring, at.coil1, at.ring1))
+    filling = (w.fill, w.impregnation)
+    return (
+        Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),), role=Role.IRON),
+        Part("winding", "winding", extrude(wires, at.core0, at.core1), filling, role=Role.WINDING),
+        Part("winding.left", "end-winding", left, loose, role=Role.WINDING),
+        Part("winding.right", "end-winding", right, loose, role=Role.WINDING),
+    )
+
+
+def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
+    """Holes through the iron have air of their own; the gap takes what slots and the rotor's surface leave."""
+    whole, low, high = shapes.disc(at.core), min(at.core0, at.iron0), max(at.core1, at.iron1)
+    gap = [(shapes.ring(at.rotor, at.mouth), low, high)]
+    if at.valley < at.rotor:
+        gap.append((shapes.ring(at.valley, at.rotor), at.iron0, at.iron1))
+    return (
+        fluid("airgap", *gap, role=Role.AIR_GAP),
+        fluid("air.left", (whole, at.cap0, max(at.core0, at.iron0))),
+        fluid("air.right", (whole, min(at.core1, at.iron1), at.cap1)),
+        *coolant(g, at),
+        *([fluid("air.inside")] if _hollow(at.drawn, at.surface) else []),
+    )
+
+
+def _hollow(drawn: Outlines, surface: float) -> bool:
+    """Is there a hole through the iron that no magnet fills?"""
+    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (drawn["pockets"], drawn["magnets"]))
+    buried = max(corners(drawn["magnets"]), default=0.0) < surface
+    return bool(drawn["vents"]) or holes > magnets * buried + 1e-7
+
+
+_DOC = "Radial-flux machine with a drawn cross-section: any slots, magnets, barriers, cage or wound rotor, as outlines"
+DRAWN = Family("drawn", _DOC, PARAMETERS, build_drawn, FACES, ports, parameters.features, NAMES)

@@ -1,0 +1,498 @@
+"""Machines of pyleecan (JSON): laminations, slots, holes, magnets, cage, windings; a class is a name in a table."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from geom.description.names import checked_document
+from geom.description.profile import Loop, loop_area
+from geom.errors import InputError
+from geom.importing import assumptions
+from geom.importing.draft import Draft, new_draft, number, one_line, read_text
+from geom.importing.holes import HOLES, Hole
+from geom.importing.plane import Place, Slot, arc, closed, joined, turned, vertices
+from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
+
+RIGHT = "a machine as pyleecan saves it: JSON with __class__, stator and rotor"
+SLOTS = (*STEPS, *CURVED, "SlotUD")
+# Section of one conductor (m2) by the letters of its class; the first whose letters are all there.
+SECTIONS = {
+    "Sbar": lambda c: c["Sbar"],
+    "Hbar Wbar": lambda c: c["Hbar"] * c["Wbar"],
+    "Hwire Wwire": lambda c: (
+        c["Hwire"] * c["Wwire"] * c.get("Nwppc_rad", 1) * c.get("Nwppc_tan", 1) * c.get("Nwppc", 1)
+    ),
+    "Wwire": lambda c: math.pi / 4 * c["Wwire"] ** 2 * c.get("Nwppc", 1),
+}
+CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))
+LOST = {
+    "skew": "the iron is straight here",
+    "yoke_notch": "the laminations are round outside",
+    "notch": "left out of the air gap's surface",
+    "bore": "the air gap is round",
+}
+Node = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Lamination:
+    """A stator or rotor.  where : its place in the file;  sizes in m"""
+
+    node: Node
+    where: str
+    inner: float
+    outer: float
+    length: float
+    way: int
+
+    @property
+    def surface(self) -> float:
+        """Radius at the air gap (m)."""
+        return self.inner if self.way > 0 else self.outer
+
+    def place(self, copies: int) -> Place:
+        return Place(self.surface, self.way, math.pi / copies)
+
+
+def read_pyleecan(path: Path, family_template: str) -> Draft:
+    """The draft of a machine file. Raises InputError for what is no machine with a rotor inside its stator."""
+    document = _document(path)
+    kind = str(document.get("__class__", ""))
+    draft = new_draft(
+        document.get("name"),
+        path,
+        f"pyleecan {document.get('__version__', '')}".replace("pyleecan pyleecan_", "pyleecan "),
+    )
+    pair = [_lamination(document, key, path) for key in ("stator", "rotor")]
+    draft.take("machine", "name", name=draft.name)
+    draft.assume("machine", f"{kind}: any cross-section", family="drawn")
+    if document.get("desc"):
+        draft.take("machine", "desc", description=one_line(document["desc"]))
+    _stator(draft, pair[0])
+    _rotor(draft, pair[1], pair[0])
+    _shaft(draft, document, pair)
+    _frame(draft, document, pair[0], family_template)
+    assumptions.contacts(draft)
+    _losses(draft, pair[0], family_template)
+    assumptions.copper_sensor(draft)
+    for name, lamination in zip(("stator", "rotor"), pair):
+        for key, why in LOST.items():
+            if lamination.node.get(key):
+                draft.leave(f"{name}.{key}", "given", why)
+        if lamination.node.get("Nrvd"):
+            draft.leave(f"{name}.Nrvd", lamination.node["Nrvd"], "radial ducts: the stack is whole here")
+    return draft
+
+
+def _document(path: Path) -> Node:
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is no number of JSON")
+
+    try:
+        document = json.loads(read_text(path, RIGHT), parse_constant=refuse)
+    except (ValueError, RecursionError) as fault:
+        raise InputError(f"not readable as JSON: {str(fault)[:80]}", str(path), RIGHT) from None
+    if not isinstance(document, dict):
+        raise InputError("is no table", str(path), RIGHT)
+    kind = document.get("__class__")
+    if not isinstance(kind, str) or not kind.startswith("Machine"):
+        raise InputError(f"__class__ = {str(kind)[:40]!r} is no machine", str(path), RIGHT)
+    checked_document({k: v for k, v in document.items() if k in ("name", "__version__")}, str(path))
+    return document
+
+
+def _table(node: Node, key: str, where: str) -> Node:
+    value = node.get(key)
+    if not isinstance(value, Mapping):
+        raise InputError(f"{key} is not there", where, RIGHT)
+    return value
+
+
+def _lamination(document: Node, key: str, path: Path) -> Lamination:
+    where = f"{path} {key}"
+    node = _table(document, key, str(path))
+    inner, outer = (number(node, name, where, 0.0, 3.0) for name in ("Rint", "Rext"))
+    if not outer > inner:
+        raise InputError(f"Rext = {outer:g} is not above Rint = {inner:g}", where, "radii of the lamination in m")
+    if bool(node.get("is_internal")) != (key == "rotor"):
+        right = "a machine whose rotor turns inside its stator (is_internal)"
+        raise InputError(f"the {key} is {'inside' if key == 'stator' else 'outside'}", f"{where} is_internal", right)
+    return Lamination(node, where, inner, outer, number(node, "L1", where, 1e-3, 5.0), 1 if key == "stator" else -1)
+
+
+def _sizes(node: Node, where: str) -> dict[str, float]:
+    """All numbers of a slot, hole or conductor; what older files call otherwise by today's names."""
+    sizes = {
+        key: number(node, key, where) if not isinstance(value, bool) else float(value)
+        for key, value in node.items()
+        if isinstance(value, int | float)
+    }
+    if sizes.get("H1_is_rad"):
+        sizes["H1"] = (sizes["W1"] - sizes["W0"]) / 2 * math.tan(sizes["H1"])
+    kind = str(node.get("__class__"))
+    if kind in MAGNETS:
+        sizes.setdefault("Hmag", sizes.get("H0" if kind == "SlotM18" else "H1", 0.0))
+        sizes.setdefault("Wmag", sizes.get("W1", sizes.get("W0", 0.0)))
+    return sizes | ({"2R2": 2 * sizes["R2"]} if "R2" in sizes else {})
+
+
+def _copies(node: Node, key: str, where: str) -> int:
+    return round(number(node, key, where, 1, 400))
+
+
+def _drawn(kind: str, known: Any, where: str, draw: Any) -> Any:
+    """What a class draws; one message where it is unknown, or its numbers make no shape."""
+    if kind not in known:
+        raise InputError(f"__class__ = {kind[:40]!r} is not known", where, f"one of: {', '.join(known)}")
+    try:
+        return draw()
+    except KeyError as missing:
+        raise InputError(f"{kind} lacks {missing}", where, "a number in m or rad") from None
+    except (ValueError, ZeroDivisionError, OverflowError, IndexError):
+        raise InputError(
+            f"the numbers of this {kind} make no shape", where, "sides that meet the circles they end on"
+        ) from None
+
+
+def _slot(lamination: Lamination) -> tuple[Slot, int, str]:
+    where = f"{lamination.where}.slot"
+    node = _table(lamination.node, "slot", lamination.where)
+    kind, copies = str(node.get("__class__")), _copies(node, "Zs", where)
+    place = lamination.place(copies)
+    if kind == "SlotUD":
+        return _drawn(kind, (kind,), where, lambda: _own_slot(node, where)), copies, kind
+    sizes = _sizes(node, where)
+    if kind in MAGNETS:
+        return _drawn(kind, MAGNETS, where, lambda: magnet_of(kind, place, sizes)), copies, kind
+    return _drawn(kind, SLOTS, where, lambda: slot_of(kind, place, sizes)), copies, kind
+
+
+def _lines(node: Node, key: str, where: str) -> list[tuple[complex, float, complex]]:
+    """Begin, bulge and end of each line; arcs by their class."""
+    lines = node.get(key)
+    if not isinstance(lines, list) or not 1 <= len(lines) <= 1000:
+        raise InputError(f"{key} is no list of lines", where, "Segment and Arc1 to Arc3 with begin and end")
+    return [_piece(line, f"{where}.{key}[{k}]") for k, line in enumerate(lines)]
+
+
+def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
+    try:
+        a, b = (complex(str(line[end]).replace(" ", "")) for end in ("begin", "end"))
+        kind, left = line["__class__"], line.get("is_trigo_direction", True)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError("is no line", where, "__class__, begin and end, each a complex number in m") from None
+    if kind == "Segment":
+        return a, 0.0, b
+    if kind == "Arc3":
+        return a, 1.0 if left else -1.0, b
+    if kind != "Arc1":
+        raise InputError(f"__class__ = {str(kind)[:40]!r} is not known", where, "one of: Segment, Arc1, Arc3")
+    radius = abs(number(line, "radius", where))
+    bulge = math.tan(math.asin(min(abs(b - a) / 2 / radius, 1.0)) / 2)
+    return a, bulge if left else -bulge, b
+
+
+def _loop(node: Node, key: str, where: str) -> Loop:
+    return closed([(a, bulge) for a, bulge, _ in _lines(node, key, where)])
+
+
+def _own_slot(node: Node, where: str) -> Slot:
+    """A slot drawn line by line, begun at either side."""
+    lines = _lines(node, "line_list", where)
+    first, last = node.get("wind_begin_index"), node.get("wind_end_index")
+    part = lines[first:last] if isinstance(first, int) and isinstance(last, int) else lines
+    begin, end = part[0][0], part[-1][2]
+    lid = arc(end, begin) if node.get("type_line_wind") or part is lines else 0.0
+    wire = closed([*((a, bulge) for a, bulge, _ in part), (end, lid)])
+    path = vertices([*((a, bulge) for a, bulge, _ in lines), (lines[-1][2], 0.0)])
+    if math.atan2(path[0][1], path[0][0]) > math.atan2(path[-1][1], path[-1][0]):
+        back = path[::-1]
+        path = [(x, y, -following[2]) for (x, y, _), following in zip(back, [*back[1:], (0.0, 0.0, 0.0)])]
+    return DrawnSlot(tuple(path), (wire,))
+
+
+@dataclass(frozen=True)
+class DrawnSlot:
+    """A slot whose path and filling the file draws, in place of `Slot`."""
+
+    path: Loop
+    filled: tuple[Loop, ...]
+
+
+def _conductors(winding: Node, slots: int, where: str) -> float:
+    """Conductors in a slot: of the matrix where there is one, else turns of a coil times layers."""
+    matrix = winding.get("wind_mat")
+    if isinstance(matrix, list) and (total := sum(_entries(matrix))):
+        return total / slots
+    kind = str(winding.get("__class__", ""))
+    layers = winding.get("Nlayer") or (2 if "2L" in kind else 1)
+    return number(winding, "Ntcoil", where, 1, 1e5) * (layers if isinstance(layers, int) else 1)
+
+
+def _entries(matrix: Any, depth: int = 0) -> Iterator[float]:
+    if isinstance(matrix, list) and depth < 6:
+        for inner in matrix:
+            yield from _entries(inner, depth + 1)
+    elif isinstance(matrix, int | float):
+        yield abs(float(matrix))
+
+
+def _section(conductor: Node, where: str) -> float:
+    sizes = _sizes(conductor, where)
+    for letters, section in SECTIONS.items():
+        if all(sizes.get(letter) for letter in letters.split()):
+            return float(section(sizes))
+    kind = str(conductor.get("__class__"))[:40]
+    raise InputError(f"{kind} has no section", where, f"one of: {'; '.join(SECTIONS)}")
+
+
+def _fill(draft: Draft, lamination: Lamination, name: str, copies: int, room: float) -> tuple[float, float, float]:
+    """Share of conductor in the winding's room (m2), the conductors of a slot, and the section of each (m2)."""
+    where = f"{lamination.where}.winding"
+    winding = _table(lamination.node, "winding", lamination.where)
+    count = _conductors(winding, copies, where)
+    section = _section(_table(winding, "conductor", where), f"{where}.conductor")
+    fill = count * section / room
+    if not 0.005 <= fill <= 0.95:
+        right = "other conductors than the file's: between 0.5 % and 95 %"
+        draft.leave(f"{name}.winding.conductor", f"{100 * fill:.3g} % of its room", right)
+    return min(max(fill, 0.005), 0.95), count, section
+
+
+def _stator(draft: Draft, stator: Lamination) -> None:
+    slot, copies, kind = _slot(stator)
+    draft.take("geometry.stator", "stator.Rext", outer_diameter_mm=_mm(2 * stator.outer))
+    draft.take("geometry.stator", "stator.Rint", bore_diameter_mm=_mm(2 * stator.inner))
+    draft.take("geometry.stator", "stator.L1", stack_length_mm=_mm(stator.length))
+    draft.take("geometry.stator", "stator.slot.Zs", slots=copies)
+    draft.draw("slots", f"stator.slot, {kind}", copies, [slot.path])
+    draft.draw("wires", f"stator.slot, {kind}: what the winding fills", copies, slot.filled)
+    _vents(draft, stator, "stator", "vents")
+    room = sum(abs(loop_area(loop)) for loop in slot.filled)
+    fill, count, section = _fill(draft, stator, "stator", copies, room)
+    words = f"stator.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
+    draft.take("geometry.winding", words, fill=float(f"{fill:.9g}"))
+    winding = stator.node["winding"]
+    radii = [math.hypot(x, y) for loop in slot.filled for x, y, _ in loop]
+    pairs = number(winding, "p", f"{stator.where}.winding", 1, 200)
+    pitch = winding.get("coil_pitch") or copies / (2 * pairs)
+    span = float(pitch) if isinstance(pitch, int | float) else 1.0
+    assumptions.end_windings(draft, 2 * min(radii), max(radii) - min(radii), copies, span, fill * room, fill)
+    straight = winding.get("Lewout")
+    if isinstance(straight, int | float) and 0.5e-3 <= straight <= 0.1:
+        draft.take("geometry.winding", "stator.winding.Lewout", straight_mm=_mm(straight))
+    else:
+        draft.assume(
+            "geometry.winding", "in proportion to the bore", straight_mm=max(_mm(0.03 * 2 * stator.inner), 0.5)
+        )
+    stacking(draft, stator, "stator")
+
+
+def stacking(draft: Draft, lamination: Lamination, name: str) -> None:
+    factor = lamination.node.get("Kf1")
+    if isinstance(factor, int | float) and factor != 1:
+        draft.leave(f"{name}.Kf1", factor, "iron as drawn; the stacking factor lies in the material's density")
+
+
+def _vents(draft: Draft, lamination: Lamination, name: str, group: str) -> None:
+    for k, vent in enumerate(lamination.node.get("axial_vent") or ()):
+        where = f"{lamination.where}.axial_vent[{k}]"
+        sizes, kind = _sizes(vent, where), str(vent.get("__class__"))
+        loop = _drawn(kind, VENTS, where, partial(VENTS.get(kind, turned), sizes))
+        copies = _copies(vent, "Zh", where)
+        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [turned(loop, sizes.get("Alpha0", 0.0))])
+
+
+def _vent_circle(d: Mapping[str, float]) -> Loop:
+    return ((d["H0"] + d["D0"] / 2, 0.0, 1.0), (d["H0"] - d["D0"] / 2, 0.0, 1.0))
+
+
+def _vent_polar(d: Mapping[str, float]) -> Loop:
+    a, b = (r * complex(math.cos(d["W1"] / 2), math.sin(d["W1"] / 2)) for r in (d["H0"], d["H0"] + d["D0"]))
+    return closed([a.conjugate(), (b.conjugate(), arc(b.conjugate(), b)), b, (a, arc(a, a.conjugate()))])
+
+
+def _vent_trapeze(d: Mapping[str, float]) -> Loop:
+    a, b = d["H0"] + 0.5j * d["W1"], d["H0"] + d["D0"] + 0.5j * d["W2"]
+    return closed([a.conjugate(), b.conjugate(), b, a])
+
+
+VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "VentilationTrap": _vent_trapeze}
+
+
+def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
+    node, top = rotor.node, rotor.outer
+    for k, hole in enumerate(_holes(node)):
+        _hole(draft, rotor, hole, f"rotor.hole[{k}]")
+    magnet = next((node[key] for key in ("magnet", "magnet_north") if isinstance(node.get(key), Mapping)), None)
+    if isinstance(node.get("slot"), Mapping):
+        slot, copies, kind = _slot(rotor)
+        if kind != "SlotM18":
+            draft.draw("notches", f"rotor.slot, {kind}", copies, [slot.path])
+        if magnet is not None:
+            draft.draw("magnets", f"rotor.slot, {kind}", copies, slot.filled)
+            _magnet_length(draft, magnet, rotor, "rotor.magnet")
+            top = max([top, *(math.hypot(x, y) for loop in slot.filled for x, y, _ in loop), *_crowns(slot.filled)])
+        elif node.get("__class__") == "LamSquirrelCage" or "ring_mat" in node:
+            _cage(draft, rotor, slot, copies, kind)
+        elif isinstance(node.get("winding"), Mapping):
+            _coils(draft, rotor, slot, copies, kind)
+    _vents(draft, rotor, "rotor", "pockets")
+    gap = stator.inner - top
+    if not 0.2e-3 <= gap <= 20e-3:
+        right = f"stator.Rint = {stator.inner:g} m at least 0.2 mm and at most 20 mm beyond it"
+        raise InputError(f"the rotor ends at {top:.6g} m", rotor.where, right)
+    draft.take("geometry.stator", "stator.Rint less the rotor's outermost point", air_gap_mm=_mm(gap))
+    if top > rotor.outer + 1e-9:
+        draft.take("geometry.rotor", "rotor.Rext", core_diameter_mm=_mm(2 * rotor.outer))
+    if abs(rotor.length - stator.length) > 1e-6:
+        draft.take("geometry.rotor", "rotor.L1", stack_length_mm=_mm(rotor.length))
+    stacking(draft, rotor, "rotor")
+
+
+def _crowns(loops: tuple[Loop, ...]) -> Iterator[float]:
+    """Where arcs of loops reach beyond their corners, on the middle line (m)."""
+    for loop in loops:
+        for a, b in zip(loop, (*loop[1:], loop[0])):
+            chord = math.dist(a[:2], b[:2])
+            yield math.hypot((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) + abs(a[2]) * chord / 2 * (
+                a[2] * (a[0] * b[1] - a[1] * b[0]) > 0
+            )
+
+
+def _holes(node: Node) -> list[Node]:
+    holes = [hole for key in ("hole", "hole_north", "hole_south") for hole in node.get(key) or ()]
+    if len(holes) > 50 or not all(isinstance(hole, Mapping) for hole in holes):
+        raise InputError("hole is no list of holes", "rotor", RIGHT)
+    return holes
+
+
+def _hole(draft: Draft, rotor: Lamination, node: Node, name: str) -> None:
+    where, kind = f"{rotor.where}{name.removeprefix('rotor')}", str(node.get("__class__"))
+    copies = _copies(node, "Zh", where)
+    if kind == "HoleUD":
+        hole, present = _own_hole(node, where), node.get("magnet_dict") or {}
+        magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", True)]
+    else:
+        hole = _drawn(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
+        present = node
+        magnets = [m for k, m in enumerate(hole.magnets) if node.get(f"magnet_{k}")]
+    draft.draw("pockets", f"{name}, {kind}", copies, joined([*hole.magnets, *hole.air]))
+    draft.draw("magnets", f"{name}, {kind}", copies, magnets)
+    first = present.get("magnet_0")
+    if isinstance(first, Mapping):
+        _magnet_length(draft, first, rotor, f"{name}.magnet_0")
+
+
+def _own_hole(node: Node, where: str) -> Hole:
+    """A hole drawn surface by surface, its magnets by their labels."""
+    surfaces = node.get("surf_list")
+    if not isinstance(surfaces, list) or not 1 <= len(surfaces) <= 100:
+        raise InputError("surf_list is no list of surfaces", where, "SurfLine with line_list and label")
+    loops = [
+        (("Mag" in str(s.get("label"))), _loop(s, "line_list", f"{where}.surf_list[{k}]"))
+        for k, s in enumerate(surfaces)
+    ]
+    return Hole(
+        tuple(loop for is_magnet, loop in loops if is_magnet), tuple(loop for is_magnet, loop in loops if not is_magnet)
+    )
+
+
+def _magnet_length(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> None:
+    length = magnet.get("Lmag")
+    if isinstance(length, int | float) and abs(length - rotor.length) > 0.005 * rotor.length:
+        draft.leave(
+            f"{name}.Lmag", length, f"contradicts rotor.L1 = {rotor.length:g} m: magnets are as long as the rotor here"
+        )
+
+
+def _cage(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+    where = rotor.where
+    draft.draw("bars", f"rotor.slot, {kind}: what a bar fills", copies, slot.filled)
+    area = sum(abs(loop_area(loop)) for loop in slot.filled)
+    section = _section(_table(_table(rotor.node, "winding", where), "conductor", where), f"{where}.winding.conductor")
+    if abs(section / area - 1) > 0.02:
+        words = f"contradicts the slot's {area * 1e6:.4g} mm2: bars fill their slots here"
+        draft.leave("rotor.winding.conductor", f"{section * 1e6:.4g} mm2", words)
+    radii = [math.hypot(x, y) for loop in slot.filled for x, y, _ in loop]
+    ring, high = number(rotor.node, "Lscr", where, 1e-4, 1.0), number(rotor.node, "Hscr", where, 1e-4, 1.0)
+    most = 0.95 * (max(radii) - max(rotor.inner, 0.3 * rotor.outer))
+    draft.take("geometry.rotor", "rotor.Lscr", end_mm=_mm(min(ring, 0.3)))
+    if high < most:
+        draft.take("geometry.rotor", "rotor.Hscr", ring_mm=_mm(high))
+    else:
+        draft.leave("rotor.Hscr", high, "higher than bars to shaft")
+        draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(radii) - min(radii), most)))
+    metal = str((rotor.node.get("ring_mat") or {}).get("name", "")).lower()
+    found = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
+    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": found})
+
+
+def _coils(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+    draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
+    room = sum(abs(loop_area(loop)) for loop in slot.filled)
+    fill, count, section = _fill(draft, rotor, "rotor", copies, room)
+    words = f"rotor.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
+    draft.take("geometry.rotor", words, fill=float(f"{fill:.9g}"))
+    draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=_mm(0.1 * 2 * rotor.outer))
+
+
+def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
+    rotor, shaft = pair[1], document.get("shaft") or {}
+    given = shaft.get("Drsh") if isinstance(shaft, Mapping) else None
+    given = given if isinstance(given, int | float) and given > 0 else None
+    if rotor.inner > 0:
+        draft.take("geometry.shaft", "rotor.Rint", diameter_mm=_mm(2 * rotor.inner))
+        if given and abs(given - 2 * rotor.inner) > 1e-6:
+            draft.leave("shaft.Drsh", given, f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here")
+        return
+    draft.take("geometry.rotor", "rotor.Rint = 0", inside="solid")
+    if given:
+        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(given))
+    else:
+        draft.assume(
+            "geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=max(_mm(0.6 * rotor.outer), 5.0)
+        )
+
+
+def _frame(draft: Draft, document: Node, stator: Lamination, family_template: str) -> None:
+    assumptions.template(draft, family_template)
+    node = document.get("frame") or {}
+    inner, outer = node.get("Rint"), node.get("Rext")
+    if (
+        isinstance(inner, int | float)
+        and isinstance(outer, int | float)
+        and outer > inner
+        and family_template != "open"
+    ):
+        draft.take("geometry.housing", "frame.Rext - frame.Rint", thickness_mm=_mm(outer - inner))
+        if abs(inner - stator.outer) > 1e-5:
+            draft.leave(
+                "frame.Rint", inner, f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"
+            )
+    ends = sum(draft.value("geometry.winding", key) for key in ("straight_mm", "end_mm"))
+    ends = max(ends, draft.value("geometry.rotor", "end_mm") or 0.0) * 1e-3
+    stack = max(stator.length, (draft.value("geometry.rotor", "stack_length_mm") or 0.0) * 1e-3)
+    assumptions.frame(draft, stack, ends, 2 * stator.outer, 1e-3 * draft.value("geometry.shaft", "diameter_mm"))
+
+
+def _losses(draft: Draft, stator: Lamination, family_template: str) -> None:
+    winding = stator.node["winding"]
+    slots, where = draft.value("geometry.stator", "slots"), f"{stator.where}.winding"
+    section, count = _section(winding["conductor"], where), _conductors(winding, slots, where)
+    radii = 1e-3 * draft.value("geometry.stator", "bore_diameter_mm") / 2, stator.outer
+    iron = 7600.0 * stator.length * math.pi * (radii[1] ** 2 - radii[0] ** 2) * 0.7  # slots leave some 0.7 of the ring
+    length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
+    density = assumptions.CURRENT_DENSITY.get(family_template, assumptions.USUAL_DENSITY)
+    ways = winding.get("Npcp")
+    assumptions.losses(draft, section * 1e6, length, float(ways) if isinstance(ways, int) else 1.0, iron, density)
+
+
+def _mm(length: float) -> float:
+    return round(1e3 * length, 9)

@@ -1,0 +1,58 @@
+"""thermoscope model import FILE"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shlex import quote
+from typing import Annotated, Any
+
+import typer
+
+from geom.errors import InputError
+from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
+from geom.importing.draft import ASSUMED, LEFT, TAKEN, Draft
+from thermoscope.console.options import Json, Out
+from thermoscope.console.summary import Summary
+from thermoscope.console.terminal import give
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot) or pyleecan (.json).")]
+Template = Annotated[
+    str, typer.Option(metavar="NAME", help=f"Frame and cooling, where the file has none: {', '.join(TEMPLATES)}.")
+]
+
+
+def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPLATE, target: Json = None) -> int:
+    """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
+    from geom import import_draft
+    from geom.machine_file import machine_from
+
+    draft = import_draft(file, family_template)
+    machine_from(draft.sections(), str(file))  # nothing is written that cannot be built
+    written = write_draft(draft, out or Path())
+    document = {
+        "machine": draft.name,
+        "program": draft.program,
+        "file": written,
+        "values": [entry.document() for entry in draft.entries],
+        "readings_C": draft.readings,
+    }
+    give(document, target, lambda: import_summary(draft, written))
+    return 0
+
+
+def write_draft(draft: Draft, folder: Path) -> Path:
+    """The machine file in a folder. InputError where one of that name lies there."""
+    target = folder / f"{draft.name}.toml"
+    if target.exists():
+        raise InputError("is there already: it stays", str(target), "another folder: --out DIR")
+    text = draft.toml()
+    folder.mkdir(parents=True, exist_ok=True)
+    target.write_text(text, encoding="utf-8")
+    return target
+
+
+def import_summary(draft: Draft, written: Path) -> Summary:
+    """How many values of each kind, and the table of them."""
+    kinds: dict[str, Any] = {kind: sum(e.kind == kind for e in draft.entries) for kind in (TAKEN, ASSUMED, LEFT)}
+    sentence = f"{written}: {', '.join(f'{count} values {kind}' for kind, count in kinds.items())}."
+    return Summary(sentence, [draft.table()], f"Next: thermoscope model build {quote(str(written))}; --json FILE")
