@@ -236,11 +236,13 @@ def _mat(file: Path) -> Contents:
         raise InputError("holds no vectors of numbers", str(file), right)
     rows = sizes.most_common(1)[0][0]
     other = [".".join(path) for path, v in paths.items() if len(v) not in (rows, 0, 1)]
-    kept = {path: v for path, v in paths.items() if len(v) == rows}
-    check_shape(rows, len(kept), file)
-    last = Counter(path[-1] for path in kept)
-    columns = [(path[-1] if last[path[-1]] == 1 else ".".join(path), v) for path, v in kept.items()]
-    return columns, {"notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)}
+    columns = {path: v for path, v in paths.items() if len(v) == rows}
+    check_shape(rows, len(columns), file)
+    last = Counter(path[-1] for path in columns)
+    names = [path[-1] if last[path[-1]] == 1 else ".".join(path) for path in columns]
+    return zip(names, columns.values(), strict=True), {
+        "notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)
+    }
 
 
 def _unpacked(file: Path, head: str) -> Iterator[int]:
