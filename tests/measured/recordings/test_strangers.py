@@ -13,13 +13,15 @@ from logger_formats import signals
 from geom.description.roles import Role
 from geom.errors import InputError
 from measured.importing.aligned import Recording, longest_part
+from measured.importing.cells import split_unit
 from measured.importing.clock import Clock, clock_of, in_time_order
+from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
 from measured.importing.words import roles_of
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
-from thermoscope.commands.test.new import Wishes, places
+from thermoscope.commands.test.new import Wishes, first_model, places
 from thermoscope.commands.test.new import new_case as new
 from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
@@ -305,6 +307,25 @@ def test_rows_out_of_order_are_sorted_where_that_makes_an_even_clock(tmp_path):
 def test_outside_is_the_air_only_where_no_part_is_named():
     assert roles_of("Ext T winding")[0] is Role.WINDING
     assert roles_of("T ext")[0] is Role.AMBIENT
+
+
+@pytest.mark.parametrize(
+    ("header", "encoding"), [("권선온도(℃),주위온도(℃),전류(A)", "utf-8"), ("Обмотка °C,Воздух °C,Ток [A]", "cp1251")]
+)
+def test_words_of_any_script_are_words(tmp_path, header, encoding):
+    """Two headers without a letter that is known would be one place."""
+    rows = [f"2026-03-28 12:{k // 60:02d}:{k % 60:02d},{20 + k},21,5" for k in range(90)]
+    (tmp_path / "a.csv").write_text("\n".join([f"time,{header}", *rows]) + "\n", encoding)
+    source = read_source(tmp_path / "a.csv")
+    found = {
+        g.place or g.feeds for g in guesses(source, ("time",), first_model([(source, clock_of(source))], {}).target)
+    }
+    assert {"ambient", "current_A"} < found
+    assert len(found) == 3
+
+
+def test_a_number_in_brackets_is_no_unit_but_at_the_end():
+    assert split_unit("Y[1] Frame") == ("Y[1] Frame", "")
 
 
 def test_channels_are_called_what_their_settings_call_them(tmp_path):
