@@ -128,7 +128,8 @@ class ProgressBar:
         later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
         rest += self._pace(took) * later
         spent, instant = here + sum(self.took.values()), self.clock()
-        if max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) < self.shortest_s:
+        worth = max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) >= self.shortest_s
+        if not (worth and (self.now or self.took)):  # a bar is drawn before its first stage
             return None
         passed, self.share_s = instant - self.share_s, instant
         self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
