@@ -17,6 +17,7 @@ from measured.importing.cells import split_unit
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
+from measured.importing.target import Target
 from measured.importing.words import roles_of
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
@@ -322,6 +323,23 @@ def test_words_of_any_script_are_words(tmp_path, header, encoding):
     }
     assert {"ambient", "current_A"} < found
     assert len(found) == 3
+
+
+def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
+    """Nor is a unit with a number in it left to guesses."""
+    written(tmp_path, table("t [s],T_winding,T_housing", S["t"], 10 * S["W"], 10 * S["W"] + 1))
+    assert (
+        capsys.readouterr().out.replace("\n", " ").startswith("'T_winding' starts at 240 degC: is it in other units?")
+    )
+    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [°C]", S["t"], S["W"], S["W"]))
+    source = read_source(tmp_path / "b.csv")
+    assert "'0.1°C'" in guesses(source, ("t [s]",), Target())[0].doubt
+
+
+def test_the_air_that_comes_out_is_not_the_room(tmp_path):
+    text = table("t [s],T_winding,Outlet air [°C],Inlet air [°C]", S["t"], S["W"], S["W"], ROOM)
+    written(tmp_path, text)
+    assert '"Outlet air [°C]" is left out' in (tmp_path / "made/tests/a.toml").read_text()
 
 
 def test_a_number_in_brackets_is_no_unit_but_at_the_end():
