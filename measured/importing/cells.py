@@ -153,7 +153,7 @@ def split_unit(header: str) -> tuple[str, str]:
     """
     for match in reversed([*BRACKETS.finditer(header)]):
         inside = next(g for g in match.groups() if g)
-        if is_unit(inside):
+        if is_unit(inside) and (inside != "1" or match.end() == len(header)):  # Y[1] Frame is numbered
             return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
                 inside
             ) or inside.strip()

@@ -18,6 +18,7 @@ from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.importing.words import (
     DIFFERENCE,
+    INLET,
     LETTERED,
     NOTHING,
     QUANTITY,
@@ -54,6 +55,7 @@ FIRST = (
     *("temperature", "current", "speed", "torque", "power", "vehicle_speed"),
     *("voltage", "share", "water_flow", "air_flow", "frequency", "resistance"),
 )  # of several quantities that have a unit, the likelier before the others
+ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
@@ -129,6 +131,8 @@ def _left_out(source: Source, column: str) -> str:
     if (count := int(np.isfinite(values).sum())) < LEAST:
         return f"read {count} {'time' if count == 1 else 'times'} in all"
     unit_text, label = source.units[column], source.labels[column]
+    if not unit_text and (match := FOREIGN.search(label)) and match[1][0].isdigit():  # [0.1 °C]
+        return f"its unit '{match[1]}' is of nothing a model reads"
     if unit_text and not unit_of(unit_text):
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
@@ -221,14 +225,14 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
     values = _without_codes(source.numbers(column)) if quantity == "temperature" else source.numbers(column)
     if quantity == "temperature" and np.isfinite(values).any():
         kelvin = KELVIN[0] < float(np.nanmedian(values)) < KELVIN[1] and float(np.nanmin(values)) > KELVIN[0]
-        if kelvin and not unit:
-            return "K", "no unit: by its values"
         first = float(values[np.isfinite(values)][0])
+        if kelvin and not unit and first > ROOM_K[0]:  # below it are tenths of a room's degrees, rather
+            return "K", "no unit: by its values"
         if unit == "degC" and kelvin and ROOM_K[0] < first < ROOM_K[1]:
             return "K", f"{source.units[column]} in its header, but K by its values"
         unit = unit or "degC"
         hot = unit == "degC" and first > ROOM_C[1]
-        return unit, f"starts at {first:.4g} degC: is it in other units?" if hot else ""
+        return unit, f"starts at {first:.4g} degC: {ELSE}" if hot else ""
     if unit:
         return unit, ""
     if quantity == "share":
@@ -264,7 +268,8 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
 
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
-        return bool(SETPOINT & words), not READ & words, bool(g.place) and g.place not in words, g.why != SUREST
+        inlet = bool(g.place) and not INLET & words
+        return bool(SETPOINT & words), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")

@@ -106,12 +106,12 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
     table = {str(row[0]).strip(): row for row in map(trimmed, before) if len(row) > 1 and str(row[0]).strip() in labels}
     if len(table) < 2 or any(map(roles_of, names)):
         return names
-    told = [
+    scores = [
         sum(bool(roles_of(str(row[j])) or quantities_of(str(row[j]))) for row in table.values() if j < len(row))
         for j in range(max(map(len, table.values())))
     ]
-    column = max(range(1, len(told)), key=lambda j: told[j])
-    called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and told[column]}
+    column = max(range(1, len(scores)), key=lambda j: scores[j])
+    called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and scores[column]}
     return [f"{name} {called.get(label, '')}".strip() for name, label in zip(names, labels, strict=True)]
 
 

@@ -18,7 +18,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from measured.importing.draft import Draft
-from measured.importing.guess import AXES, Array, Guess, in_memory
+from measured.importing.guess import AXES, ELSE, Array, Guess, in_memory
 from measured.importing.source import Source
 from measured.importing.words import LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 
@@ -142,6 +142,9 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
+        odd = [g for _, g in columns if g.place and ELSE in g.doubt]
+        if odd and len(odd) == sum(bool(g.place) for _, g in columns):
+            out.setdefault("unit", f"'{odd[0].column}' {odd[0].doubt}")
         hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
         if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
             out.setdefault("bearing", "no winding is measured, a bearing alone")

@@ -19,7 +19,8 @@ BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have si
 SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
-PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250")
+PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251")
+CYRILLIC = re.compile("[А-яё]{4,}")
 LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñ℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
@@ -153,6 +154,7 @@ def decoded(raw: bytes, file: Path) -> str:
         odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
         letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
         worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
+        worth["cp1251"] += sum(map(len, CYRILLIC.findall(letters["cp1251"])))
         return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
 
 

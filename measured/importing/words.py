@@ -9,7 +9,7 @@ from pathlib import Path
 
 from geom.description.roles import Role
 
-WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[\u3040-\u9fff]+|[α-ωϑ]+")
+WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[^\W\d_A-Za-zªµºÀ-ſ]+")
 
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
@@ -96,7 +96,7 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 
 def is_time(label: str) -> bool:
     """Is it a name for time?  A small t is one, a large T a temperature; "temps" of a part are temperatures."""
-    words = re.split(r"[^a-zäöüé\u3040-\u9fff]+", label.lower().strip())
+    words = re.split(r"[\W\d_]+", label.lower().strip())
     if "temps" in words and roles_of(label):
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit"))

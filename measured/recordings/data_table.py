@@ -23,6 +23,7 @@ from lumped.schemas.reader import suggestion
 Array = NDArray[np.float64]
 Column = NDArray[Any]
 HEADER = 2  # line of the first row of numbers
+PIECE = 50_000  # rows that are turned into Python's numbers at once, which take ten times as much memory
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
 # As loggers, spreadsheets and statistics programs write that nothing was read.
 MISSING = frozenset(
@@ -190,6 +191,9 @@ def rows_of(columns: Mapping[str, Sequence[Any] | Column]) -> list[list[Any]]:
 
 def csv_text(columns: Mapping[str, Sequence[Any] | Column]) -> str:
     """Columns as CSV: shortest numbers that read back the same, empty cells where there is none."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows_of(columns))
+    text, rows = io.StringIO(), max(map(len, columns.values()), default=0)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    for i in range(0, rows, PIECE):
+        writer.writerows(rows_of({name: values[i : i + PIECE] for name, values in columns.items()})[1:])
     return text.getvalue()

@@ -226,21 +226,23 @@ def _mat(file: Path) -> Contents:
 
     start = file.open("rb").read(128)
     if start.startswith(b"MATLAB 7.3"):
-        raise InputError("is a MATLAB file of version 7.3", str(file), "save(..., '-v7'), or CSV by writetable")
+        raise InputError("is a MATLAB file of version 7.3", str(file), "save(..., '-v7'), or the table saved as CSV")
     if start.startswith(b"MATLAB 5.0"):  # older ones are not packed
         BYTES.check(sum(timed(_unpacked(file, "<II" if start.endswith(b"IM") else ">II"), file)), file, "holds")
     paths = dict(_vectors(loadmat(file, simplify_cells=True)))
     sizes = Counter(len(v) for v in paths.values() if len(v) > 2)
     if not sizes:
-        right = "vectors and structs of vectors; a timetable by writetimetable(T, 'T.csv')"
-        raise InputError("holds no vectors of numbers", str(file), right)
+        right = "columns of numbers; the table saved as CSV"
+        raise InputError("holds no columns of numbers", str(file), right)
     rows = sizes.most_common(1)[0][0]
     other = [".".join(path) for path, v in paths.items() if len(v) not in (rows, 0, 1)]
-    kept = {path: v for path, v in paths.items() if len(v) == rows}
-    check_shape(rows, len(kept), file)
-    last = Counter(path[-1] for path in kept)
-    columns = [(path[-1] if last[path[-1]] == 1 else ".".join(path), v) for path, v in kept.items()]
-    return columns, {"notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)}
+    columns = {path: v for path, v in paths.items() if len(v) == rows}
+    check_shape(rows, len(columns), file)
+    last = Counter(path[-1] for path in columns)
+    names = [path[-1] if last[path[-1]] == 1 else ".".join(path) for path in columns]
+    return zip(names, columns.values(), strict=True), {
+        "notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)
+    }
 
 
 def _unpacked(file: Path, head: str) -> Iterator[int]:

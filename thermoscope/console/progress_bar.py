@@ -53,7 +53,7 @@ class ProgressBar:
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
-    loop : start of a loop in the stage (s), part of it that is done;  share : done, as shown;  shown_s : when
+    loop : start of a loop in the stage (s), part of it that is done;  share : on the line;  share_s : when
     """
 
     last: dict[str, float]
@@ -68,7 +68,7 @@ class ProgressBar:
     counted_s: float = 0.0
     loop: tuple[float, float] = (0.0, 0.0)
     share: float = 0.0
-    shown_s: float = 0.0
+    share_s: float = 0.0
     same_case: bool = True
 
     def enter(self, message: str) -> bool:
@@ -77,11 +77,11 @@ class ProgressBar:
         A count alone, "(3 of 200)", is of a loop in the stage, which takes at least as long as that loop.
         """
         if loop := ALONE.fullmatch(message):
-            done = (int(loop[1]) - 1) / int(loop[2])
-            self.loop = (self.loop[0], done) if done > self.loop[1] else (self.clock(), 0.0)
+            fraction = (int(loop[1]) - 1) / int(loop[2])
+            self.loop = (self.loop[0], fraction) if fraction > self.loop[1] else (self.clock(), 0.0)
             return False
         if not (self.now or self.took):
-            self.shown_s = self.clock()
+            self.share_s = self.clock()
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -118,17 +118,20 @@ class ProgressBar:
         rest = abs(expected - before - here)
         if self.part * here > 0.0:
             rest = here / self._done(here) - here
-        begin, done = self.loop
-        rest = max(rest, (self.clock() - begin) * (1.0 - done) / done if done else 0.0)
-        if self.now in self.last and (self.part or before + here > expected):
+        begin, fraction = self.loop
+        late = before + here > expected
+        if fraction and (late or not self.same_case):
+            rest = max(rest, (self.clock() - begin) * (1.0 - fraction) / fraction)
+        if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
         after = order.index(self.now) + 1 if self.now in self.last else 0
         later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
         rest += self._pace(took) * later
         spent, instant = here + sum(self.took.values()), self.clock()
-        if max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) < self.shortest_s:
+        worth = max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) >= self.shortest_s
+        if not (worth and (self.now or self.took)):  # a bar is drawn before its first stage
             return None
-        passed, self.shown_s = instant - self.shown_s, instant
+        passed, self.share_s = instant - self.share_s, instant
         self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
         return self.share, rest
 
@@ -140,12 +143,12 @@ class ProgressBar:
         after it takes twice as long.
         """
         fits = [s for s in took if s.split()[-1] not in PREPARING]
-        known = took if self.same_case or not sum(self.last[s] for s in fits) > PACED_S else fits
-        usual = sum(self.last[s] for s in known)
+        guides = took if self.same_case or not sum(self.last[s] for s in fits) > PACED_S else fits
+        usual = sum(self.last[s] for s in guides)
         if not usual > PACED_S:
             return 1.0
-        share = 1.0 if self.same_case or known is fits else min(usual / sum(self.last.values()), 1.0)
-        return float((sum(took[s] for s in known) / usual) ** share)
+        share = 1.0 if self.same_case or guides is fits else min(usual / sum(self.last.values()), 1.0)
+        return float((sum(took[s] for s in guides) / usual) ** share)
 
     def _done(self, here: float) -> float:
         """Part of the stage, as it grows between two counts: as if the next piece took as long as those before it."""

@@ -13,13 +13,16 @@ from logger_formats import signals
 from geom.description.roles import Role
 from geom.errors import InputError
 from measured.importing.aligned import Recording, longest_part
+from measured.importing.cells import split_unit
 from measured.importing.clock import Clock, clock_of, in_time_order
+from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
+from measured.importing.target import Target
 from measured.importing.words import roles_of
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
-from thermoscope.commands.test.new import Wishes, places
+from thermoscope.commands.test.new import Wishes, first_model, places
 from thermoscope.commands.test.new import new_case as new
 from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
@@ -305,6 +308,42 @@ def test_rows_out_of_order_are_sorted_where_that_makes_an_even_clock(tmp_path):
 def test_outside_is_the_air_only_where_no_part_is_named():
     assert roles_of("Ext T winding")[0] is Role.WINDING
     assert roles_of("T ext")[0] is Role.AMBIENT
+
+
+@pytest.mark.parametrize(
+    ("header", "encoding"), [("권선온도(℃),주위온도(℃),전류(A)", "utf-8"), ("Обмотка °C,Воздух °C,Ток [A]", "cp1251")]
+)
+def test_words_of_any_script_are_words(tmp_path, header, encoding):
+    """Two headers without a letter that is known would be one place."""
+    rows = [f"2026-03-28 12:{k // 60:02d}:{k % 60:02d},{20 + k},21,5" for k in range(90)]
+    (tmp_path / "a.csv").write_text("\n".join([f"time,{header}", *rows]) + "\n", encoding)
+    source = read_source(tmp_path / "a.csv")
+    found = {
+        g.place or g.feeds for g in guesses(source, ("time",), first_model([(source, clock_of(source))], {}).target)
+    }
+    assert {"ambient", "current_A"} < found
+    assert len(found) == 3
+
+
+def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
+    """Nor is a unit with a number in it left to guesses."""
+    written(tmp_path, table("t [s],T_winding,T_housing", S["t"], 10 * S["W"], 10 * S["W"] + 1))
+    assert (
+        capsys.readouterr().out.replace("\n", " ").startswith("'T_winding' starts at 240 degC: is it in other units?")
+    )
+    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [°C]", S["t"], S["W"], S["W"]))
+    source = read_source(tmp_path / "b.csv")
+    assert "'0.1°C'" in guesses(source, ("t [s]",), Target())[0].doubt
+
+
+def test_the_air_that_comes_out_is_not_the_room(tmp_path):
+    text = table("t [s],T_winding,Outlet air [°C],Inlet air [°C]", S["t"], S["W"], S["W"], ROOM)
+    written(tmp_path, text)
+    assert '"Outlet air [°C]" is left out' in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_a_number_in_brackets_is_no_unit_but_at_the_end():
+    assert split_unit("Y[1] Frame") == ("Y[1] Frame", "")
 
 
 def test_channels_are_called_what_their_settings_call_them(tmp_path):

@@ -67,6 +67,8 @@ def test_time_left_follows_the_pace_of_this_run():
     """The last time 10 s in all; this run took twice as long for the first half: what is left takes twice as long."""
     clock = Clock()
     stages = ProgressBar({"reading": 5.0, "fitting": 5.0}, clock)
+    clock.now = 1e6
+    assert stages.left() is None, "a bar is drawn before its first stage"
     worked(stages, clock, [("reading", 10.0), ("fitting", 0.0)])
     assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
 

@@ -4,8 +4,10 @@ import tracemalloc
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
+from scipy.io import savemat
 
 from extras.monitor.fleet import Statistics, UnitHistory, population
 from extras.monitor.rows.fleet import Reader, Recording
@@ -141,3 +143,22 @@ def test_wrong_fleets_are_one_message(thermoscope, made, tmp_path, names, messag
     done = thermoscope("use", "fleet", case, *names, cwd=tmp_path)
     assert (done.code, done.err.count("error:")) == (2, 1)
     assert message in done.err
+
+
+@pytest.mark.parametrize("ending", ["xlsx", "parquet", "csv.gz", "mat", "log"])
+def test_a_motor_in_any_format_is_the_same_motor(made, tmp_path, ending):
+    case, fleet = made
+    rows, file = (fleet / "motor-001@2025-01.csv").read_text().splitlines()[:400], tmp_path / f"a.{ending}"
+    (tmp_path / "a.csv").write_text("\n".join(rows))
+    table = pd.read_csv(tmp_path / "a.csv")
+    if ending == "xlsx":
+        table.to_excel(file, index=False)
+    elif ending == "parquet":
+        table.to_parquet(file)
+    elif ending == "mat":
+        savemat(file, {"run": {name: table[name].to_numpy() for name in table}})
+    else:
+        table.to_csv(file, index=False)
+    found, plain = (reader_of(case).statistics(Recording(f, "m", 0.0)) for f in (file, tmp_path / "a.csv"))
+    assert found.samples == plain.samples > 30
+    assert_allclose(found.H, plain.H, rtol=1e-6)
