@@ -29,7 +29,7 @@ from validation.effects.during import During, gated
 from validation.effects.time_window import Event, Span, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
-from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
+from validation.inference.hypotheses import REPEATS, REPORTED, Weighed, probabilities, stretch_count
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
 
 Array = NDArray[np.float64]
@@ -39,9 +39,8 @@ GRID_POINTS = 15  # instants around each end
 COARSEST = (
     4.0  # samples between instants that tell one stretch from another; what carries weight is timed to the sample
 )
-MOVED = ((1, 0), (0, 1), (1, 1))  # begin, end, both
-REPEATS = 20  # of one event
-TRIED = 3  # places where one more may be, of which none is: then there is no other
+DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
+PLACES = 3  # places where one more may be, of which none is: then there is no other
 MOVES = 3  # of the ends and refitting with them: by then they stand within a sample
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
 
@@ -268,9 +267,9 @@ def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) 
     Where the scan of a long record sees too little of a short one, a refit says how large it must be. Tangents say
     where one may be, a run whether it is.
     """
-    usual, paid, found = float(np.median([b - a for a, b in event.every])), 0.0, True
-    while found and len(event.every) < REPEATS:
-        found = False
+    usual, paid, one_more = float(np.median([b - a for a, b in event.every])), 0.0, True
+    while one_more and len(event.every) < REPEATS:
+        one_more = False
         for gain, test, span in likely_repeats(evidence, fit, effect, event, usual):
             price = float(np.log(stretch_count(test.time.size, usual / sample_step(test))))
             if gain <= price:
@@ -285,7 +284,7 @@ def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) 
                 )
                 for spans in (before, [*before, span])
             )
-            if found := was - now > price and all(span[1] <= a or b <= span[0] for a, b in before):
+            if one_more := was - now > price and all(span[1] <= a or b <= span[0] for a, b in before):
                 event, paid = Event.of({**event.spans, test.name: [*before, span]}), paid + price
                 break
     return event, paid
@@ -313,7 +312,7 @@ def likely_repeats(
             z = np.sign(fit.values[effect.name]) * np.where(score.visible, score.u, 0.0)
             gain = 0.5 * np.maximum(z, 0.0) ** 2 / np.maximum(np.diag(score.V), 1e-300)
             out += [(float(g), test, s) for g, s in zip(gain, spans, strict=True)]
-    return sorted(out, key=lambda x: -x[0])[:TRIED]
+    return sorted(out, key=lambda x: -x[0])[:PLACES]
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:
@@ -340,21 +339,21 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
     best, others = spans[i], [*spans[:i], *spans[i + 1 :]]
     while reach_s >= 0.5 * sample_step(test):
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, known = Misfit.create(closer, near, effect.name), dict[Span, float]()
+        misfit, results = Misfit.create(closer, near, effect.name), dict[Span, float]()
 
-        def tried(span: Span, known: dict[Span, float] = known, misfit: Misfit = misfit) -> float:
-            if span not in known:
+        def misfit_of(span: Span, results: dict[Span, float] = results, misfit: Misfit = misfit) -> float:
+            if span not in results:
                 now = Event.of({test.name: [*others, span]}).name
-                known[span] = (
+                results[span] = (
                     misfit.of(with_condition(fit.network, effect.condition, now)) if span[0] < span[1] else np.inf
                 )
-            return known[span]
+            return results[span]
 
-        for moves in MOVED * 2:
+        for moves in DIRECTIONS * 2:
             steps = instants_around(test, best[0], reach_s) - best[0], instants_around(test, best[1], reach_s) - best[1]
             first, last = float(test.time[0]), float(test.time[-1])
             new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in steps[moves[0] == 0]]
-            best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=tried)
+            best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=misfit_of)
         reach_s = next_reach(reach_s)
     return best
 
@@ -362,12 +361,12 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 def with_condition(network: Network, old: str, new: str) -> Network:
     """The network with what held while one condition holds while another does in its place."""
 
-    def moved(x: Any) -> Any:
+    def instead(x: Any) -> Any:
         if not gated(x.law) or x.law.shape.name != old:
             return x
         return replace(x, law=replace(x.law, shape=replace(x.law.shape, name=new)))
 
-    return replace(network, links=tuple(map(moved, network.links)), sources=tuple(map(moved, network.sources)))
+    return replace(network, links=tuple(map(instead, network.links)), sources=tuple(map(instead, network.sources)))
 
 
 @dataclass(frozen=True)

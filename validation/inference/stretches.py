@@ -21,9 +21,8 @@ from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import nodes
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
-from validation.inference.events import REPEATS
 from validation.inference.evidence import Evidence
-from validation.inference.hypotheses import stretch_count
+from validation.inference.hypotheses import REPEATS, stretch_count
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, average_size, fit_score
 
