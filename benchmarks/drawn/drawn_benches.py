@@ -14,7 +14,7 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -63,12 +63,13 @@ def recorded(
     step: float,
     more: Callable[[str], Inputs],
     length: float = 5400.0,
+    loads: Sequence[float] = (0.0, 0.3, 0.6, 1.0),
 ) -> Case:
     """One test for each letter, by default an hour and a half each, with a load that is switched; read with noise."""
     tests, rows = [], [truth.places[p].mean for p in ("core", "shell")]
     for name in names:
         t = np.arange(0.0, length, step)
-        u = {"load": rng.choice([0.0, 0.3, 0.6, 1.0], 10)[(10.0 * t / length).astype(int)], **more(name)}
+        u = {"load": rng.choice(loads, 10)[(10.0 * t / length).astype(int)], **more(name)}
         around = {"ambient": np.full_like(t, rng.uniform(18, 26))}
         start = float(around["ambient"][0])
         test = Test(name, "calibrate", t, u, around, (), start)
@@ -129,22 +130,22 @@ def lid(rng: np.random.Generator) -> str:
 
 
 def incubator(rng: np.random.Generator) -> str:
-    """In a day of a sample every ten seconds a lid was opened three to seven times, for one to three minutes."""
+    """In a day of a sample every ten seconds a lid was opened three to seven times, for one to three minutes; there is
+    always something to cool."""
     count = int(rng.integers(3, 8))
-    begins = 60.0 * np.sort(rng.choice(np.arange(1, 14), count, replace=False)) * 100.0
-    begins += 10.0 * rng.integers(0, 300, count)
+    begins = 6000.0 * np.sort(rng.choice(np.arange(1, 14), count, replace=False)) + 10.0 * rng.integers(0, 300, count)
     ends = begins + 10.0 * rng.integers(6, 19, count)
     truth = network(rng, switched(rng.uniform(5.0, 20.0)))
     t = np.arange(0.0, DAY, 10.0)
     opened = np.sum([(t >= a) & (t < b) for a, b in zip(begins, ends, strict=True)], axis=0, dtype=float)
-    case = without_cause(recorded(rng, truth, "a", 10.0, lambda name: {"open": opened}, DAY))
+    case = without_cause(recorded(rng, truth, "a", 10.0, lambda name: {"open": opened}, DAY, (0.3, 0.6, 1.0)))
     said = diagnose(case, plan=False)
     for one in accepted(case, said):
         spans = np.array(one.event.spans.get("a", ()) if one.event else ())
         if spans.shape == (count, 2) and np.abs(spans - np.column_stack([begins, ends])).max() <= CLOSE * 10.0:
             return "right"
     when = ", ".join(f"{a:.0f}-{b:.0f}" for a, b in zip(begins, ends, strict=True))
-    return f"open {when} s; {said.verdict}: {said.words} | {said.groups}"
+    return f"open {when} s; {said.verdict}: {said.words}"
 
 
 def probe(rng: np.random.Generator) -> str:

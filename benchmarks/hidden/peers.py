@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from measured.case import Case
 from validation.comparison.linearisation import Segment
 from validation.inference.evidence import Evidence, calibrated_case, candidates, scored
-from validation.inference.refit import refit, starts
+from validation.inference.hypotheses import Weighed
+from validation.inference.refit import laplace
 
 Array = NDArray[np.float64]
 SIGMA_K, LRT, AIC = 0.5, 3.84, 2.0
@@ -83,8 +84,8 @@ def deviance_drops(evidence: Evidence, w: White) -> Array:
 def aic(evidence: Evidence, w: White, drop: Array) -> tuple[str, bool]:
     """The best of five refits under white noise."""
     plain = replace(evidence, fit=replace(evidence.fit, noise=WhiteNoise(w.channels), error=None))
-    none = refit(plain, [], plain.fit.theta)
-    fits = {k: refit(plain, [int(k)], starts(plain, [int(k)])[0]) for k in np.argsort(-drop)[:5]}
+    none = laplace(plain, Weighed()).fit
+    fits = {k: laplace(plain, Weighed((int(k),))).fit for k in np.argsort(-drop)[:5]}
     best = min(fits, key=lambda k: fits[k].objective)
     return evidence.names[int(best)], bool(2.0 * (none.objective - fits[best].objective) > AIC)
 

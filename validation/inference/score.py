@@ -74,16 +74,16 @@ def gram(
     noise: Noise,
     p: int,
     error: ModelError | None = None,
-    known: Sequence[Whitened] | None = None,
+    alone: Sequence[Whitened] | None = None,
 ) -> dict[str, Gram]:
     """One Gram matrix per test.
 
     Parameters: `parts` segments whose J has p nuisance columns, then the effects' (K per unit); `error` the model
-    error, whose d columns count as further nuisances; `known` the segments without effects, where that was worked out.
+    error, whose d columns count as further nuisances; `alone` the segments without effects, where that was worked out.
     Returns: test -> Gram of p + d nuisances.
     """
     q, out = p + (error.size if error else 0), dict[str, Array]()
-    for s, (at, X, XX) in zip(parts, known or [Whitened.of(s, noise, p, error) for s in parts], strict=True):
+    for s, (at, X, XX) in zip(parts, alone or [Whitened.of(s, noise, p, error) for s in parts], strict=True):
         size = q + s.J.shape[1] - p + 1
         G = out.setdefault(s.test, np.zeros((size, size)))
         G[np.ix_(at, at)] += XX

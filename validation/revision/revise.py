@@ -244,11 +244,11 @@ def _effect_checks(
     """Does the model with the effects predict what was left out better than the one before, fitted to the same?"""
     telling = telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
-    bare, values, known = _fit_before(case)
-    if (at := (middle, *telling)) not in known:
-        known[at] = [fold_prediction(bare, fold, values) for fold in folds(tests, telling, middle)]
+    bare, values, predictions = _fit_before(case)
+    if (at := (middle, *telling)) not in predictions:
+        predictions[at] = [fold_prediction(bare, fold, values) for fold in folds(tests, telling, middle)]
     after = [fold_prediction(fit, x, parameter_values(fit.network, new.values)) for x in folds(tests, telling, middle)]
-    checks = prediction_checks(known[at], after, telling)
+    checks = prediction_checks(predictions[at], after, telling)
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
 
 

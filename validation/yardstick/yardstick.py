@@ -61,7 +61,7 @@ R = TypeVar("R")
 
 
 @once
-def _known(network: Network) -> dict[tuple[Any, ...], tuple[Any, Any]]:
+def _memory(network: Network) -> dict[tuple[Any, ...], tuple[Any, Any]]:
     """What was learnt from tests of a network, with these tests."""
     return {}
 
@@ -71,10 +71,10 @@ def once_for_tests(work: Callable[[Case], R]) -> Callable[[Case], R]:
 
     @wraps(work)
     def remembered(case: Case) -> R:
-        known, key = _known(case.model.network), (work, *map(id, case.tests))
-        if key not in known:
-            known[key] = case.tests, work(case)
-        return known[key][1]  # type: ignore[no-any-return]
+        memory, key = _memory(case.model.network), (work, *map(id, case.tests))
+        if key not in memory:
+            memory[key] = case.tests, work(case)
+        return memory[key][1]  # type: ignore[no-any-return]
 
     return remembered
 

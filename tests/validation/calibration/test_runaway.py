@@ -42,7 +42,7 @@ def test_a_hypothesis_that_runs_away_everywhere_is_as_good_as_excluded(monkeypat
     def wild(*_, **__):
         raise NoSolution("thermal runaway")
 
-    monkeypatch.setattr(refit, "refit", wild)
+    monkeypatch.setattr(refit, "first_refit", wild)
     monkeypatch.setattr(refit, "starts", lambda *_: [np.zeros(1)])
     h = refit.laplace(None, Weighed((0,), "", -1.0, 5.0))
     assert h.fit is None
