@@ -260,7 +260,7 @@ from thermoscope.case_folder.runs import (
     before_last as before_last,
     by_interest as by_interest,
     comparison_of as comparison_of,
-    found_words as found_words,
+    finding_words as finding_words,
     mean_rows as mean_rows,
     named_rows as named_rows,
     sensors as sensors,

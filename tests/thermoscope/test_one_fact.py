@@ -71,9 +71,9 @@ def test_what_was_found_is_one_sentence(told):
     assert pair in found
     assert f'<span class="good">{found}</span>' in told["page"], "green, and the same words"
     assert flat(told["add"]).startswith(found)
-    assert runs.found_words(told["right"], appearance_of(told["right"]).errors) == found
+    assert runs.finding_words(told["right"], appearance_of(told["right"]).errors) == found
     undone = replace(told["right"], history=told["right"].history.back_to(1))
-    assert runs.found_words(undone, told["compare"]) == ""
+    assert runs.finding_words(undone, told["compare"]) == ""
     worst = max((c["rmse_K"], c["channel"], c["limit_K"]) for t in told["compare"]["tests"] for c in t["channels"])
     assert f"at most {worst[0]:.1f} K, {short(worst[1])} in" in found
     assert f"(limit {worst[2]:.1f})" in found
