@@ -18,7 +18,7 @@ from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
-from geom.table import Table as Table, cell as cell, percent as percent
+from geom.table import Table as Table, TableResult as TableResult, cell as cell, percent as percent
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
 from geom.text import visible as visible
 from fem.solvers.snapshots import Recipe as Recipe
