@@ -197,8 +197,11 @@ def _outcome_words(document: Mapping[str, Any]) -> list[str]:
     """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
     if document["accepted"] and document["found"]:
         return [document["found"], document["strained"]]
-    name, judged = f"{document['action']} {document['effect'] or ''}".strip(), "" if document["accepted"] else "not "
-    return [document["strained"], f"{name}: {judged}accepted; {document['why']}."]
+    action, effect = document["action"], document["effect"]
+    verb = {"calibrate": "Calibrated", "remove": f"{effect} taken out"}.get(action, f"{effect} added")
+    if not document["accepted"] and not document["written"]:
+        verb = f"Not accepted: {action} {effect or ''}".rstrip()
+    return [document["strained"], f"{verb}: {document['why']}."]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
