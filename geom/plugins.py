@@ -10,7 +10,7 @@ from typing import Any
 
 
 def plugins(group: str) -> dict[str, Any]:
-    """Name -> object.  group : effects, families, formats, quantities, still_air, moving_air or pictures
+    """Name -> object.  group : effects, families, formats, quantities, still_air, moving_air, pictures or names
 
     Every installed package is read for it (tens of milliseconds), so once for each search path. The folder in which
     a command runs is left out of the search: cases lie there, and a case is data.

@@ -69,7 +69,14 @@ register_rooms()
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
-        raise AttributeError(f"module 'thermoscope' has no attribute '{name}'; known: {', '.join(__all__)}")
+        from geom.plugins import plugins
+
+        offered = plugins("names")  # of extras, such as `compare_designs`
+        if name in offered:
+            return offered[name]
+        raise AttributeError(
+            f"module 'thermoscope' has no attribute '{name}'; known: {', '.join([*__all__, *offered])}"
+        )
     from geom.lazy import typed_homes
 
     return getattr(import_module(typed_homes(__file__)[name][0]), name)

@@ -18,7 +18,7 @@ from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
-from geom.table import Table as Table, cell as cell, percent as percent
+from geom.table import Table as Table, TableResult as TableResult, cell as cell, percent as percent
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
 from geom.text import visible as visible
 from fem.solvers.snapshots import Recipe as Recipe
@@ -260,7 +260,7 @@ from thermoscope.case_folder.runs import (
     before_last as before_last,
     by_interest as by_interest,
     comparison_of as comparison_of,
-    found_words as found_words,
+    finding_words as finding_words,
     mean_rows as mean_rows,
     named_rows as named_rows,
     sensors as sensors,

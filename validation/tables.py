@@ -107,7 +107,7 @@ def candidates_table(candidates: Iterable[Document]) -> Table:
     """Size with interval and detection limit, and what each buys."""
     columns = (
         "effect | *odds=probability | *size (95 %)=size | *detectable=smallest_detectable | *unit | "
-        "*error refitted=refitted | held out=held_out | evidence (nats)=score | threshold | decision"
+        "*error refitted=refitted | held out=held_out | log odds=score | threshold | decision"
     )
     return Table.of(
         "Candidates",
@@ -182,9 +182,9 @@ def doubts_table(doubts: Iterable[Document]) -> Table:
 def bases_table(hypotheses: Iterable[Document]) -> Table:
     """Each base with its deviance over the best, all tests calibrated together for each."""
     return Table.of(
-        "Which base: deviance over the best of each test",
+        "Which base: misfit over the best of each test (twice the log odds)",
         hypotheses,
-        "test | *base | *said | *deviance | *verdict | conduction (W)=heat_W.conduction | "
+        "test | *base | *said | *misfit=deviance | *verdict | conduction (W)=heat_W.conduction | "
         "convection (W)=heat_W.convection | radiation (W)=heat_W.radiation | W/K=heat_W.path_W_K | "
         "body W/K=heat_W.body_W_K",
         ["excluded"],

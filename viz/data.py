@@ -134,12 +134,6 @@ class Comparison:
     def rmse(self, channel: Channel) -> float:
         return float(np.sqrt(np.nanmean(self.residual(channel) ** 2)))
 
-    def _repr_html_(self) -> str:
-        from viz.figures.curves import measured_and_model
-        from viz.pages.html import plot
-
-        return plot(measured_and_model(self), f"held-{self.test.name}", f"{self.test.name} ({self.test.role})")
-
 
 def short(channel: str) -> str:
     """A column's name without what the axis says already: 'T_flange_right_degC' -> 'flange right'."""

@@ -69,7 +69,7 @@ def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
 
 def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[Revision, Mapping[str, Any], Appearance]:
     """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
-    from thermoscope.plugin import evidence, found_words, recorded, revise
+    from thermoscope.plugin import evidence, finding_words, recorded, revise
 
     if action == "calibrate":
         result = revise.calibrate(folder.case, progress=tell)
@@ -78,7 +78,7 @@ def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[R
     revision = recorded(result, evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
     look = appearance(after, tell)
-    return revision, {**result.document(), "found": found_words(after, look.errors) if action == "add" else ""}, look
+    return revision, {**result.document(), "found": finding_words(after, look.errors) if action == "add" else ""}, look
 
 
 def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:

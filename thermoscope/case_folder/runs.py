@@ -216,7 +216,7 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
     ]
 
 
-def found_words(folder: Folder, errors: Mapping[str, Any]) -> str:
+def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     """In one sentence what was found and is in the model, what it did to the error, and the largest that it leaves.
 
     The error before is that of the calibrated model without it on the same tests: the held-out ones, else all.
@@ -235,16 +235,16 @@ def found_words(folder: Folder, errors: Mapping[str, Any]) -> str:
         return ""
     before = {t: pair[0] for t, pair in min((added[n] for n in names), key=lambda r: r.number).rmse_K.items()}
     tests = [t for t in errors["tests"] if t["name"] in before]
-    held_out = [t for t in tests if t["role"] == "hold-out"]
-    n = [sum(c["n"] for c in t["channels"]) for t in held_out or tests]
-    pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in held_out or tests])
+    unseen = [t for t in tests if t["role"] == "hold-out"]
+    n = [sum(c["n"] for c in t["channels"]) for t in unseen or tests]
+    pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in unseen or tests])
     was, now = np.sqrt(np.average(pairs**2, axis=0, weights=n))
     words = " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
-    done, on = "Found" if now < was else "Added", "Held out" if held_out else "Error"
+    verb, on = "Found" if now < was else "Added", "Held out" if unseen else "Error"
     left = f"at most {error:.1f} K, {short(name)} in {test} (limit {limit:.1f})"
-    return f"{done}: {words}. {on} {was:.2f} -> {now:.2f} K. Left: {left}."
+    return f"{verb}: {words}. {on} {was:.2f} -> {now:.2f} K. Left: {left}."
 
 
 def parameters(folder: Folder) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from geom.constants import NORMAL_95
+from geom.table import percent
 from measured.case import Case, Test
 from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
@@ -259,7 +260,7 @@ def worst_record(e: Evidence, fit: Fit, standard: Standard) -> str:
     rival = deviances(e, fit)
     worse = {key: 0.5 * (rival[key] - standard.lead[key]) for key in rival}
     (test, channel), nats = max(worse.items(), key=lambda x: x[1])
-    return f"fits {channel} in {test} worse by {nats:.1f} nats" if nats > 1.0 else ""
+    return f"fits {channel} in {test} worse (log odds -{nats:.1f})" if nats > 1.0 else ""
 
 
 def hold_out_residuals(tests: Sequence[Test], fit: Fit) -> tuple[Segment, ...]:
@@ -452,8 +453,3 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
     claimed = "" if choice.verdict in ("adequate", "outside") else how
     return f"; {claimed}every second sample alone leads to {d.verdict} ({other})"
-
-
-def percent(p: float) -> str:
-    """A probability in per cent, never rounded to certainty."""
-    return f"{100 * min(p, 0.999):.0f} %" if p < 0.995 else "> 99 %"

@@ -183,7 +183,7 @@ def prediction_checks(
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
-    better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, {sum(nats):+.3g} nats in all"
+    better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"

@@ -70,7 +70,8 @@ def missing_heat(
     """
     best = max(where, key=lambda w: w["evidence_nats"])
     tests = list(best["heat"].items())
-    words = f"{best['place']}: {best['evidence_nats']:.0f} nats", "time (min)", "missing heat (W)"
+    title = f"{best['place']}: log odds {best['evidence_nats']:.0f} (3 is twenty to one)"
+    words = title, "time (min)", "missing heat (W)"
     figure, axes = paper.panels(len(tests), 3, (3.2, 2.1), *words, more=0.5)
     for ax, (name, series) in zip(axes, tests, strict=False):
         t, q, sd = (np.asarray(series[key], float) for key in ("time_s", "heat_W", "sd_W"))

@@ -36,7 +36,7 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
     for label, c in zip(ax.get_yticklabels(), best, strict=True):
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")
     ax.margins(x=0.2, y=0.02)
-    ax.set(xlabel="log evidence against nothing missing (nats); black mark: as probable as nothing")
+    ax.set(xlabel="log odds against nothing missing (3 is twenty to one); black mark: as probable as nothing")
     return paper.save(figure, png)
 
 

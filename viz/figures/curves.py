@@ -42,8 +42,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
     for ax, (name, values) in zip(axes[above:], inputs, strict=False):
         ax.fill_between(t[thin], 0.0, values[thin], color=LIGHT.faint, alpha=0.35, lw=0)
         ax.plot(t[thin], values[thin], color=LIGHT.ink, lw=0.9)
-        stem, _, unit = name.rpartition("_")
-        ax.set_title(f"{stem.replace('_', ' ')} ({unit.replace('mps', 'm/s')})" if stem else unit)
+        ax.set_title(short(name))
         ax.margins(x=0)
     names = comparison.temperatures(channels[0])
     for i, curve in enumerate(sorted(names, key=lambda c: c.dashed)):  # once, top left, in the colour of their lines

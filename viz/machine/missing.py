@@ -81,9 +81,9 @@ def missing_in_machine(
     scene.colour_bar(p, "W", theme)
     unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)
-    scene.footnote(p, "at each place by itself; nats: evidence for it", theme)
+    scene.footnote(p, "at each place by itself, with its log odds (3 is twenty to one)", theme)
     nats = {w["place"]: w["evidence_nats"] for w in where}
-    words = {n: f"{n}  {signed(q, 0)} W, {nats[n]:.0f} nats" for n, q in heat.items() if abs(q) > FAINT * top}
+    words = {n: f"{n}  {signed(q, 0)} W, {nats[n]:.0f}" for n, q in heat.items() if abs(q) > FAINT * top}
     wide = width(max(words.values(), key=len), SMALL)
     room = Room(0.02 + wide, 0.12 + wide, TITLE, NOTE)
     scene.look(p, surface.framed, view, room)

@@ -38,7 +38,7 @@ class Report:
     pictures : caption -> PNG (path or bytes)
     error_budget : test -> places, as in `compare`
     viewer : the page of viz.viewer as text, to turn and play the machine in
-    found : what was added to the model and what it did, in a sentence, as `model add` prints it
+    finding : what was added to the model and what it did, in a sentence, as `model add` prints it
     assumptions : one sentence each;  commands : what repeats the result;  made : date, versions, computer
     """
 
@@ -56,7 +56,7 @@ class Report:
     earlier: bool = False
     error_budget: Mapping[str, Sequence[Document]] = field(default_factory=dict)
     viewer: str = ""
-    found: str = ""
+    finding: str = ""
 
     def _repr_html_(self) -> str:
         """The whole page, in a frame of its own so that its style stays there."""
@@ -79,8 +79,8 @@ def render(report: Report) -> str:
 def _top(r: Report) -> str:
     diagnosis = None if r.earlier else r.diagnosis
     tone, sentence = words.verdict(diagnosis, r.comparison)
-    if r.found and diagnosis is None:
-        tone, sentence = "good" if r.found.startswith("Found") else "info", r.found.replace("->", "→")
+    if r.finding and diagnosis is None:
+        tone, sentence = "good" if r.finding.startswith("Found") else "info", r.finding.replace("->", "→")
     head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
     return head + html.text(words.detail(diagnosis), r.description) + _cards(r)
@@ -143,9 +143,9 @@ def _missing(r: Report) -> str:
         return ""
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
-    said = candidates.posterior(d["explanations"]) if d.get("explanations") else None
+    bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     parts = [
-        html.plot(said, "odds", "Each leading cause and its odds; pale: with something else.") if said else "",
+        html.plot(bars, "odds", "Each leading cause and its odds; pale: with something else.") if bars else "",
         html.table(tables.candidates_table(by_score[:12])),
         html.more("Evidence of each by itself", evidence),
         html.headed(tables.events_table(d.get("events", []))),
@@ -191,8 +191,8 @@ def _values(r: Report) -> str:
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
     left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
     rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
-    drawn = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
-    sizes = html.plot(intervals(drawn), "sizes", "Values on the scale of what was expected of them.") if drawn else ""
+    priors = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
+    sizes = html.plot(intervals(priors), "sizes", "Values on the scale of what was expected of them.") if priors else ""
     return html.section("Calibrated values", sizes, html.table(tables.parameters_table("", fixed)), rest)
 
 
@@ -200,14 +200,14 @@ def _sensors(r: Report) -> str:
     if r.comparison is None:
         return ""
     rule = f"<p>Error is measured − model; {RULE}.</p>"
-    shown = {c.test.name: c for c in r.curves}
-    return html.section("Every sensor", rule, *(_sensors_of(t, shown.get(t["name"])) for t in r.comparison["tests"]))
+    of_test = {c.test.name: c for c in r.curves}
+    return html.section("Every sensor", rule, *(_sensors_of(t, of_test.get(t["name"])) for t in r.comparison["tests"]))
 
 
-def _sensors_of(test: Document, shown: Comparison | None) -> str:
-    """A row per sensor; what is over in the colour of its dot.  shown : the test's curves, where they are drawn"""
+def _sensors_of(test: Document, curves_of: Comparison | None) -> str:
+    """A row per sensor; what is over in the colour of its dot.  curves_of : the test's curves, where they are priors"""
     name = f"{test['name']} ({test['role']}), rms {test['rmse_K']:.2f} K"
-    side = {c.name: f"over ({shown.sensor(c).verdict})" for c in shown.channels} if shown else {}
+    side = {c.name: f"over ({curves_of.sensor(c).verdict})" for c in curves_of.channels} if curves_of else {}
     rows = [{**c, "verdict": side.get(c["channel"], "over")} if c["verdict"] == "over" else c for c in test["channels"]]
     table = replace(tables.sensors_table("", [{**test, "channels": rows}]), marked=["over", *side.values()])
     return html.more(name, html.table(table), expanded=test["role"] == "hold-out")

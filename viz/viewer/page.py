@@ -223,7 +223,7 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
     models = [comparison.model, *last, *(e.readings for e in test.earlier)]
     places = [[float(x) for x in positions[c.name]] if c.name in positions else None for c in comparison.channels]
     pairs = zip(comparison.channels, places, strict=True)
-    held = [replace(comparison, model=of, before=None) for of in models]
+    comparisons = [replace(comparison, model=of, before=None) for of in models]
     return {
         "sensors": [
             {"channel": c.name, "name": short(c.name), "xyz": xyz, "limit": comparison.limits.get(c.name)}
@@ -231,8 +231,8 @@ def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[s
         ],
         "measured": _columns([c.y for c in comparison.channels], at),
         "models": [_columns([of[c.name] for c in comparison.channels], at) for of in models],
-        "rmse": [[one.rmse(c) for c in comparison.channels] for one in held],
-        "late": [[late_mean(one.residual(c)) for c in comparison.channels] for one in held],
+        "rmse": [[one.rmse(c) for c in comparison.channels] for one in comparisons],
+        "late": [[late_mean(one.residual(c)) for c in comparison.channels] for one in comparisons],
     }
 
 

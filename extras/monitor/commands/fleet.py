@@ -26,6 +26,9 @@ from thermoscope.plugin import (
     suggestion,
 )
 
+WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
+FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left
+
 
 @one_blas_thread
 def fleet_document(
@@ -106,6 +109,20 @@ def _factor(mean: float, sd: float) -> list[float]:
     return [float(np.exp(mean - NORMAL_95 * sd)), float(np.exp(mean + NORMAL_95 * sd))]
 
 
+def unequal_words(document: Mapping[str, Any]) -> str:
+    """A warning where the recordings are hardly of equal motors; "" where nothing speaks against it."""
+    usual = float(np.median([u["rmse_K"] for u in document["units"]]))
+    other = [u["unit"] for u in document["units"] if u["rmse_K"] > FAR * max(usual, LEAST_K)]
+    wide = [p for p in document["parameters"] if p["differs"] and p["spread_percent"] > WIDE]
+    why = [f"{p['name']} differs by {p['spread_percent']:.0f} %" for p in wide[:2]]
+    why += (
+        [f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one"]
+        if other
+        else []
+    )
+    return f"Are these equal motors? {'; '.join(why)}. Give each type a folder of its own." if why else ""
+
+
 def fleet_summary(document: Mapping[str, Any]) -> Summary:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
@@ -133,4 +150,4 @@ def fleet_summary(document: Mapping[str, Any]) -> Summary:
             keep=["mean", "spread (%)", "differs", "drift (%/year)"],
         ),
     ]
-    return Summary(sentence, [p for p in parts if p.rows], "--json FILE")
+    return Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")

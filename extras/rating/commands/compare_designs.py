@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,9 @@ from thermoscope.plugin import (
     Progress,
     Summary,
     Table,
+    TableResult,
     bands_requested,
+    cell,
     families,
     named_rows,
     posterior_of,
@@ -67,8 +70,34 @@ def compared_designs(
         return {
             "designs": [_described(one, limits, sure, tell) for one in designs],
             "dimensions": dimensions([one.machine for one in designs]),
-            "boundaries": dict(designs[0].it.op.boundaries),
+            "boundaries": {n: T for one in reversed(designs) for n, T in one.it.op.boundaries.items()},
         }
+
+
+class Designs(TableResult):
+    """Designs side by side.  document : as `use compare-designs --json` gives it"""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+
+    def __repr__(self) -> str:
+        summary = designs_summary(self.document)
+        columns, rows = self.tables()[0].columns, self.tables()[0].rows
+        return "\n".join([summary.sentence, *("  ".join(map(cell, row)) for row in (columns, *rows))])
+
+    def tables(self) -> tuple[Table, ...]:
+        """Figures, what differs in the files, and masses."""
+        return tuple(part for part in designs_summary(self.document).parts if isinstance(part, Table))
+
+
+def compare_designs(
+    *machines: str | Path, limits: Mapping[str, float] | None = None, bands: bool = False, **around: float
+) -> Designs:
+    """Two to six machine files, names or cases side by side: dimensions that differ, hottest points, ratings, masses.
+
+    limits : place -> degC, for ratings;  around : boundaries (degC) and inputs of all, such as ambient=40.0
+    """
+    return Designs(compared_designs([str(one) for one in machines], limits or {}, around, bands))
 
 
 def design(folder: Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:
@@ -96,6 +125,7 @@ def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell
         "masses_kg": masses(machine),
         "pump_and_fan_W": auxiliary_power(machine, op.inputs, ambient),
         "inputs": dict(op.inputs),
+        "boundaries": dict(op.boundaries),
         "settles": bool(np.all(T < RUNAWAY_C)),
         "hottest": [
             {"place": n, "degC": float(t)} for n, t in sorted(zip(heated, T, strict=True), key=lambda r: -r[1])
@@ -148,7 +178,7 @@ def designs_summary(document: Mapping[str, Any]) -> Summary:
     materials = [(m, *(d["masses_kg"].get(m) for d in designs)) for m in _materials(designs)]
     differ = [(r["parameter"], *("" if v is None else v for v in r["values"])) for r in document["dimensions"]]
     return Summary(
-        f"{_verdict(designs)} All at {around}.",
+        f"{_verdict(designs)} Assumed of all: {around}.",
         [
             f"At rest under the rated load, {loads}.",
             Table("", ["", *names], figures, keep=names),

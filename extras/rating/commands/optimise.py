@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -17,7 +18,7 @@ from extras.rating.designs import WORDS
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, pareto_set
 from thermoscope import InputError
-from thermoscope.plugin import Summary, Table, csv_lines, file_stem, progress, write_whole
+from thermoscope.plugin import Summary, Table, csv_lines, file_stem, notes, progress, write_whole
 
 
 def optimised(
@@ -29,6 +30,7 @@ def optimised(
     with progress() as tell, dask_cluster(cluster) if cluster else nullcontext() as executor:
         folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
+        notes([effort_words(problem, effort)])
         designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         document = document_of(problem, designs, method, effort)
         if file is not None and any(v.conducts for v in problem.space.variables):
@@ -38,6 +40,18 @@ def optimised(
         tell(f"writing {where}")
         files = _write(where, problem, designs, document, file)
     return {"case": folder.case.name, **document, "files": files}, where
+
+
+def effort_words(problem: Problem, effort: Effort) -> str:
+    """How long the search takes, by one design that is judged now; said before it begins."""
+    usual = {v.name: v.usual for v in problem.space.variables}
+    machine = None if problem.machine_at is None else problem.machine_at(usual)
+    problem.judged(usual, machine)  # the first also compiles
+    begin, count = time.perf_counter(), effort.population * effort.generations
+    problem.judged(usual, machine)
+    minutes = count * (time.perf_counter() - begin) / 60.0
+    more = "; --population and --generations set how many"
+    return f"{count} designs are judged, about {max(minutes, 0.1):.2g} min of a core{more}"
 
 
 def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:

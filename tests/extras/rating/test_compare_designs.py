@@ -1,8 +1,12 @@
 """Designs side by side: what differs in their files, what they weigh, and which is better at the same surroundings."""
 
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
 import pytest
 
-from extras.rating.commands.compare_designs import designs_summary, dimensions, masses
+from extras.rating.commands.compare_designs import Designs, compare_designs, designs_summary, dimensions, masses
 from geom import load_machine, part_table
 
 PLATE, FREE = "pmsm-m1-plate", "pmsm-m1-no-base"
@@ -37,6 +41,19 @@ def test_the_better_one_is_named_first():
     assert designs_summary(document).sentence.startswith("b stays coolest: 120.0 degC")
     document["designs"][0]["settles"] = False
     assert designs_summary(document).sentence.startswith("a does not settle")
+
+
+def test_a_script_gets_the_same_tables():
+    """Also as `ts.compare_designs`, which the extra offers by an entry point."""
+    document = {"dimensions": [], "boundaries": {"ambient": 40.0}}
+    document["designs"] = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
+    designs = Designs(document)
+    assert "Assumed of all: ambient 40 degC." in repr(designs)
+    assert "<table>" in designs._repr_html_()
+    assert list(designs.to_frame().columns) == ["", "a", "b"]
+    offered = tomllib.loads(Path("pyproject.toml").read_text())["project"]["entry-points"]["thermoscope.names"]
+    module, _, name = offered["compare_designs"].removeprefix("thermoscope.").partition(":")
+    assert getattr(import_module(module), name) is compare_designs
 
 
 @pytest.mark.parametrize("names", [[FREE], [FREE] * 7])

@@ -45,13 +45,13 @@ def test_without_a_likely_leader_there_is_no_limit_of_it():
 def test_why_the_rivals_lost():
     """A refitted rival by the sensor it fits worse, the others by their evidence beside the leader's."""
     lead = {**candidate("convection@flange", "W/K"), "note": "", "score": 37.54}
-    close = {**candidate("radiation@flange", "1", 0.2, "no"), "note": "fits T_flange in road worse by 5.1 nats"}
+    close = {**candidate("radiation@flange", "1", 0.2, "no"), "note": "fits T_flange in road worse (log odds -5.1)"}
     close |= {"words": "thermal radiation at flange"}
     far = {**candidate("mass@yoke", "kg", 0.001, "no"), "note": "", "score": -0.16}
     said = _lost([lead, {**close, "score": 20.0}, far], ["convection@flange"])
     assert said == [
-        "Against thermal radiation at flange: it fits T_flange in road worse by 5.1 nats.",
-        "Evidence of it 37.5 nats (3 are odds of twenty to one); of rivals alone: mass@yoke -0.2.",
+        "Against thermal radiation at flange: it fits T_flange in road worse (log odds -5.1).",
+        "Log odds of it 37.5 (3 is twenty to one); of rivals alone: mass@yoke -0.2.",
     ]
     assert _lost([far], []) == []
 

@@ -82,7 +82,7 @@ def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
 
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
-    sentence, case = f"{document['verdict']}: {document['words']}", quote(called)
+    sentence, case = f"{document['words'][0].upper()}{document['words'][1:]}", quote(called)
     sentence = " ".join(filter(None, [document.get("strained", ""), sentence]))
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
@@ -151,7 +151,7 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
     each = ", ".join(f"{words[c['effect']]} {c['score']:.1f}" for c in rivals[:RIVALS])
     lead = next(c["score"] for c in candidates if c["effect"] == effects[0])
-    evidence = f"Evidence of it {lead:.1f} nats (3 are odds of twenty to one); of rivals alone: {each}."
+    evidence = f"Log odds of it {lead:.1f} (3 is twenty to one); of rivals alone: {each}."
     return [*refitted, evidence] if each else refitted
 
 

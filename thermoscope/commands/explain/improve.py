@@ -117,5 +117,10 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
     outcome = destination if document["written"] else "nothing written"
     further = [] if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
+    added = [s["effect"] for s in steps if s["effect"]]
+    if added:  # the user knows the machine: what he doubts is asked again without it
+        more += (
+            f"; not so? thermoscope explain diagnose {quote(called)} --without {quote(added[-1].partition(' + ')[0])}"
+        )
     plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
     return Summary(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, plain, *further], more)

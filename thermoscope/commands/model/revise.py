@@ -16,7 +16,7 @@ from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
-from thermoscope.case_folder.runs import at_revision, by_interest, ends, found_words, mean_rows
+from thermoscope.case_folder.runs import at_revision, by_interest, ends, finding_words, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
@@ -100,18 +100,18 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         checked_columns(folder)
         notes(f"{f.words}; those readings are left out" for f in broken_channels(folder.case.tests))
         result = step(folder, tell)
-    keep, found = result.worth_keeping or anyway, ""
+    keep, finding = result.worth_keeping or anyway, ""
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
         save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
         if result.action == "add":
             after = replace(folder, case=at_revision(folder, longer.last), history=longer)
-            found = found_words(after, result.after.document())
+            finding = finding_words(after, result.after.document())
     places = unmeasured(folder, result)
     nuisance_words = strain_words(replace(folder.case, model=result.model))
     more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}
-    more |= {"found": found}
+    more |= {"found": finding}
     document = {**result.document(), **more}
     give(document, target, lambda: revision_summary(document, folder, case))
     return 0 if result.accepted or anyway else 1
@@ -197,8 +197,11 @@ def _outcome_words(document: Mapping[str, Any]) -> list[str]:
     """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
     if document["accepted"] and document["found"]:
         return [document["found"], document["strained"]]
-    name, judged = f"{document['action']} {document['effect'] or ''}".strip(), "" if document["accepted"] else "not "
-    return [document["strained"], f"{name}: {judged}accepted; {document['why']}."]
+    action, effect = document["action"], document["effect"]
+    verb = {"calibrate": "Calibrated", "remove": f"{effect} taken out"}.get(action, f"{effect} added")
+    if not document["accepted"] and not document["written"]:
+        verb = f"Not accepted: {action} {effect or ''}".rstrip()
+    return [document["strained"], f"{verb}: {document['why']}."]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:

@@ -80,7 +80,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
         earlier,
         documents(folder.budgets),
         viewed,
-        runs.found_words(folder, compared),
+        runs.finding_words(folder, compared),
     )
     return write_report(page, into / "report.html")
 

@@ -156,7 +156,7 @@ def _reasons(document: Mapping[str, Any]) -> list[Table | str]:
     differing = contradiction(document["contradiction"])
     evident = [h for h in document["where"] if h["evidence_nats"] > EVIDENT]
     lines = [
-        f"Heat missing at {h['place']} ({h['evidence_nats']:.0f} nats, 3 are odds of twenty to one): {_pulses(h)}."
+        f"Heat missing at {h['place']} (log odds {h['evidence_nats']:.0f}; 3 is twenty to one): {_pulses(h)}."
         for h in evident[:3]
     ]
     missing = lines or ["No place where heat is clearly missing (beyond what calibration mends)."]
