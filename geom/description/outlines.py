@@ -45,8 +45,8 @@ def read_outlines(names: Mapping[str, str], table: Any, where: str) -> dict[str,
     for name, groups in table.items():
         place = f"{where} [[outlines.{name}]]"
         if name not in names:
-            known = ", ".join(f"{key} ({words})" for key, words in names.items()) or "none: this family draws its own"
-            raise InputError(f"unknown shapes {name!r}", f"{where} [outlines]", f"known: {known}")
+            listed = ", ".join(f"{key} ({words})" for key, words in names.items()) or "none: this family draws its own"
+            raise InputError(f"unknown shapes {name!r}", f"{where} [outlines]", f"known: {listed}")
         if not isinstance(groups, list) or not all(isinstance(group, Mapping) for group in groups):
             raise InputError(f"{name} is not a list of tables", place, "copies = 48, loops_mm = [[[x, y], ...]]")
     return {name: tuple(_group(g, f"{where} [[outlines.{name}]]") for g in table.get(name, ())) for name in names}

@@ -59,19 +59,19 @@ def contacts(draft: Draft, slots_h: float | None = None, source: str = "") -> No
         "housing|stator.core": {"gap_mm": 0.02},
     }
     parts = parts_of(draft)
-    fitting = {pair: value for pair, value in usual.items() if pair == "default" or set(pair.split("|")) <= parts}
-    known = {e.key for e in draft.entries if e.section == "contacts"}
-    draft.assume("contacts", "as usual for this joint", **{k: v for k, v in fitting.items() if k not in known})
+    joints = {pair: value for pair, value in usual.items() if pair == "default" or set(pair.split("|")) <= parts}
+    entered = {e.key for e in draft.entries if e.section == "contacts"}
+    draft.assume("contacts", "as usual for this joint", **{k: v for k, v in joints.items() if k not in entered})
 
 
 def parts_of(draft: Draft) -> set[str]:
     """Names of the solids that the machine file will have, as far as contacts and losses name them."""
-    drawn = {e.section for e in draft.entries}
+    sections = {e.section for e in draft.entries}
     always = {"stator.core", "rotor.core", "shaft", "winding", "winding.left", "winding.right"}
     ends = {f"{part}.{end}" for part in ("bearing", "endcap") for end in ("left", "right")}
     some = {"magnets": "magnets", "bars": "rotor.cage", "coils": "winding.field"}
     housing = {"housing"} if draft.value("geometry.housing", "kind") != "none" else set()
-    return always | ends | housing | {part for name, part in some.items() if f"[outlines.{name}]" in drawn}
+    return always | ends | housing | {part for name, part in some.items() if f"[outlines.{name}]" in sections}
 
 
 def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, iron_kg: float, density: float) -> None:
@@ -96,10 +96,10 @@ def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, ir
     stray = max(round(ROTOR_SHARE * (HYSTERESIS_W_KG + EDDY_W_KG) * iron_kg, 2), 0.01)
     kind = "magnet" if "magnets" in parts else "stray"
     draft.assume("losses.rotor", "a tenth of the iron's", kind=kind, at=rotor, P_W=stray, of={**speed, "exponent": 2})
-    for part in sorted({"rotor.cage", "winding.field"} & parts):
-        share = max(round(0.5 * heat, 2), 0.01)
-        of = {"input": "current_A", "at": round(current, 3), "exponent": 2}
-        draft.assume(f"losses.{part.split('.')[-1]}", "half of the stator's", kind="stray", at=part, P_W=share, of=of)
+    share, of = max(round(0.5 * heat, 2), 0.01), {"input": "current_A", "at": round(current, 3), "exponent": 2}
+    for name, part in (("cage", "rotor.cage"), ("field", "winding.field")):
+        if part in parts:
+            draft.assume(f"losses.{name}", "half of the stator's", kind="stray", at=part, P_W=share, of=of)
     for end in ("left", "right"):
         name = f"losses.bearing-{end}"
         draft.assume(name, "order of magnitude", kind="bearing", at=f"bearing.{end}", P_W=5, of=speed)

@@ -13,7 +13,7 @@ from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
 from geom.importing.draft import Draft, new_draft, number, one_line, read_text
-from geom.importing.plane import Place, Point, Slot, arc, closed, joined, mirrored
+from geom.importing.plane import Place, Point, Slot, arc, loop_through, mirror, unite
 from geom.importing.slots import magnet_of
 
 RIGHT = "a Motor-CAD file: [Header] with Program_Name=Motor-CAD, then sections of key=value"
@@ -45,7 +45,7 @@ LOSSES = {
     "Friction_Loss_[R]_@Ref_Speed": ("Friction_Loss_[R]", "", "bearing", "bearing.right"),
 }
 # What matters where it is not neutral, and goes nowhere here.
-UNUSED = {
+IGNORED = {
     "Sleeve_Thickness": (0.0, "no sleeve here: the air gap is as wide as Airgap"),
     "Banding_Thickness": (0.0, "no banding here: the air gap is as wide as Airgap"),
     "Rotor_Water_Jacket": ("False", "the rotor has no jacket here"),
@@ -90,10 +90,10 @@ class File:
     def count(self, key: str) -> int:
         return round(self.number(key, 1, 400))
 
-    def choice(self, key: str, known: Any) -> str:
+    def choice(self, key: str, words: Any) -> str:
         word = self.values.get(key, "")
-        if word not in known:
-            raise InputError(f"{key} = {word[:40]!r} is not read", self.where(key), f"one of: {', '.join(known)}")
+        if word not in words:
+            raise InputError(f"{key} = {word[:40]!r} is not read", self.where(key), f"one of: {', '.join(words)}")
         return word
 
 
@@ -103,7 +103,7 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     file.choice("Motor_Type", ("BPM",))
     draft = new_draft(file.values.get("Title"), path, f"Motor-CAD {file.values.get('Program_Version', '')}")
     draft.take("machine", "Title", name=draft.name)
-    draft.assume("machine", "any cross-section", family="drawn")
+    draft.assume("machine", "any cross-section", family="cross-section")
     notes = file.values.get("DataFile_Notes")
     if notes:
         draft.take("machine", "DataFile_Notes", description=one_line(notes))
@@ -236,9 +236,9 @@ def _v_layers(file: File, place: Place) -> list[tuple[Loop, Loop]]:
         start = tip - (tip.imag - rib) / way.imag * way
         end = start + value("MagnetBarWidth") * way
         across = 1j * way * thick
-        magnet = closed([start, end, end + across, start + across])
-        beyond = ((tip - end) * way.conjugate()).real
-        out.append((magnet, closed([end, tip, tip + across, end + across]) if beyond > 1e-5 else ()))
+        magnet = loop_through([start, end, end + across, start + across])
+        excess = ((tip - end) * way.conjugate()).real
+        out.append((magnet, loop_through([end, tip, tip + across, end + across]) if excess > 1e-5 else ()))
     return out
 
 
@@ -261,9 +261,9 @@ def _rotor(draft: Draft, file: File) -> None:
 def _v_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
     arms = _v_layers(file, place)
     words = "PoleVAngle, PoleArc, BridgeThickness, MagnetThickness, MagnetBarWidth by layer"
-    magnets = [loop for magnet, _ in arms for loop in (magnet, mirrored(magnet))]
-    air = [loop for _, tip in arms if tip for loop in (tip, mirrored(tip))]
-    draft.draw("pockets", words, poles, joined([*magnets, *air]))
+    magnets = [loop for magnet, _ in arms for loop in (magnet, mirror(magnet))]
+    air = [loop for _, tip in arms if tip for loop in (tip, mirror(tip))]
+    draft.draw("pockets", words, poles, unite([*magnets, *air]))
     draft.draw("magnets", f"{words}: at the inner ends of their pockets", poles, magnets)
 
 
@@ -345,9 +345,9 @@ def _contacts(draft: Draft, file: File) -> None:
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:
     """As the file has them at its reference speeds; where it has none but in the copper, the usual ones."""
-    given = {key: file.number(key, 0.0, 1e9, 0.0) for key in LOSSES}
+    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in LOSSES}
     speed = file.number("Shaft_Speed", 0.0, 1e6, assumptions.USUAL_RPM)
-    if not any(given.values()):
+    if not any(watts.values()):
         draft.leave("[Losses_At_RPM_Ref]", "0", "no losses in the file")
         iron = 7600.0 * file.length("Stator_Lam_Length") * math.pi / 4 * (file.length("Stator_Lam_Dia") ** 2) * 0.5
         density = assumptions.CURRENT_DENSITY.get("jacket", assumptions.USUAL_DENSITY)
@@ -355,24 +355,24 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
         return
     draft.take("ratings", "Shaft_Speed", speed_rpm=speed)
     for key, (name, other, kind, place) in LOSSES.items():
-        if not given[key]:
+        if not watts[key]:
             continue
         reference = file.number(f"Ref_Speed_-_{name}", 1.0, 1e6, assumptions.USUAL_RPM)
         exponent = file.number(f"Speed_Coeff_-_{other or name}", 0.0, 10.0, 0.0)
-        values: dict[str, Any] = {"kind": kind, "at": place, "P_W": given[key]}
+        values: dict[str, Any] = {"kind": kind, "at": place, "P_W": watts[key]}
         if exponent:
             values["of"] = {"input": "speed_rpm", "at": reference, "exponent": exponent}
         draft.take(
             f"losses.{name.split('_@')[0].lower().replace('_', '-').replace('[', '').replace(']', '')}", key, **values
         )
-    none = [key for key, watts in given.items() if not watts]
+    none = [key for key, loss in watts.items() if not loss]
     if none:
         draft.leave("[Losses_At_RPM_Ref]", "0", f"no loss in the file: {', '.join(key.split('_@')[0] for key in none)}")
 
 
 def _left(draft: Draft, file: File) -> None:
     """What matters and goes nowhere; values that differ from our table's; stored temperatures."""
-    for key, (neutral, why) in UNUSED.items():
+    for key, (neutral, why) in IGNORED.items():
         text = file.values.get(key, "")
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)

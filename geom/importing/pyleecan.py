@@ -16,7 +16,7 @@ from geom.errors import InputError
 from geom.importing import assumptions
 from geom.importing.draft import Draft, new_draft, number, one_line, read_text
 from geom.importing.holes import HOLES, Hole
-from geom.importing.plane import Place, Slot, arc, closed, joined, turned, vertices
+from geom.importing.plane import Place, Slot, arc, loop_through, rotate, unite, vertices
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
 
 RIGHT = "a machine as pyleecan saves it: JSON with __class__, stator and rotor"
@@ -60,6 +60,14 @@ class Lamination:
         return Place(self.surface, self.way, math.pi / copies)
 
 
+@dataclass(frozen=True)
+class PathSlot:
+    """A slot whose path and filling the file draws, in place of `Slot`."""
+
+    path: Loop
+    filled: tuple[Loop, ...]
+
+
 def read_pyleecan(path: Path, family_template: str) -> Draft:
     """The draft of a machine file. Raises InputError for what is no machine with a rotor inside its stator."""
     document = _document(path)
@@ -71,7 +79,7 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     )
     pair = [_lamination(document, key, path) for key in ("stator", "rotor")]
     draft.take("machine", "name", name=draft.name)
-    draft.assume("machine", f"{kind}: any cross-section", family="drawn")
+    draft.assume("machine", f"{kind}: any cross-section", family="cross-section")
     if document.get("desc"):
         draft.take("machine", "desc", description=one_line(document["desc"]))
     _stator(draft, pair[0])
@@ -146,10 +154,10 @@ def _copies(node: Node, key: str, where: str) -> int:
     return round(number(node, key, where, 1, 400))
 
 
-def _drawn(kind: str, known: Any, where: str, draw: Any) -> Any:
+def _shape(kind: str, classes: Any, where: str, draw: Any) -> Any:
     """What a class draws; one message where it is unknown, or its numbers make no shape."""
-    if kind not in known:
-        raise InputError(f"__class__ = {kind[:40]!r} is not known", where, f"one of: {', '.join(known)}")
+    if kind not in classes:
+        raise InputError(f"__class__ = {kind[:40]!r} is not known", where, f"one of: {', '.join(classes)}")
     try:
         return draw()
     except KeyError as missing:
@@ -160,17 +168,17 @@ def _drawn(kind: str, known: Any, where: str, draw: Any) -> Any:
         ) from None
 
 
-def _slot(lamination: Lamination) -> tuple[Slot, int, str]:
+def _slot(lamination: Lamination) -> tuple[Slot | PathSlot, int, str]:
     where = f"{lamination.where}.slot"
     node = _table(lamination.node, "slot", lamination.where)
     kind, copies = str(node.get("__class__")), _copies(node, "Zs", where)
     place = lamination.place(copies)
     if kind == "SlotUD":
-        return _drawn(kind, (kind,), where, lambda: _own_slot(node, where)), copies, kind
+        return _shape(kind, (kind,), where, lambda: _line_slot(node, where)), copies, kind
     sizes = _sizes(node, where)
     if kind in MAGNETS:
-        return _drawn(kind, MAGNETS, where, lambda: magnet_of(kind, place, sizes)), copies, kind
-    return _drawn(kind, SLOTS, where, lambda: slot_of(kind, place, sizes)), copies, kind
+        return _shape(kind, MAGNETS, where, lambda: magnet_of(kind, place, sizes)), copies, kind
+    return _shape(kind, SLOTS, where, lambda: slot_of(kind, place, sizes)), copies, kind
 
 
 def _lines(node: Node, key: str, where: str) -> list[tuple[complex, float, complex]]:
@@ -199,30 +207,22 @@ def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
 
 
 def _loop(node: Node, key: str, where: str) -> Loop:
-    return closed([(a, bulge) for a, bulge, _ in _lines(node, key, where)])
+    return loop_through([(a, bulge) for a, bulge, _ in _lines(node, key, where)])
 
 
-def _own_slot(node: Node, where: str) -> Slot:
+def _line_slot(node: Node, where: str) -> PathSlot:
     """A slot drawn line by line, begun at either side."""
     lines = _lines(node, "line_list", where)
     first, last = node.get("wind_begin_index"), node.get("wind_end_index")
     part = lines[first:last] if isinstance(first, int) and isinstance(last, int) else lines
     begin, end = part[0][0], part[-1][2]
     lid = arc(end, begin) if node.get("type_line_wind") or part is lines else 0.0
-    wire = closed([*((a, bulge) for a, bulge, _ in part), (end, lid)])
+    wire = loop_through([*((a, bulge) for a, bulge, _ in part), (end, lid)])
     path = vertices([*((a, bulge) for a, bulge, _ in lines), (lines[-1][2], 0.0)])
     if math.atan2(path[0][1], path[0][0]) > math.atan2(path[-1][1], path[-1][0]):
         back = path[::-1]
         path = [(x, y, -following[2]) for (x, y, _), following in zip(back, [*back[1:], (0.0, 0.0, 0.0)])]
-    return DrawnSlot(tuple(path), (wire,))
-
-
-@dataclass(frozen=True)
-class DrawnSlot:
-    """A slot whose path and filling the file draws, in place of `Slot`."""
-
-    path: Loop
-    filled: tuple[Loop, ...]
+    return PathSlot(tuple(path), (wire,))
 
 
 def _conductors(winding: Node, slots: int, where: str) -> float:
@@ -304,9 +304,9 @@ def _vents(draft: Draft, lamination: Lamination, name: str, group: str) -> None:
     for k, vent in enumerate(lamination.node.get("axial_vent") or ()):
         where = f"{lamination.where}.axial_vent[{k}]"
         sizes, kind = _sizes(vent, where), str(vent.get("__class__"))
-        loop = _drawn(kind, VENTS, where, partial(VENTS.get(kind, turned), sizes))
+        loop = _shape(kind, VENTS, where, partial(VENTS.get(kind, rotate), sizes))
         copies = _copies(vent, "Zh", where)
-        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [turned(loop, sizes.get("Alpha0", 0.0))])
+        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [rotate(loop, sizes.get("Alpha0", 0.0))])
 
 
 def _vent_circle(d: Mapping[str, float]) -> Loop:
@@ -315,12 +315,12 @@ def _vent_circle(d: Mapping[str, float]) -> Loop:
 
 def _vent_polar(d: Mapping[str, float]) -> Loop:
     a, b = (r * complex(math.cos(d["W1"] / 2), math.sin(d["W1"] / 2)) for r in (d["H0"], d["H0"] + d["D0"]))
-    return closed([a.conjugate(), (b.conjugate(), arc(b.conjugate(), b)), b, (a, arc(a, a.conjugate()))])
+    return loop_through([a.conjugate(), (b.conjugate(), arc(b.conjugate(), b)), b, (a, arc(a, a.conjugate()))])
 
 
 def _vent_trapeze(d: Mapping[str, float]) -> Loop:
     a, b = d["H0"] + 0.5j * d["W1"], d["H0"] + d["D0"] + 0.5j * d["W2"]
-    return closed([a.conjugate(), b.conjugate(), b, a])
+    return loop_through([a.conjugate(), b.conjugate(), b, a])
 
 
 VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "VentilationTrap": _vent_trapeze}
@@ -377,20 +377,20 @@ def _hole(draft: Draft, rotor: Lamination, node: Node, name: str) -> None:
     where, kind = f"{rotor.where}{name.removeprefix('rotor')}", str(node.get("__class__"))
     copies = _copies(node, "Zh", where)
     if kind == "HoleUD":
-        hole, present = _own_hole(node, where), node.get("magnet_dict") or {}
+        hole, present = _surface_hole(node, where), node.get("magnet_dict") or {}
         magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", True)]
     else:
-        hole = _drawn(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
+        hole = _shape(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
         present = node
         magnets = [m for k, m in enumerate(hole.magnets) if node.get(f"magnet_{k}")]
-    draft.draw("pockets", f"{name}, {kind}", copies, joined([*hole.magnets, *hole.air]))
+    draft.draw("pockets", f"{name}, {kind}", copies, unite([*hole.magnets, *hole.air]))
     draft.draw("magnets", f"{name}, {kind}", copies, magnets)
     first = present.get("magnet_0")
     if isinstance(first, Mapping):
         _magnet_length(draft, first, rotor, f"{name}.magnet_0")
 
 
-def _own_hole(node: Node, where: str) -> Hole:
+def _surface_hole(node: Node, where: str) -> Hole:
     """A hole drawn surface by surface, its magnets by their labels."""
     surfaces = node.get("surf_list")
     if not isinstance(surfaces, list) or not 1 <= len(surfaces) <= 100:
@@ -412,7 +412,7 @@ def _magnet_length(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> 
         )
 
 
-def _cage(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
     where = rotor.where
     draft.draw("bars", f"rotor.slot, {kind}: what a bar fills", copies, slot.filled)
     area = sum(abs(loop_area(loop)) for loop in slot.filled)
@@ -430,11 +430,11 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(radii) - min(radii), most)))
     metal = str((rotor.node.get("ring_mat") or {}).get("name", "")).lower()
-    found = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
-    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": found})
+    name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
+    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": name})
 
 
-def _coils(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
     draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
     room = sum(abs(loop_area(loop)) for loop in slot.filled)
     fill, count, section = _fill(draft, rotor, "rotor", copies, room)
@@ -445,16 +445,18 @@ def _coils(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) 
 
 def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
     rotor, shaft = pair[1], document.get("shaft") or {}
-    given = shaft.get("Drsh") if isinstance(shaft, Mapping) else None
-    given = given if isinstance(given, int | float) and given > 0 else None
+    diameter = shaft.get("Drsh") if isinstance(shaft, Mapping) else None
+    diameter = diameter if isinstance(diameter, int | float) and diameter > 0 else None
     if rotor.inner > 0:
         draft.take("geometry.shaft", "rotor.Rint", diameter_mm=_mm(2 * rotor.inner))
-        if given and abs(given - 2 * rotor.inner) > 1e-6:
-            draft.leave("shaft.Drsh", given, f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here")
+        if diameter and abs(diameter - 2 * rotor.inner) > 1e-6:
+            draft.leave(
+                "shaft.Drsh", diameter, f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here"
+            )
         return
     draft.take("geometry.rotor", "rotor.Rint = 0", inside="solid")
-    if given:
-        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(given))
+    if diameter:
+        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(diameter))
     else:
         draft.assume(
             "geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=max(_mm(0.6 * rotor.outer), 5.0)

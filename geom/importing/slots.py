@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Callable
 
-from geom.importing.plane import Place, Point, Sizes, Slot, arc, closed
+from geom.importing.plane import Place, Point, Sizes, Slot, arc, loop_through
 
 # Depth and width of each corner, from the surface on, and the corner where the winding begins.
 STEPS = {
@@ -153,8 +153,8 @@ def _pole(place: Place, d: Sizes, shoe: list[Point], z5: complex, rest: list[Poi
     """Between two salient poles: coils on either side of each, beside its body."""
     wide = (d["W1"] - d["W2"]) / 2 - d["W3"]
     a, b = shoe[-1][0] - d["H3"], z5 + d["H4"]
-    coil = closed([place.from_tooth(t) for t in (a, b, b + 1j * wide, a + 1j * wide)])
-    other = closed([place.from_tooth(t).conjugate() for t in (a, a + 1j * wide, b + 1j * wide, b)])
+    coil = loop_through([place.from_tooth(t) for t in (a, b, b + 1j * wide, a + 1j * wide)])
+    other = loop_through([place.from_tooth(t).conjugate() for t in (a, a + 1j * wide, b + 1j * wide, b)])
     half = [(place.from_tooth(t), -bulge) for t, bulge in [*shoe, (z5, 0.0), *rest]]
     return Slot(half, 0.0, 0, filling=(coil, other))
 
@@ -222,7 +222,7 @@ def magnet_of(kind: str, place: Place, d: Sizes) -> Slot:
         low, a, bottom, foot = z2.real, z2.real + 0.5j * width, 0.0, 0.0
     b, centre = _magnet_top(kind, low, s, d["Hmag"], width, d)
     top = 0.0 if kind == "SlotM10" else arc(b, b.conjugate(), centre)
-    magnet = closed([(a.conjugate(), foot), (a, 0.0), (b, top), (b.conjugate(), 0.0)])
+    magnet = loop_through([(a.conjugate(), foot), (a, 0.0), (b, top), (b.conjugate(), 0.0)])
     return Slot([(z1, 0.0), (z2, 0.0)], bottom, 0, filling=(magnet,))
 
 

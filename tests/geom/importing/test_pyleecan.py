@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from written_machines import put, pyleecan, saved
+from foreign_machines import put, pyleecan, saved
 
 from geom import COARSE, InputError, build_mesh, import_draft, load_machine
 from geom.description.profile import loop_area
 from geom.importing.holes import HOLES
-from geom.importing.plane import Place, joined
+from geom.importing.plane import Place, unite
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
 from geom.machine_file import machine_from
 
@@ -124,7 +124,7 @@ def test_buried_magnets_lie_in_their_holes(kind):
     sizes, magnets, whole = BURIED[kind]
     hole = HOLES[kind](ROTOR, sizes)
     assert area(hole.magnets) == pytest.approx(magnets, rel=2e-3, abs=1e-12)
-    pockets = joined([*hole.magnets, *hole.air])
+    pockets = unite([*hole.magnets, *hole.air])
     assert area(pockets) >= area(hole.magnets) - 1e-9
     assert whole is None or area(pockets) == pytest.approx(whole, rel=PART)
     assert max(math.hypot(x, y) for loop in pockets for x, y, _ in loop) < 0.0795

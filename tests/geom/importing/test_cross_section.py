@@ -21,7 +21,11 @@ def sections(**outlines):
     slots = {"slots": [{"copies": 12, "loops_mm": [sector(60, 80, HALF, lid=False)]}]}
     wires = {"wires": [{"copies": 12, "loops_mm": [sector(64, 80, HALF)]}]}
     stator = {"outer_diameter_mm": 200.0, "bore_diameter_mm": 120.0, "stack_length_mm": 100.0, "air_gap_mm": 1.0}
-    return {"machine": {"family": "drawn"}, "geometry": {"stator": stator}, "outlines": slots | wires | outlines}
+    return {
+        "machine": {"family": "cross-section"},
+        "geometry": {"stator": stator},
+        "outlines": slots | wires | outlines,
+    }
 
 
 def magnets(inner, outer, half=0.4):
