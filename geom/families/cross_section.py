@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
-from geom.description.outlines import Outline, Outlines, corners, notched_loop, refuse_cuts
+from geom.description.outlines import Outline, Outlines, notched_loop, radii, refuse_cuts
 from geom.description.parameters import Measure, Parameter, choice
 from geom.description.parameters import length as mm
 from geom.description.part import Part, extrude, fluid
@@ -63,9 +63,9 @@ class _Places(Layout):
         stack = g.rotor.stack_length or g.stator.stack_length
         self.iron0, self.iron1 = self.middle - stack / 2, self.middle + stack / 2
         if outlines["wires"]:
-            self.wire0, self.wire1 = min(corners(outlines["wires"])), max(corners(outlines["wires"]))
-        self.mouth = max([self.slot0 if not outlines["wires"] else self.bore, *corners(outlines["slots"])])
-        self.valley = min([self.surface, *corners(outlines["notches"])])
+            self.wire0, self.wire1 = min(radii(outlines["wires"])), max(radii(outlines["wires"]))
+        self.mouth = max([self.slot0 if not outlines["wires"] else self.bore, *radii(outlines["slots"])])
+        self.valley = min([self.surface, *radii(outlines["notches"])])
 
 
 def build_section(g: Geometry) -> tuple[Part, ...]:
@@ -86,19 +86,20 @@ def _check(g: Geometry, at: _Places) -> None:
     if outlines["bars"] or outlines["coils"]:
         fit.below(0.98 * room, "rotor.end", ", the end space")
     if outlines["bars"]:
-        fit.below(max(corners(outlines["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
+        fit.below(max(radii(outlines["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
     refuse_cuts(outlines, ("slots", "notches"))
     _inside(outlines, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
-    _inside(outlines, ("pockets", "bars", "coils", "notches"), (g.shaft.diameter / 2, at.surface + 1e-7), "the rotor")
-    _inside(outlines, ("magnets",), (g.shaft.diameter / 2, at.bore), "the bore")
+    shaft = g.shaft.diameter / 2 if g.rotor.inside == "bored" else 0.0
+    _inside(outlines, ("pockets", "bars", "coils", "notches"), (shaft, at.surface + 1e-7), "the rotor")
+    _inside(outlines, ("magnets",), (shaft, at.bore), "the bore")
 
 
 def _inside(outlines: Outlines, names: tuple[str, ...], span: tuple[float, float], what: str) -> None:
     for name in names:
-        for radius in corners(outlines[name]):
+        for radius in radii(outlines[name]):
             if not span[0] <= radius <= span[1]:
-                right = f"corners from {span[0] * 1e3:.5g} to {span[1] * 1e3:.5g} mm from the axis, {what}"
-                raise InputError(f"a corner lies {radius * 1e3:.5g} mm from the axis", f"[[outlines.{name}]]", right)
+                right = f"points from {span[0] * 1e3:.5g} to {span[1] * 1e3:.5g} mm from the axis, {what}"
+                raise InputError(f"a point lies {radius * 1e3:.5g} mm from the axis", f"[[outlines.{name}]]", right)
 
 
 def _shaft(g: Geometry, at: _Places) -> tuple[Part, ...]:
@@ -122,12 +123,12 @@ def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
         prisms = extrude(_around(outlines["magnets"]), at.iron0, at.iron1)
         yield Part("magnets", "magnet-ndfeb", prisms, role=Role.MAGNET)
     if bars := extrude(_around(outlines["bars"]), at.iron0, at.iron1):
-        top = max(corners(outlines["bars"]))
+        top = max(radii(outlines["bars"]))
         ring = shapes.ring(top - g.rotor.ring, top)
         yield Part("rotor.cage", "aluminium-cast", (*bars, (ring, *left), (ring, *right)), role=Role.CAGE)
     if outlines["coils"]:
-        radii = list(corners(outlines["coils"]))
-        ring, filling = shapes.ring(min(radii), max(radii)), (g.rotor.fill, g.winding.impregnation)
+        reach = radii(outlines["coils"])
+        ring, filling = shapes.ring(min(reach), max(reach)), (g.rotor.fill, g.winding.impregnation)
         coils = extrude(_around(outlines["coils"]), at.iron0, at.iron1)
         yield Part("winding.field", "winding", coils, filling, role=Role.WINDING, turns=True)
         for end, span in (("left", left), ("right", right)):
@@ -172,7 +173,7 @@ def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
 def _hollow(outlines: Outlines, surface: float) -> bool:
     """Is there a hole through the iron that no magnet fills?"""
     holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
-    buried = max(corners(outlines["magnets"]), default=0.0) < surface
+    buried = max(radii(outlines["magnets"]), default=0.0) < surface
     return bool(outlines["vents"]) or holes > magnets * buried + 1e-7
 
 

@@ -118,6 +118,7 @@ def end_windings(
     depth_m : of the winding;  span : of a coil in slots
     copper_m2 : section of the conductors of a slot;  fill : of their room
     """
+    bore_m, depth_m = max(bore_m, 1e-2), max(depth_m, 1e-4)
     middle = bore_m / 2 + depth_m / 2
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle  # half of a semicircle's arc
     ring = 2 * math.pi * middle * depth_m

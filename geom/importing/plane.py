@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from geom.description.outlines import NOTHING
 from geom.description.profile import ArcGrid, Loop, Profile, Vertex
 
 Point = tuple[complex, float]  # m, and the bulge of the edge that leaves it
@@ -120,6 +121,7 @@ def unite(loops: Sequence[Loop]) -> list[Loop]:
     """Loops that touch as one; a loop that stands alone keeps its arcs."""
     import shapely
 
+    loops = [loop for loop in loops if Profile(loop).area > NOTHING]
     grid = ArcGrid([Profile(loop) for loop in loops], _FACETS)
     shapes = [shapely.Polygon(grid.facet(loop)).buffer(0) for loop in loops]
     close = [[j for j, other in enumerate(shapes) if shape.distance(other) < 1e-7] for shape in shapes]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.names import checked_document
+from geom.description.outlines import NOTHING
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
@@ -20,6 +21,9 @@ from geom.importing.plane import Place, Slot, arc, loop_through, rotate, unite, 
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
 
 RIGHT = "a machine as pyleecan saves it: JSON with __class__, stator and rotor"
+HOLE_KEYS = ("hole", "hole_north", "hole_south")
+LARGEST_M = 10.0  # of a coordinate
+MOST_PARTS = 100  # holes of a pole, or surfaces of one
 SLOTS = (*STEPS, *CURVED, "SlotUD")
 # Section of one conductor (m2) by the letters of its class; the first whose letters are all there.
 SECTIONS = {
@@ -122,6 +126,20 @@ def _table(node: Node, key: str, where: str) -> Node:
     return value
 
 
+def _part(node: Node, key: str) -> Node:
+    """A table that may be missing; then, and where it is something else, an empty one."""
+    value = node.get(key)
+    return value if isinstance(value, Mapping) else {}
+
+
+def _parts(node: Node, key: str, where: str) -> list[Node]:
+    """A list of tables that may be missing."""
+    value = node.get(key) or []
+    if not isinstance(value, list) or len(value) > MOST_PARTS or not all(isinstance(part, Mapping) for part in value):
+        raise InputError(f"{key} is no list of up to {MOST_PARTS} tables", where, RIGHT)
+    return value
+
+
 def _lamination(document: Node, key: str, path: Path) -> Lamination:
     where = f"{path} {key}"
     node = _table(document, key, str(path))
@@ -137,11 +155,11 @@ def _lamination(document: Node, key: str, path: Path) -> Lamination:
 def _sizes(node: Node, where: str) -> dict[str, float]:
     """All numbers of a slot, hole or conductor; what older files call otherwise by today's names."""
     sizes = {
-        key: number(node, key, where) if not isinstance(value, bool) else float(value)
+        key: number(node, key, where, -1e5, 1e5) if not isinstance(value, bool) else float(value)
         for key, value in node.items()
         if isinstance(value, int | float)
     }
-    if sizes.get("H1_is_rad"):
+    if sizes.get("H1_is_rad") and {"W0", "W1", "H1"} <= set(sizes):
         sizes["H1"] = (sizes["W1"] - sizes["W0"]) / 2 * math.tan(sizes["H1"])
     kind = str(node.get("__class__"))
     if kind in MAGNETS:
@@ -193,6 +211,8 @@ def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
     try:
         a, b = (complex(str(line[end]).replace(" ", "")) for end in ("begin", "end"))
         kind, left = line["__class__"], line.get("is_trigo_direction", True)
+        if max(abs(a), abs(b)) > LARGEST_M:
+            raise ValueError
     except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError("is no line", where, "__class__, begin and end, each a complex number in m") from None
     if kind == "Segment":
@@ -246,8 +266,8 @@ def _entries(matrix: Any, depth: int = 0) -> Iterator[float]:
 def _section(conductor: Node, where: str) -> float:
     sizes = _sizes(conductor, where)
     for letters, section in SECTIONS.items():
-        if all(sizes.get(letter) for letter in letters.split()):
-            return float(section(sizes))
+        if all(sizes.get(letter) for letter in letters.split()) and (area := float(section(sizes))) > 0:
+            return area
     kind = str(conductor.get("__class__"))[:40]
     raise InputError(f"{kind} has no section", where, f"one of: {'; '.join(SECTIONS)}")
 
@@ -258,6 +278,8 @@ def _fill(draft: Draft, lamination: Lamination, name: str, copies: int, room: fl
     winding = _table(lamination.node, "winding", lamination.where)
     count = _conductors(winding, copies, where)
     section = _section(_table(winding, "conductor", where), f"{where}.conductor")
+    if room < NOTHING:
+        raise InputError("its winding has no room", f"{lamination.where}.slot", "sizes that leave an area for it")
     fill = count * section / room
     if not 0.005 <= fill <= 0.95:
         right = "other conductors than the file's: between 0.5 % and 95 %"
@@ -301,7 +323,7 @@ def stacking(draft: Draft, lamination: Lamination, name: str) -> None:
 
 
 def _vents(draft: Draft, lamination: Lamination, name: str, group: str) -> None:
-    for k, vent in enumerate(lamination.node.get("axial_vent") or ()):
+    for k, vent in enumerate(_parts(lamination.node, "axial_vent", lamination.where)):
         where = f"{lamination.where}.axial_vent[{k}]"
         sizes, kind = _sizes(vent, where), str(vent.get("__class__"))
         loop = _shape(kind, VENTS, where, partial(VENTS.get(kind, rotate), sizes))
@@ -328,7 +350,7 @@ VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "Vent
 
 def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     node, top = rotor.node, rotor.outer
-    for k, hole in enumerate(_holes(node)):
+    for k, hole in enumerate([hole for key in HOLE_KEYS for hole in _parts(node, key, rotor.where)]):
         _hole(draft, rotor, hole, f"rotor.hole[{k}]")
     magnet = next((node[key] for key in ("magnet", "magnet_north") if isinstance(node.get(key), Mapping)), None)
     if isinstance(node.get("slot"), Mapping):
@@ -366,18 +388,11 @@ def _crowns(loops: tuple[Loop, ...]) -> Iterator[float]:
             )
 
 
-def _holes(node: Node) -> list[Node]:
-    holes = [hole for key in ("hole", "hole_north", "hole_south") for hole in node.get(key) or ()]
-    if len(holes) > 50 or not all(isinstance(hole, Mapping) for hole in holes):
-        raise InputError("hole is no list of holes", "rotor", RIGHT)
-    return holes
-
-
 def _hole(draft: Draft, rotor: Lamination, node: Node, name: str) -> None:
     where, kind = f"{rotor.where}{name.removeprefix('rotor')}", str(node.get("__class__"))
     copies = _copies(node, "Zh", where)
     if kind == "HoleUD":
-        hole, present = _surface_hole(node, where), node.get("magnet_dict") or {}
+        hole, present = _surface_hole(node, where), _part(node, "magnet_dict")
         magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", True)]
     else:
         hole = _shape(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
@@ -392,9 +407,7 @@ def _hole(draft: Draft, rotor: Lamination, node: Node, name: str) -> None:
 
 def _surface_hole(node: Node, where: str) -> Hole:
     """A hole drawn surface by surface, its magnets by their labels."""
-    surfaces = node.get("surf_list")
-    if not isinstance(surfaces, list) or not 1 <= len(surfaces) <= 100:
-        raise InputError("surf_list is no list of surfaces", where, "SurfLine with line_list and label")
+    surfaces = _parts(node, "surf_list", where)
     loops = [
         (("Mag" in str(s.get("label"))), _loop(s, "line_list", f"{where}.surf_list[{k}]"))
         for k, s in enumerate(surfaces)
@@ -429,7 +442,7 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
     else:
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(radii) - min(radii), most)))
-    metal = str((rotor.node.get("ring_mat") or {}).get("name", "")).lower()
+    metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
     name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
     draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": name})
 
@@ -444,8 +457,8 @@ def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, 
 
 
 def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
-    rotor, shaft = pair[1], document.get("shaft") or {}
-    diameter = shaft.get("Drsh") if isinstance(shaft, Mapping) else None
+    rotor, shaft = pair[1], _part(document, "shaft")
+    diameter = shaft.get("Drsh")
     diameter = diameter if isinstance(diameter, int | float) and diameter > 0 else None
     if rotor.inner > 0:
         draft.take("geometry.shaft", "rotor.Rint", diameter_mm=_mm(2 * rotor.inner))
@@ -465,7 +478,7 @@ def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
 
 def _frame(draft: Draft, document: Node, stator: Lamination, family_template: str) -> None:
     assumptions.template(draft, family_template)
-    node = document.get("frame") or {}
+    node = _part(document, "frame")
     inner, outer = node.get("Rint"), node.get("Rext")
     if (
         isinstance(inner, int | float)
@@ -493,7 +506,9 @@ def _losses(draft: Draft, stator: Lamination, family_template: str) -> None:
     length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
     density = assumptions.CURRENT_DENSITY.get(family_template, assumptions.USUAL_DENSITY)
     ways = winding.get("Npcp")
-    assumptions.losses(draft, section * 1e6, length, float(ways) if isinstance(ways, int) else 1.0, iron, density)
+    assumptions.losses(
+        draft, section * 1e6, length, float(ways) if isinstance(ways, int) and 0 < ways < 1000 else 1.0, iron, density
+    )
 
 
 def _mm(length: float) -> float:

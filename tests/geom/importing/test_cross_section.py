@@ -56,7 +56,8 @@ def test_magnets_on_the_surface_and_a_rotor_without_bore_mesh():
 
 FAULTS = {
     "neighbour": ({"magnets": magnets(50, 54, 0.9), "pockets": magnets(50, 54, 0.9)}, "cuts its neighbour"),
-    "crossing": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 5], [40, 0], [30, 5]]]}]}, "crosses itself"),
+    "crossing": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 5], [40, 0], [30, 2]]]}]}, "crosses itself"),
+    "flat": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 0], [35, 0]]]}]}, "has no area"),
     "outside": ({"magnets": magnets(50, 70)}, "from the axis"),
     "unknown": ({"coil": []}, "unknown shapes 'coil'"),
     "no copies": ({"bars": [{"copies": 0, "loops_mm": []}]}, "copies = 0"),

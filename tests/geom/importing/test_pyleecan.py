@@ -36,6 +36,16 @@ def trapeze(height, a, b):
     return height * (a + b) / 2
 
 
+def half_chord(radius):
+    """From the middle of a circle to a chord of 1 mm (m)."""
+    return math.sqrt(radius**2 - 0.0005**2)
+
+
+def cap(radius, width):
+    """What a chord cuts off a circle."""
+    return radius**2 * math.asin(width / 2 / radius) - width / 2 * math.sqrt(radius**2 - width**2 / 4)
+
+
 SLOT = {"H0": 0.001, "H1": 0.0015, "H2": 0.02, "W0": 0.003, "W1": 0.007, "W2": 0.01, "W3": 0.011}
 ROUND = math.pi / 2
 FILLED = {  # what the winding fills, m2
@@ -52,6 +62,16 @@ FILLED = {  # what the winding fills, m2
     ),
     "SlotW27": (SLOT, trapeze(0.0015, 0.007, 0.01) + trapeze(0.02, 0.01, 0.011)),
     "SlotW29": (SLOT, 0.02 * 0.01),
+    "SlotDC": (
+        mm("W1=1 H1=2.5 D1=4 H2=6 W2=1 D2=3 H3=10 R3=1"),
+        4e-6 * math.pi
+        - 2 * cap(0.002, 0.001)
+        + 1e-3 * (0.006 - half_chord(0.002) - half_chord(0.0015))
+        + ROUND * 0.0015**2
+        - cap(0.0015, 0.001)
+        + trapeze(0.01, 0.003, 0.002)
+        + ROUND * 1e-6,
+    ),
 }
 
 
@@ -68,6 +88,7 @@ MORE = {
     "SlotW15": {"H0": 0.001, "H1": 0.002, "H2": 0.02, "R1": 0.001, "R2": 0.002, "W0": 0.003, "W3": 0.007},
     "SlotW23": {"H0": 0.001, "H1": 0.001, "H2": 0.02, "W0": 0.003, "W3": 0.007, "is_cstt_tooth": 1.0},
     "SlotW25": {"H1": 0.002, "H2": 0.02, "W3": 0.007, "W4": 0.011},
+    "SlotW30": {"H0": 0.001, "H1": 0.02, "R1": 0.001, "R2": 0.002, "W0": 0.003, "W3": 0.007},
     "SlotW28": {"H0": 0.001, "H3": 0.02, "R1": 0.002, "W0": 0.003, "W3": 0.007},
 }
 
