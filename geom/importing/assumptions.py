@@ -138,4 +138,8 @@ def frame(draft: Draft, stack_m: float, ends_m: float, outer_m: float, shaft_m: 
     draft.assume(
         "geometry.frame", "room for the end turns", length_mm=round(1e3 * length, 4), cap_mm=round(1e3 * cap, 4)
     )
+    if draft.value("geometry.housing", "kind") == "none":
+        points = [point for loop in draft.value("[outlines.wires]", "loops_mm") for point in loop]
+        yoke = 1e3 * outer_m / 2 - max(math.hypot(x, y) for x, y, *_ in points)
+        draft.assume("geometry.frame", "less than half of the yoke", skirt_mm=max(round(0.4 * yoke, 4), 1.0))
     draft.assume("geometry.bearing", "in proportion to the shaft", outer_diameter_mm=round(max(1e3 * seat, 10.0), 4))
