@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from geom.description.outlines import Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
@@ -207,10 +208,10 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     end = max(file.length("EWdg_Overhang_[F]", 30e-3) - straight, 2e-3)
     draft.take("geometry.winding", "Wdg_Extension_[F]", straight_mm=_mm(max(straight, 0.5e-3)))
     draft.take("geometry.winding", "EWdg_Overhang_[F] less Wdg_Extension_[F]", end_mm=_mm(end))
-    radii = [math.hypot(x, y) for loop in wire for x, y, _ in loop]
-    middle, span = (max(radii) + min(radii)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
+    reach = radii((Outline(slots, wire),))
+    middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
-    loose = slots * count * each * turn / (math.pi * (max(radii) ** 2 - min(radii) ** 2) * end)
+    loose = slots * count * each * turn / (math.pi * (max(reach) ** 2 - min(reach) ** 2) * end)
     why = "end turns are semicircles over MagThrow"
     draft.assume("geometry.winding", why, end_fill=float(f"{min(max(loose, 0.005), 0.95):.6g}"))
     return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0

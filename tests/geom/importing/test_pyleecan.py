@@ -209,10 +209,20 @@ def test_a_cage_and_a_wound_rotor(tmp_path):
     assert built.part("winding.field").identity.turns
 
 
+def test_north_and_south_poles_with_holes_of_their_own(tmp_path):
+    machine = pyleecan()
+    (hole,) = machine["rotor"]["hole"]
+    machine["rotor"] |= {"__class__": "LamHoleNS", "hole": None, "hole_north": [hole]}
+    machine["rotor"]["hole_south"] = [{**hole, "W0": 0.016}]
+    built = load_machine(saved(tmp_path, machine))
+    assert built.part("magnets").volume == pytest.approx(2 * 0.003 * (0.02 + 0.016) * 0.04, rel=1e-6)
+
+
 FAULTS = {
     "another program": ({"__class__": "Simu1"}, "is no machine"),
     "outer rotor": ({"stator__is_internal": True}, "the stator is inside"),
-    "unknown slot": ({"stator__slot__class": "x", "stator__slot____class__": "os.system"}, "is not known"),
+    "unknown rotor": ({"rotor____class__": "LamSlotMulti"}, "LamSlotMulti' is not read"),
+    "unknown slot": ({"stator__slot____class__": "os.system"}, "is not known"),
     "no number": ({"stator__slot__H2": "deep"}, "lacks 'H2'"),
     "infinite": ({"stator__Rext": 1e400}, "Infinity is no number"),
     "slots cut": ({"stator__slot__W2": 0.6}, "cuts its neighbour"),
@@ -233,8 +243,8 @@ def test_faults_are_one_message_with_their_place(tmp_path, fault):
         if path == "__class__":
             machine[path] = value
         elif path.endswith("____class__"):
-            machine["stator"]["slot"]["__class__"] = value
-        elif not path.endswith("__class"):
+            put(machine, [*path.removesuffix("____class__").split("__"), "__class__"], value)
+        else:
             put(machine, path.split("__"), value)
     with pytest.raises(InputError, match=words.replace("(", r"\(")):
         load_machine(saved(tmp_path, machine))
