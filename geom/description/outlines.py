@@ -17,6 +17,7 @@ LONGEST_MM = 1e4  # of a coordinate: a wind generator is 5 m wide
 MOST_POINTS = 2000  # of one shape, and of shapes in a group: a slot drawn by hand has some ten
 MOST_COPIES = 400  # around the axis
 OVERLAP = 1e-9  # m2; a common area below this is rounding
+INSET = 0.02  # of the radial depth of conductors: so far inside it end turns stay, clear of arcs that touch a circle
 NOTHING = 1e-10  # m2; of what is left of a shape whose sides coincide
 CROSSED = 0.01  # of a shape's area; chords of arcs that touch cross by less
 _RIGHT = "a list of shapes, each a list of at least two points [x, y] or [x, y, bulge] in mm"

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
-from geom.description.outlines import Outline, Outlines, notched_loop, radii, refuse_cuts
+from geom.description.outlines import INSET, Outline, Outlines, notched_loop, radii, refuse_cuts
 from geom.description.parameters import Measure, Parameter, choice
 from geom.description.parameters import length as mm
 from geom.description.part import Part, extrude, fluid
@@ -112,6 +112,12 @@ def _around(groups: tuple[Outline, ...]) -> list[Profile]:
     return [profile for group in groups for profile in group.around()]
 
 
+def _end_turns(inner: float, outer: float) -> Profile:
+    """A ring for the end turns of conductors between two radii (m)."""
+    inset = INSET * (outer - inner)
+    return shapes.ring(inner + inset, outer - inset)
+
+
 def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
     outlines = at.outlines
     bore = (shapes.circle_loop(g.shaft.diameter / 2),) if g.rotor.inside == "bored" else ()
@@ -128,7 +134,7 @@ def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
         yield Part("rotor.cage", "aluminium-cast", (*bars, (ring, *left), (ring, *right)), role=Role.CAGE)
     if outlines["coils"]:
         reach = radii(outlines["coils"])
-        ring, filling = shapes.ring(min(reach), max(reach)), (g.rotor.fill, g.winding.impregnation)
+        ring, filling = _end_turns(min(reach), max(reach)), (g.rotor.fill, g.winding.impregnation)
         coils = extrude(_around(outlines["coils"]), at.iron0, at.iron1)
         yield Part("winding.field", "winding", coils, filling, role=Role.WINDING, turns=True)
         for end, span in (("left", left), ("right", right)):
@@ -142,7 +148,7 @@ def _stator(g: Geometry, at: _Places) -> tuple[Part, ...]:
         return stator(g, at)
     vents = tuple(profile.outer for profile in _around(outlines["vents"]))
     core = Profile(shapes.circle_loop(at.core), (notched_loop(at.bore, outlines["slots"]), *vents))
-    wires, w, ring = _around(outlines["wires"]), g.winding, shapes.ring(at.wire0, at.wire1)
+    wires, w, ring = _around(outlines["wires"]), g.winding, _end_turns(at.wire0, at.wire1)
     loose = (w.end_fill, w.end_impregnation)
     left = (*extrude(wires, at.coil0, at.core0), (ring, at.ring0, at.coil0))
     right = (*extrude(wires, at.core1, at.coil1), (ring, at.coil1, at.ring1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.description.outlines import INSET
 from geom.errors import InputError
 from geom.importing.draft import Draft
 
@@ -121,7 +122,7 @@ def end_windings(
     bore_m, depth_m = max(bore_m, 1e-2), max(depth_m, 1e-4)
     middle = bore_m / 2 + depth_m / 2
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle  # half of a semicircle's arc
-    ring = 2 * math.pi * middle * depth_m
+    ring = 2 * math.pi * middle * depth_m * (1 - 2 * INSET)
     loose = min(max(0.8 * fill, 0.02), 0.9)
     length = min(max(slots * copper_m2 * turn / (ring * loose), 0.05 * bore_m, 2.1e-3), 0.5 * bore_m)
     loose = min(max(slots * copper_m2 * turn / (ring * length), 0.005), 0.95)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from geom.description.outlines import Outline, radii
+from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
@@ -211,7 +211,7 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     reach = radii((Outline(slots, wire),))
     middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
-    loose = slots * count * each * turn / (math.pi * (max(reach) ** 2 - min(reach) ** 2) * end)
+    loose = slots * count * each * turn / (2 * math.pi * middle * (max(reach) - min(reach)) * (1 - 2 * INSET) * end)
     why = "end turns are semicircles over MagThrow"
     draft.assume("geometry.winding", why, end_fill=float(f"{min(max(loose, 0.005), 0.95):.6g}"))
     return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from foreign_machines import put, pyleecan, saved
 
-from geom import COARSE, InputError, build_mesh, import_draft, load_machine
+from geom import COARSE, InputError, build_mesh, check_cad, import_draft, load_machine
 from geom.description.profile import loop_area
 from geom.importing.holes import HOLES
 from geom.importing.plane import Place, unite
@@ -169,6 +169,15 @@ def test_a_small_machine_has_the_volumes_of_its_file(tmp_path):
     assert machine.features.air_gap == pytest.approx(0.0005)
     mesh = build_mesh(machine, **COARSE)
     assert set(mesh.parts) == {part.name for part in machine.parts}
+
+
+def test_solids_of_round_slots_are_watertight(tmp_path):
+    """End turns of round-bottomed slots do not merely touch the circle around them."""
+    slot = {"__class__": "SlotW11", "Zs": 12, **mm("H0=1 H1=1 H2=12 R1=3 W0=2 W1=4 W2=6")}
+    machine = load_machine(saved(tmp_path, pyleecan(stator__slot=slot)))
+    for check in check_cad(machine, 0.5):
+        assert check.watertight, check.part
+        assert check.solid_volume == pytest.approx(check.volume, rel=0.02)
 
 
 def test_the_file_written_says_where_each_value_is_from(tmp_path):

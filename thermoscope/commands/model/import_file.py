@@ -11,6 +11,7 @@ import typer
 from geom.errors import InputError
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
+from thermoscope.case_folder.folder import checked_losses
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
@@ -27,7 +28,7 @@ def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPL
     from geom.machine_file import machine_from
 
     draft = import_draft(file, family_template)
-    machine_from(draft.sections(), str(file))  # nothing is target_file that cannot be built
+    checked_losses(machine_from(draft.sections(), str(file)))  # nothing is written that cannot be built
     target_file = write_draft(draft, out or Path())
     document = {
         "machine": draft.name,
