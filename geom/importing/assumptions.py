@@ -83,7 +83,7 @@ def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, ir
     """
     current = density * copper_mm2 * parallel
     heat = COPPER_OHM_M * (density * 1e6) ** 2 * length_m * copper_mm2 * 1e-6
-    why = f"{density:g} A/mm2 in the copper of the file"
+    why = f"a current density of {density:g} A/mm2 in the copper of the file"
     draft.assume("ratings", why, current_A=round(current, 3))
     draft.assume("ratings", "order of magnitude", speed_rpm=USUAL_RPM)
     ohms = float(f"{heat / PHASES / current**2:.4g}")

@@ -112,7 +112,7 @@ class Draft:
         """What was not understood, what is assumed, what was taken: first what a reader must know."""
         order = {UNUSED: 0, ASSUMED: 1, COPIED: 2}
         rows = sorted((e.document() for e in self.entries), key=lambda row: order[row["kind"]])
-        return Table.of("", rows, "*kind | *key | *value | *source", [UNUSED])
+        return Table.of("", rows, "*kind | *key | value | *source", [UNUSED])
 
 
 def new_draft(name: Any, path: Path, program: str) -> Draft:
