@@ -388,10 +388,10 @@ def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> None
         present = node
     magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", present is not node)]
     turn = 2 * math.pi / copies if key == "hole_south" else 0.0
-    shared = copies if key == "hole" else max(copies // 2, 1)
+    around = copies if key == "hole" else max(copies // 2, 1)
     pockets = unite([*hole.magnets, *hole.air])
-    draft.draw("pockets", f"{name}, {kind}", shared, [rotate(loop, turn) for loop in pockets])
-    draft.draw("magnets", f"{name}, {kind}", shared, [rotate(loop, turn) for loop in magnets])
+    draft.draw("pockets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in pockets])
+    draft.draw("magnets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in magnets])
     _magnet_length(draft, _part(present, "magnet_0"), rotor, f"{name}.magnet_0")
 
 
