@@ -18,7 +18,7 @@ from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.families import radial_flux, series_dc
-from geom.families.drawn import DRAWN
+from geom.families.cross_section import CROSS_SECTION
 from geom.families.family import Family
 from geom.families.proportions import remedy
 from geom.importing.files import IMPORTERS, import_draft
@@ -38,7 +38,7 @@ def library() -> dict[str, Path]:
 
 def families() -> dict[str, Family]:
     """All families by name, those of other packages too (entry points "thermoscope.families")."""
-    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC, DRAWN)
+    builtin = (series_dc.FAMILY, radial_flux.PMSM, radial_flux.TEFC, CROSS_SECTION)
     return {family.name: family for family in (*builtin, *plugins("families").values())}
 
 

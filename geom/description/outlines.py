@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from geom.description.profile import ArcGrid, Loop, Profile
+from geom.description.profile import ArcGrid, Loop, Profile, edges
 from geom.errors import InputError
 
 LONGEST_MM = 1e4  # of a coordinate: a wind generator is 5 m wide
 MOST_POINTS = 2000  # of one shape, and of shapes in a group: a slot drawn by hand has some ten
 MOST_COPIES = 400  # around the axis
 OVERLAP = 1e-9  # m2; a common area below this is rounding
+INSET = 0.02  # of the radial depth of conductors: so far inside it end turns stay, clear of arcs that touch a circle
+NOTHING = 1e-10  # m2; of what is left of a shape whose sides coincide
 CROSSED = 0.01  # of a shape's area; chords of arcs that touch cross by less
 _RIGHT = "a list of shapes, each a list of at least two points [x, y] or [x, y, bulge] in mm"
 
@@ -45,8 +47,8 @@ def read_outlines(names: Mapping[str, str], table: Any, where: str) -> dict[str,
     for name, groups in table.items():
         place = f"{where} [[outlines.{name}]]"
         if name not in names:
-            known = ", ".join(f"{key} ({words})" for key, words in names.items()) or "none: this family draws its own"
-            raise InputError(f"unknown shapes {name!r}", f"{where} [outlines]", f"known: {known}")
+            listed = ", ".join(f"{key} ({words})" for key, words in names.items()) or "none: this family draws its own"
+            raise InputError(f"unknown shapes {name!r}", f"{where} [outlines]", f"known: {listed}")
         if not isinstance(groups, list) or not all(isinstance(group, Mapping) for group in groups):
             raise InputError(f"{name} is not a list of tables", place, "copies = 48, loops_mm = [[[x, y], ...]]")
     return {name: tuple(_group(g, f"{where} [[outlines.{name}]]") for g in table.get(name, ())) for name in names}
@@ -85,6 +87,8 @@ def refuse_cuts(outlines: Outlines, paths: tuple[str, ...]) -> None:
         profiles = [profile for group in groups for profile in group.around()[: 2 * len(group.loops)]]
         if name in paths:
             profiles = [Profile(_closed(profile.outer)) for profile in profiles]
+        elif any(profile.area < NOTHING for profile in profiles):
+            raise InputError("a shape has no area", f"[[outlines.{name}]]", "points around an area, in order")
         grid = ArcGrid(profiles)
         shapes = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
         place = f"[[outlines.{name}]]"
@@ -104,9 +108,19 @@ def _closed(path: Loop) -> Loop:
     return (*path[:-1], (*path[-1][:2], -math.tan(sweep / 4)))
 
 
-def corners(groups: tuple[Outline, ...]) -> Iterator[float]:
-    """Distances of all corners from the axis (m)."""
-    return (math.hypot(x, y) for group in groups for loop in group.loops for x, y, _ in loop)
+def radii(groups: tuple[Outline, ...]) -> list[float]:
+    """Distances from the axis of corners and points of arcs, and of straight edges where they are nearest (m)."""
+    out = []
+    for loop in (loop for group in groups for loop in group.loops):
+        for ((x, y, _), arc), end in zip(edges(loop), loop[1:]):
+            out += [math.hypot(x, y), math.hypot(*end[:2])]
+            if arc is not None:
+                out += [math.hypot(*arc.at(arc.start + arc.sweep * share)) for share in (0.25, 0.5, 0.75)]
+                continue
+            a, way = complex(x, y), complex(*end[:2]) - complex(x, y)
+            foot = -(a.conjugate() * way).real / max(abs(way) ** 2, NOTHING)
+            out += [abs(a + foot * way)] if 0.0 < foot < 1.0 else []
+    return out
 
 
 def notched_loop(radius: float, groups: tuple[Outline, ...]) -> Loop:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from geom.description.outlines import INSET
 from geom.errors import InputError
 from geom.importing.draft import Draft
 
@@ -59,19 +60,19 @@ def contacts(draft: Draft, slots_h: float | None = None, source: str = "") -> No
         "housing|stator.core": {"gap_mm": 0.02},
     }
     parts = parts_of(draft)
-    fitting = {pair: value for pair, value in usual.items() if pair == "default" or set(pair.split("|")) <= parts}
-    known = {e.key for e in draft.entries if e.section == "contacts"}
-    draft.assume("contacts", "as usual for this joint", **{k: v for k, v in fitting.items() if k not in known})
+    joints = {pair: value for pair, value in usual.items() if pair == "default" or set(pair.split("|")) <= parts}
+    entered = {e.key for e in draft.entries if e.section == "contacts"}
+    draft.assume("contacts", "as usual for this joint", **{k: v for k, v in joints.items() if k not in entered})
 
 
 def parts_of(draft: Draft) -> set[str]:
     """Names of the solids that the machine file will have, as far as contacts and losses name them."""
-    drawn = {e.section for e in draft.entries}
+    sections = {e.section for e in draft.entries}
     always = {"stator.core", "rotor.core", "shaft", "winding", "winding.left", "winding.right"}
     ends = {f"{part}.{end}" for part in ("bearing", "endcap") for end in ("left", "right")}
     some = {"magnets": "magnets", "bars": "rotor.cage", "coils": "winding.field"}
     housing = {"housing"} if draft.value("geometry.housing", "kind") != "none" else set()
-    return always | ends | housing | {part for name, part in some.items() if f"[outlines.{name}]" in drawn}
+    return always | ends | housing | {part for name, part in some.items() if f"[outlines.{name}]" in sections}
 
 
 def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, iron_kg: float, density: float) -> None:
@@ -82,7 +83,7 @@ def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, ir
     """
     current = density * copper_mm2 * parallel
     heat = COPPER_OHM_M * (density * 1e6) ** 2 * length_m * copper_mm2 * 1e-6
-    why = f"{density:g} A/mm2 in the copper of the file"
+    why = f"a current density of {density:g} A/mm2 in the copper of the file"
     draft.assume("ratings", why, current_A=round(current, 3))
     draft.assume("ratings", "order of magnitude", speed_rpm=USUAL_RPM)
     ohms = float(f"{heat / PHASES / current**2:.4g}")
@@ -96,10 +97,10 @@ def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, ir
     stray = max(round(ROTOR_SHARE * (HYSTERESIS_W_KG + EDDY_W_KG) * iron_kg, 2), 0.01)
     kind = "magnet" if "magnets" in parts else "stray"
     draft.assume("losses.rotor", "a tenth of the iron's", kind=kind, at=rotor, P_W=stray, of={**speed, "exponent": 2})
-    for part in sorted({"rotor.cage", "winding.field"} & parts):
-        share = max(round(0.5 * heat, 2), 0.01)
-        of = {"input": "current_A", "at": round(current, 3), "exponent": 2}
-        draft.assume(f"losses.{part.split('.')[-1]}", "half of the stator's", kind="stray", at=part, P_W=share, of=of)
+    share, of = max(round(0.5 * heat, 2), 0.01), {"input": "current_A", "at": round(current, 3), "exponent": 2}
+    for name, part in (("cage", "rotor.cage"), ("field", "winding.field")):
+        if part in parts:
+            draft.assume(f"losses.{name}", "half of the stator's", kind="stray", at=part, P_W=share, of=of)
     for end in ("left", "right"):
         name = f"losses.bearing-{end}"
         draft.assume(name, "order of magnitude", kind="bearing", at=f"bearing.{end}", P_W=5, of=speed)
@@ -118,9 +119,10 @@ def end_windings(
     depth_m : of the winding;  span : of a coil in slots
     copper_m2 : section of the conductors of a slot;  fill : of their room
     """
+    bore_m, depth_m = max(bore_m, 1e-2), max(depth_m, 1e-4)
     middle = bore_m / 2 + depth_m / 2
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle  # half of a semicircle's arc
-    ring = 2 * math.pi * middle * depth_m
+    ring = 2 * math.pi * middle * depth_m * (1 - 2 * INSET)
     loose = min(max(0.8 * fill, 0.02), 0.9)
     length = min(max(slots * copper_m2 * turn / (ring * loose), 0.05 * bore_m, 2.1e-3), 0.5 * bore_m)
     loose = min(max(slots * copper_m2 * turn / (ring * length), 0.005), 0.95)
@@ -137,4 +139,8 @@ def frame(draft: Draft, stack_m: float, ends_m: float, outer_m: float, shaft_m: 
     draft.assume(
         "geometry.frame", "room for the end turns", length_mm=round(1e3 * length, 4), cap_mm=round(1e3 * cap, 4)
     )
+    if draft.value("geometry.housing", "kind") == "none":
+        points = [point for loop in draft.value("[outlines.wires]", "loops_mm") for point in loop]
+        yoke = 1e3 * outer_m / 2 - max(math.hypot(x, y) for x, y, *_ in points)
+        draft.assume("geometry.frame", "less than half of the yoke", skirt_mm=max(round(0.4 * yoke, 4), 1.0))
     draft.assume("geometry.bearing", "in proportion to the shaft", outer_diameter_mm=round(max(1e3 * seat, 10.0), 4))

@@ -15,13 +15,16 @@ from geom.errors import InputError
 from geom.limits import MACHINE_BYTES
 from geom.table import Table
 
-TAKEN, ASSUMED, LEFT = "taken", "assumed", "not understood"
+COPIED, ASSUMED, UNUSED = "taken", "assumed", "not understood"
 _LINE = 150  # letters of a source, of a value in the table
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One value of the machine file.  kind : one of TAKEN, ASSUMED, LEFT; a value left out stands under no section"""
+    """One value of the machine file, or of the other program's.
+
+    kind : COPIED, ASSUMED or UNUSED;  section : "" of what is UNUSED, "[outlines.NAME]" of shapes
+    """
 
     section: str
     key: str
@@ -32,7 +35,7 @@ class Entry:
     def document(self) -> dict[str, Any]:
         """For JSON and the table: the key as a machine file has it."""
         name = ".".join(filter(None, [self.section, self.key]))
-        return {"key": name, "value": _shown(self.value), "kind": self.kind, "source": self.source}
+        return {"key": name, "value": _display(self.value), "kind": self.kind, "source": self.source}
 
 
 @dataclass
@@ -47,7 +50,7 @@ class Draft:
 
     def take(self, section: str, source: str, **values: Any) -> None:
         """Values as the file has them, or as they follow from it.  source : its keys"""
-        self.entries += [Entry(section, key, value, TAKEN, one_line(source)) for key, value in values.items()]
+        self.entries += [Entry(section, key, value, COPIED, one_line(source)) for key, value in values.items()]
 
     def assume(self, section: str, why: str, **values: Any) -> None:
         """Values that the file does not know."""
@@ -55,7 +58,7 @@ class Draft:
 
     def leave(self, key: str, value: Any, why: str) -> None:
         """What the file says and the machine file does not: with the reason."""
-        self.entries.append(Entry("", key, value, LEFT, one_line(why)))
+        self.entries.append(Entry("", key, value, UNUSED, one_line(why)))
 
     def draw(self, name: str, source: str, copies: int, loops: Iterable[Loop]) -> None:
         """Shapes (m) around the axis, for [[outlines.name]]."""
@@ -84,32 +87,32 @@ class Draft:
         """Sections in the order they began; each set of outlines is one of its own."""
         groups: dict[tuple[str, int], list[Entry]] = {}
         for entry in self.entries:
-            if entry.kind == LEFT:
+            if entry.kind == UNUSED:
                 continue
-            drawn = entry.section.startswith("[")
+            shape = entry.section.startswith("[")
             count = sum(e.key == entry.key for key, g in groups.items() if key[0] == entry.section for e in g)
-            groups.setdefault((entry.section, count if drawn else 0), []).append(entry)
+            groups.setdefault((entry.section, count if shape else 0), []).append(entry)
         return [(section, entries) for (section, _), entries in groups.items()]
 
     def toml(self) -> str:
         """The machine file: each value with its source behind it, what went nowhere at the end."""
-        told = "Each value names the key it was taken from, or why it is assumed."
-        lines = [f"# From {self.program}: {one_line(self.path.name)}. {told}"]
+        sentence = "Each value names the key it was taken from, or why it is assumed."
+        lines = [f"# From {self.program}: {one_line(self.path.name)}. {sentence}"]
         for section, entries in self._by_section():
             lines += ["", f"[{section}]"]
             for e in entries:
                 key = e.key if e.key.replace("_", "a").isalnum() and e.key.isascii() else json.dumps(e.key)
                 mark = "assumed: " if e.kind == ASSUMED else ""
                 lines.append(f"{key} = {_toml(e.value)}  # {mark}{e.source}")
-        left = [f"{e.key} = {_shown(e.value)}: {e.source}" for e in self.entries if e.kind == LEFT]
+        left = [f"{e.key} = {_display(e.value)}: {e.source}" for e in self.entries if e.kind == UNUSED]
         lines += ["", "# Not understood, or of no use here:", *(f"# {one_line(line)}" for line in left)]
         return "\n".join([*lines, ""])
 
     def table(self) -> Table:
         """What was not understood, what is assumed, what was taken: first what a reader must know."""
-        order = {LEFT: 0, ASSUMED: 1, TAKEN: 2}
+        order = {UNUSED: 0, ASSUMED: 1, COPIED: 2}
         rows = sorted((e.document() for e in self.entries), key=lambda row: order[row["kind"]])
-        return Table.of("", rows, "*kind | *key | *value | *source", [LEFT])
+        return Table.of("", rows, "*kind | *key | value | *source", [UNUSED])
 
 
 def new_draft(name: Any, path: Path, program: str) -> Draft:
@@ -136,12 +139,12 @@ def number(values: Mapping[str, Any], key: str, where: str, low: float = -1e9, h
     """A finite number of a table. Raises InputError that names where it stands and what would be right."""
     value = values.get(key)
     try:
-        found = float(value)  # type: ignore[arg-type]
+        size = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        found = math.nan
-    if isinstance(value, bool) or not low <= found <= high:
+        size = math.nan
+    if isinstance(value, bool) or not low <= size <= high:
         raise InputError(f"{key} = {str(value)[:40]} is not possible", where, f"a number from {low:g} to {high:g}")
-    return found
+    return size
 
 
 def one_line(text: str) -> str:
@@ -150,7 +153,7 @@ def one_line(text: str) -> str:
     return words if len(words) <= _LINE else f"{words[: _LINE - 3]}..."
 
 
-def _shown(value: Any) -> Any:
+def _display(value: Any) -> Any:
     if isinstance(value, list) and value and isinstance(value[0], list):
         return f"{len(value)} shapes of {sum(map(len, value))} points"
     return value if isinstance(value, int | float | bool) else one_line(str(value))

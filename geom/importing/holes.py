@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from geom.description.profile import Loop
-from geom.importing.plane import Place, Point, Sizes, arc, closed, crossing, mirrored, on_circle
+from geom.importing.plane import Place, Point, Sizes, arc, crossing, loop_through, mirror, on_circle
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,9 @@ class Hole:
 
 
 def _both(magnets: list[Loop], air: list[Loop]) -> Hole:
-    """As drawn below the middle, and mirrored: magnet_0 lies below."""
-    pairs = tuple(m for magnet in magnets for m in (magnet, mirrored(magnet)))
-    return Hole(pairs, tuple(a for loop in air for a in (loop, mirrored(loop))))
+    """As drawn below the middle, and mirror: magnet_0 lies below."""
+    pairs = tuple(m for magnet in magnets for m in (magnet, mirror(magnet)))
+    return Hole(pairs, tuple(a for loop in air for a in (loop, mirror(loop))))
 
 
 def _along(start: complex, angle: float, *points: complex) -> list[complex]:
@@ -45,9 +45,9 @@ def _m50(place: Place, d: Sizes) -> Hole:
     z1 = r * cmath.exp(1j * (math.asin(d["W3"] / 2 / r) - h))
     z11, z10 = z1 + d["H4"] * rib, z9 + d["H4"] * rib
     z2 = crossing(seat1, seat2, z1, z1 + rib)
-    magnet = closed([low1, low2, seat2, top2, top1, seat1])
-    tip = closed([z1, z2, seat2, top2, z9, (z10, arc(z10, z11)), z11])
-    return _both([magnet], [tip, closed([seat1, z7, z8, top1])])
+    magnet = loop_through([low1, low2, seat2, top2, top1, seat1])
+    tip = loop_through([z1, z2, seat2, top2, z9, (z10, arc(z10, z11)), z11])
+    return _both([magnet], [tip, loop_through([seat1, z7, z8, top1])])
 
 
 def _m51(place: Place, d: Sizes) -> Hole:
@@ -63,15 +63,15 @@ def _m51(place: Place, d: Sizes) -> Hole:
 
     def beside(start: float, length: float) -> Loop:
         corners = (0.0, length, length + 1j * d["H2"], 1j * d["H2"])
-        return closed([z2 + (start + corner) * side for corner in corners])
+        return loop_through([z2 + (start + corner) * side for corner in corners])
 
     high = z2 - 1j * d["W2"]
     low = high - 1j * d["W3"]
-    across = closed([low, low - d["H2"], high - d["H2"], high])
+    across = loop_through([low, low - d["H2"], high - d["H2"], high])
     upper: list[Point] = [(z2, 0.0), (z5, arc(z5, z6)), (z6, 0.0), (outer, 0.0)]
     lower: list[Point] = [(outer.conjugate(), 0.0), (z6.conjugate(), arc(z5, z6)), (z5.conjugate(), 0.0)]
-    whole = closed([*upper, *lower, z2.conjugate()])
-    return Hole((mirrored(beside(d["W6"], d["W7"])), across, beside(d["W4"], d["W5"])), (whole,))
+    whole = loop_through([*upper, *lower, z2.conjugate()])
+    return Hole((mirror(beside(d["W6"], d["W7"])), across, beside(d["W4"], d["W5"])), (whole,))
 
 
 def _m52(place: Place, d: Sizes) -> Hole:
@@ -82,8 +82,8 @@ def _m52(place: Place, d: Sizes) -> Hole:
     wide = z1.imag - math.tan(place.half) * (d["H1"] - d["H2"]) - d["W0"] / 2
     a, top = low + 0.5j * d["W0"], z1.real + 0.5j * d["W0"]
     seat = low + d["H2"] + 0.5j * d["W0"]
-    tip = closed([seat, top, z1, seat + 1j * wide])
-    return Hole((closed([a.conjugate(), top.conjugate(), top, a]),), (tip, mirrored(tip)))
+    tip = loop_through([seat, top, z1, seat + 1j * wide])
+    return Hole((loop_through([a.conjugate(), top.conjugate(), top, a]),), (tip, mirror(tip)))
 
 
 def _m53(place: Place, d: Sizes) -> Hole:
@@ -95,9 +95,9 @@ def _m53(place: Place, d: Sizes) -> Hole:
     seat1, low1, top1 = _along(z6, -w, near, near - 1j * d["H3"], near + 1j * deep)
     seat2, low2, top2 = _along(z6, -w, far, far - 1j * d["H3"], far + 1j * deep)
     z11, z1 = (on_circle(a, b, r)[0] for a, b in ((z8, top2), (z6, seat2)))
-    magnet = closed([low1, low2, seat2, top2, top1, seat1])
-    tip = closed([seat2, (z1, arc(z1, z11)), z11, top2])
-    return _both([magnet], [tip, closed([z7, z6, seat1, top1, z8])])
+    magnet = loop_through([low1, low2, seat2, top2, top1, seat1])
+    tip = loop_through([seat2, (z1, arc(z1, z11)), z11, top2])
+    return _both([magnet], [tip, loop_through([z7, z6, seat1, top1, z8])])
 
 
 def _m54(place: Place, d: Sizes) -> Hole:
@@ -105,7 +105,7 @@ def _m54(place: Place, d: Sizes) -> Hole:
     centre = place.radius - d["H0"] + d["R1"]
     a, b = (centre + r * cmath.exp(1j * (math.pi + d["W0"] / 2)) for r in (d["R1"], d["R1"] + d["H1"]))
     out, back = arc(b, b.conjugate(), centre), arc(a.conjugate(), a, centre)
-    return Hole((), (closed([(b, out), (b.conjugate(), 0.0), (a.conjugate(), back), (a, 0.0)]),))
+    return Hole((), (loop_through([(b, out), (b.conjugate(), 0.0), (a.conjugate(), back), (a, 0.0)]),))
 
 
 def _m57(place: Place, d: Sizes) -> Hole:
@@ -119,8 +119,8 @@ def _m57(place: Place, d: Sizes) -> Hole:
     along = ((z8 - z4) * cmath.exp(-1j * lean)).real
     far, near = along - d["W2"], along - d["W2"] - d["W4"]
     z2, z7, z3, z6 = _along(z4, lean, far, far - 1j * d["H2"], near, near - 1j * d["H2"])
-    magnet = closed([z6, z7, z2, z3])
-    return _both([magnet], [closed([z8, z1, z2, z7]), closed([z5, z6, z3, z4])])
+    magnet = loop_through([z6, z7, z2, z3])
+    return _both([magnet], [loop_through([z8, z1, z2, z7]), loop_through([z5, z6, z3, z4])])
 
 
 def _m58(place: Place, d: Sizes) -> Hole:
@@ -130,9 +130,10 @@ def _m58(place: Place, d: Sizes) -> Hole:
     z3, z4 = _touch(z2, centre, r0, 1), _touch(z5, centre, r0, -1)
     sweep = cmath.phase((z4 - centre) / (z3 - centre)) % (2 * math.pi)
     bulge = math.tan(sweep / 4)
-    whole = [z2, (z3, bulge), z4, z5, z5.conjugate(), (z4.conjugate(), bulge), z3.conjugate(), z2.conjugate()]
+    lower: list[Point | complex] = [z5.conjugate(), (z4.conjugate(), bulge), z3.conjugate(), z2.conjugate()]
+    whole: list[Point | complex] = [z2, (z3, bulge), z4, z5, *lower]
     a, b = z2 - 1j * d["W2"], z2 - 1j * (d["W2"] + d["W1"])
-    return Hole((closed([a, a - d["H2"], b - d["H2"], b]),), (closed(whole),))
+    return Hole((loop_through([a, a - d["H2"], b - d["H2"], b]),), (loop_through(whole),))
 
 
 def _touch(point: complex, centre: complex, radius: float, sign: int) -> complex:
@@ -157,10 +158,10 @@ def _m60(place: Place, d: Sizes) -> Hole:
         return (end + p * way + 1j * lift) * -1j
 
     a = (long - d["W1"]) / 2
-    magnet = closed([placed(p) for p in (a, a - 1j * h0, a + d["W1"] - 1j * h0, a + d["W1"])])
+    magnet = loop_through([placed(p) for p in (a, a - 1j * h0, a + d["W1"] - 1j * h0, a + d["W1"])])
     hole = [placed(p) for p in (0.0, -1j * h0, long - 1j * h0, long)]
-    whole = closed([(hole[0], 1.0), hole[1], (hole[2], 1.0), hole[3]])
-    return Hole((mirrored(magnet), magnet), (whole, mirrored(whole)))
+    whole = loop_through([(hole[0], 1.0), hole[1], (hole[2], 1.0), hole[3]])
+    return Hole((mirror(magnet), magnet), (whole, mirror(whole)))
 
 
 def _m61(place: Place, d: Sizes) -> Hole:
@@ -172,12 +173,12 @@ def _m61(place: Place, d: Sizes) -> Hole:
     z6, z3 = crossing(z1, z1 + 1j, low, low + spoke), crossing(z2, z2 + 1j, high, high + spoke)
     reach = place.radius - d["H2"]
     z5, z4 = (on_circle(a, a + spoke, reach)[0] for a in (z6, z3))
-    whole = closed([z1, z2, z3, (z4, arc(z4, z5)), z5, z6])
-    across = closed([z1, z2, z2 + 1j * d["W1"], z1 + 1j * d["W1"]])
+    whole = loop_through([z1, z2, z3, (z4, arc(z4, z5)), z5, z6])
+    across = loop_through([z1, z2, z2 + 1j * d["W1"], z1 + 1j * d["W1"]])
     middle = (z3 + z4) / 2
     a, b = middle - d["W2"] / 2 * spoke, middle + d["W2"] / 2 * spoke
-    along = closed([a, b, b + 1j * d["H1"] * spoke, a + 1j * d["H1"] * spoke])
-    return Hole((across, along, mirrored(across), mirrored(along)), (whole, mirrored(whole)))
+    along = loop_through([a, b, b + 1j * d["H1"] * spoke, a + 1j * d["H1"] * spoke])
+    return Hole((across, along, mirror(across), mirror(along)), (whole, mirror(whole)))
 
 
 def _m62(place: Place, d: Sizes) -> Hole:
@@ -188,7 +189,9 @@ def _m62(place: Place, d: Sizes) -> Hole:
     else:
         a = math.sqrt(r**2 - d["W0"] ** 2 / 4) + 0.5j * d["W0"]
         b = a - d["H0"]
-    loop = closed([(b.conjugate(), 0.0), (a.conjugate(), arc(a.conjugate(), a)), (a, 0.0), (b, arc(b, b.conjugate()))])
+    loop = loop_through(
+        [(b.conjugate(), 0.0), (a.conjugate(), arc(a.conjugate(), a)), (a, 0.0), (b, arc(b, b.conjugate()))]
+    )
     return Hole((loop,), ())
 
 
@@ -198,7 +201,7 @@ def _m63(place: Place, d: Sizes) -> Hole:
     top = r if d.get("top_flat") else math.sqrt(r**2 - d["W0"] ** 2 / 4)
     a = top + 0.5j * d["W0"]
     up = 0.0 if d.get("top_flat") else arc(a.conjugate(), a)
-    return Hole((closed([(a - d["H0"]).conjugate(), (a.conjugate(), up), a, a - d["H0"]]),), ())
+    return Hole((loop_through([(a - d["H0"]).conjugate(), (a.conjugate(), up), a, a - d["H0"]]),), ())
 
 
 HOLES: dict[str, Callable[[Place, Sizes], Hole]] = {

@@ -9,11 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
 from geom.importing.draft import Draft, new_draft, number, one_line, read_text
-from geom.importing.plane import Place, Point, Slot, arc, closed, joined, mirrored
+from geom.importing.plane import Place, Point, Slot, arc, loop_through, mirror, unite
 from geom.importing.slots import magnet_of
 
 RIGHT = "a Motor-CAD file: [Header] with Program_Name=Motor-CAD, then sections of key=value"
@@ -45,7 +46,7 @@ LOSSES = {
     "Friction_Loss_[R]_@Ref_Speed": ("Friction_Loss_[R]", "", "bearing", "bearing.right"),
 }
 # What matters where it is not neutral, and goes nowhere here.
-UNUSED = {
+IGNORED = {
     "Sleeve_Thickness": (0.0, "no sleeve here: the air gap is as wide as Airgap"),
     "Banding_Thickness": (0.0, "no banding here: the air gap is as wide as Airgap"),
     "Rotor_Water_Jacket": ("False", "the rotor has no jacket here"),
@@ -90,10 +91,10 @@ class File:
     def count(self, key: str) -> int:
         return round(self.number(key, 1, 400))
 
-    def choice(self, key: str, known: Any) -> str:
+    def choice(self, key: str, words: Any) -> str:
         word = self.values.get(key, "")
-        if word not in known:
-            raise InputError(f"{key} = {word[:40]!r} is not read", self.where(key), f"one of: {', '.join(known)}")
+        if word not in words:
+            raise InputError(f"{key} = {word[:40]!r} is not read", self.where(key), f"one of: {', '.join(words)}")
         return word
 
 
@@ -103,7 +104,7 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     file.choice("Motor_Type", ("BPM",))
     draft = new_draft(file.values.get("Title"), path, f"Motor-CAD {file.values.get('Program_Version', '')}")
     draft.take("machine", "Title", name=draft.name)
-    draft.assume("machine", "any cross-section", family="drawn")
+    draft.assume("machine", "any cross-section", family="cross-section")
     notes = file.values.get("DataFile_Notes")
     if notes:
         draft.take("machine", "DataFile_Notes", description=one_line(notes))
@@ -207,10 +208,10 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     end = max(file.length("EWdg_Overhang_[F]", 30e-3) - straight, 2e-3)
     draft.take("geometry.winding", "Wdg_Extension_[F]", straight_mm=_mm(max(straight, 0.5e-3)))
     draft.take("geometry.winding", "EWdg_Overhang_[F] less Wdg_Extension_[F]", end_mm=_mm(end))
-    radii = [math.hypot(x, y) for loop in wire for x, y, _ in loop]
-    middle, span = (max(radii) + min(radii)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
+    reach = radii((Outline(slots, wire),))
+    middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
-    loose = slots * count * each * turn / (math.pi * (max(radii) ** 2 - min(radii) ** 2) * end)
+    loose = slots * count * each * turn / (2 * math.pi * middle * (max(reach) - min(reach)) * (1 - 2 * INSET) * end)
     why = "end turns are semicircles over MagThrow"
     draft.assume("geometry.winding", why, end_fill=float(f"{min(max(loose, 0.005), 0.95):.6g}"))
     return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
@@ -236,9 +237,9 @@ def _v_layers(file: File, place: Place) -> list[tuple[Loop, Loop]]:
         start = tip - (tip.imag - rib) / way.imag * way
         end = start + value("MagnetBarWidth") * way
         across = 1j * way * thick
-        magnet = closed([start, end, end + across, start + across])
-        beyond = ((tip - end) * way.conjugate()).real
-        out.append((magnet, closed([end, tip, tip + across, end + across]) if beyond > 1e-5 else ()))
+        magnet = loop_through([start, end, end + across, start + across])
+        excess = ((tip - end) * way.conjugate()).real
+        out.append((magnet, loop_through([end, tip, tip + across, end + across]) if excess > 1e-5 else ()))
     return out
 
 
@@ -261,9 +262,9 @@ def _rotor(draft: Draft, file: File) -> None:
 def _v_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
     arms = _v_layers(file, place)
     words = "PoleVAngle, PoleArc, BridgeThickness, MagnetThickness, MagnetBarWidth by layer"
-    magnets = [loop for magnet, _ in arms for loop in (magnet, mirrored(magnet))]
-    air = [loop for _, tip in arms if tip for loop in (tip, mirrored(tip))]
-    draft.draw("pockets", words, poles, joined([*magnets, *air]))
+    magnets = [loop for magnet, _ in arms for loop in (magnet, mirror(magnet))]
+    air = [loop for _, tip in arms if tip for loop in (tip, mirror(tip))]
+    draft.draw("pockets", words, poles, unite([*magnets, *air]))
     draft.draw("magnets", f"{words}: at the inner ends of their pockets", poles, magnets)
 
 
@@ -345,9 +346,9 @@ def _contacts(draft: Draft, file: File) -> None:
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:
     """As the file has them at its reference speeds; where it has none but in the copper, the usual ones."""
-    given = {key: file.number(key, 0.0, 1e9, 0.0) for key in LOSSES}
+    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in LOSSES}
     speed = file.number("Shaft_Speed", 0.0, 1e6, assumptions.USUAL_RPM)
-    if not any(given.values()):
+    if not any(watts.values()):
         draft.leave("[Losses_At_RPM_Ref]", "0", "no losses in the file")
         iron = 7600.0 * file.length("Stator_Lam_Length") * math.pi / 4 * (file.length("Stator_Lam_Dia") ** 2) * 0.5
         density = assumptions.CURRENT_DENSITY.get("jacket", assumptions.USUAL_DENSITY)
@@ -355,24 +356,24 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
         return
     draft.take("ratings", "Shaft_Speed", speed_rpm=speed)
     for key, (name, other, kind, place) in LOSSES.items():
-        if not given[key]:
+        if not watts[key]:
             continue
         reference = file.number(f"Ref_Speed_-_{name}", 1.0, 1e6, assumptions.USUAL_RPM)
         exponent = file.number(f"Speed_Coeff_-_{other or name}", 0.0, 10.0, 0.0)
-        values: dict[str, Any] = {"kind": kind, "at": place, "P_W": given[key]}
+        values: dict[str, Any] = {"kind": kind, "at": place, "P_W": watts[key]}
         if exponent:
             values["of"] = {"input": "speed_rpm", "at": reference, "exponent": exponent}
         draft.take(
             f"losses.{name.split('_@')[0].lower().replace('_', '-').replace('[', '').replace(']', '')}", key, **values
         )
-    none = [key for key, watts in given.items() if not watts]
+    none = [key for key, loss in watts.items() if not loss]
     if none:
         draft.leave("[Losses_At_RPM_Ref]", "0", f"no loss in the file: {', '.join(key.split('_@')[0] for key in none)}")
 
 
 def _left(draft: Draft, file: File) -> None:
     """What matters and goes nowhere; values that differ from our table's; stored temperatures."""
-    for key, (neutral, why) in UNUSED.items():
+    for key, (neutral, why) in IGNORED.items():
         text = file.values.get(key, "")
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)

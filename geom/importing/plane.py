@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from geom.description.outlines import NOTHING
 from geom.description.profile import ArcGrid, Loop, Profile, Vertex
 
 Point = tuple[complex, float]  # m, and the bulge of the edge that leaves it
@@ -64,7 +65,7 @@ class Slot:
         part = self.half[self.first :]
         lid = arc(part[0][0], part[0][0].conjugate()) if self.round_lid else 0.0
         path = _whole(part, self.bottom)
-        return (closed([(complex(x, y), b) for x, y, b in path[:-1]] + [(complex(*path[-1][:2]), lid)]),)
+        return (loop_through([(complex(x, y), b) for x, y, b in path[:-1]] + [(complex(*path[-1][:2]), lid)]),)
 
 
 def _whole(half: Sequence[Point], bottom: float) -> Loop:
@@ -76,11 +77,11 @@ def _whole(half: Sequence[Point], bottom: float) -> Loop:
 
 def vertices(points: Sequence[Point]) -> list[Vertex]:
     """Without edges that have no length."""
-    kept = [p for p, q in pairwise(points) if abs(p[0] - q[0]) > _SAME] + [points[-1]]
-    return [(z.real, z.imag, b) for z, b in kept]
+    corners = [p for p, q in pairwise(points) if abs(p[0] - q[0]) > _SAME] + [points[-1]]
+    return [(z.real, z.imag, b) for z, b in corners]
 
 
-def closed(points: Sequence[Point | complex]) -> Loop:
+def loop_through(points: Sequence[Point | complex]) -> Loop:
     """A closed loop of points, where an edge is an arc with its bulge."""
     pairs = [p if isinstance(p, tuple) else (p, 0.0) for p in points]
     out = vertices(pairs)
@@ -92,13 +93,13 @@ def arc(a: complex, b: complex, centre: complex = 0.0) -> float:
     return math.tan(cmath.phase((b - centre) / (a - centre)) / 4) if abs(a - b) > _SAME else 0.0
 
 
-def mirrored(loop: Loop) -> Loop:
+def mirror(loop: Loop) -> Loop:
     """On the other side of the middle, anticlockwise again."""
     back = list(reversed(loop))
     return tuple((x, -y, following[2]) for (x, y, _), following in zip(back, [*back[1:], back[0]]))
 
 
-def turned(loop: Loop, angle: float) -> Loop:
+def rotate(loop: Loop, angle: float) -> Loop:
     return Profile(loop).rotated(angle).outer
 
 
@@ -116,10 +117,11 @@ def on_circle(a: complex, b: complex, radius: float) -> list[complex]:
     return [] if rest < 0 else [a + (along + sign * math.sqrt(rest)) * way for sign in (1, -1)]
 
 
-def joined(loops: Sequence[Loop]) -> list[Loop]:
+def unite(loops: Sequence[Loop]) -> list[Loop]:
     """Loops that touch as one; a loop that stands alone keeps its arcs."""
     import shapely
 
+    loops = [loop for loop in loops if Profile(loop).area > NOTHING]
     grid = ArcGrid([Profile(loop) for loop in loops], _FACETS)
     shapes = [shapely.Polygon(grid.facet(loop)).buffer(0) for loop in loops]
     close = [[j for j, other in enumerate(shapes) if shape.distance(other) < 1e-7] for shape in shapes]

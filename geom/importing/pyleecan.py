@@ -11,15 +11,23 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.names import checked_document
+from geom.description.outlines import NOTHING, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
 from geom.importing.draft import Draft, new_draft, number, one_line, read_text
 from geom.importing.holes import HOLES, Hole
-from geom.importing.plane import Place, Slot, arc, closed, joined, turned, vertices
+from geom.importing.plane import Place, Slot, arc, loop_through, rotate, unite, vertices
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
 
 RIGHT = "a machine as pyleecan saves it: JSON with __class__, stator and rotor"
+ROTORS = (
+    *("LamHole", "LamHoleNS", "LamSlot", "LamSlotMag", "LamSlotMagNS", "LamSlotM", "LamSlotWind"),
+    *("LamSquirrelCage", "LamSquirrelCageMag"),
+)
+HOLE_KEYS = ("hole", "hole_north", "hole_south")
+LARGEST_M = 10.0  # of a coordinate
+MOST_PARTS = 100  # holes of a pole, or surfaces of one
 SLOTS = (*STEPS, *CURVED, "SlotUD")
 # Section of one conductor (m2) by the letters of its class; the first whose letters are all there.
 SECTIONS = {
@@ -60,18 +68,23 @@ class Lamination:
         return Place(self.surface, self.way, math.pi / copies)
 
 
+@dataclass(frozen=True)
+class PathSlot:
+    """A slot whose path and filling the file draws line by line."""
+
+    path: Loop
+    filled: tuple[Loop, ...]
+
+
 def read_pyleecan(path: Path, family_template: str) -> Draft:
     """The draft of a machine file. Raises InputError for what is no machine with a rotor inside its stator."""
     document = _document(path)
     kind = str(document.get("__class__", ""))
-    draft = new_draft(
-        document.get("name"),
-        path,
-        f"pyleecan {document.get('__version__', '')}".replace("pyleecan pyleecan_", "pyleecan "),
-    )
+    version = str(document.get("__version__", "")).removeprefix("pyleecan_")
+    draft = new_draft(document.get("name"), path, f"pyleecan {version}")
     pair = [_lamination(document, key, path) for key in ("stator", "rotor")]
     draft.take("machine", "name", name=draft.name)
-    draft.assume("machine", f"{kind}: any cross-section", family="drawn")
+    draft.assume("machine", f"{kind}: any cross-section", family="cross-section")
     if document.get("desc"):
         draft.take("machine", "desc", description=one_line(document["desc"]))
     _stator(draft, pair[0])
@@ -114,6 +127,20 @@ def _table(node: Node, key: str, where: str) -> Node:
     return value
 
 
+def _part(node: Node, key: str) -> Node:
+    """A table that may be missing; then, and where it is something else, an empty one."""
+    value = node.get(key)
+    return value if isinstance(value, Mapping) else {}
+
+
+def _parts(node: Node, key: str, where: str) -> list[Node]:
+    """A list of tables that may be missing."""
+    value = node.get(key) or []
+    if not isinstance(value, list) or len(value) > MOST_PARTS or not all(isinstance(part, Mapping) for part in value):
+        raise InputError(f"{key} is no list of up to {MOST_PARTS} tables", where, RIGHT)
+    return value
+
+
 def _lamination(document: Node, key: str, path: Path) -> Lamination:
     where = f"{path} {key}"
     node = _table(document, key, str(path))
@@ -129,11 +156,11 @@ def _lamination(document: Node, key: str, path: Path) -> Lamination:
 def _sizes(node: Node, where: str) -> dict[str, float]:
     """All numbers of a slot, hole or conductor; what older files call otherwise by today's names."""
     sizes = {
-        key: number(node, key, where) if not isinstance(value, bool) else float(value)
+        key: number(node, key, where, -1e5, 1e5) if not isinstance(value, bool) else float(value)
         for key, value in node.items()
         if isinstance(value, int | float)
     }
-    if sizes.get("H1_is_rad"):
+    if sizes.get("H1_is_rad") and {"W0", "W1", "H1"} <= set(sizes):
         sizes["H1"] = (sizes["W1"] - sizes["W0"]) / 2 * math.tan(sizes["H1"])
     kind = str(node.get("__class__"))
     if kind in MAGNETS:
@@ -146,31 +173,30 @@ def _copies(node: Node, key: str, where: str) -> int:
     return round(number(node, key, where, 1, 400))
 
 
-def _drawn(kind: str, known: Any, where: str, draw: Any) -> Any:
+def _shape(kind: str, classes: Any, where: str, draw: Any) -> Any:
     """What a class draws; one message where it is unknown, or its numbers make no shape."""
-    if kind not in known:
-        raise InputError(f"__class__ = {kind[:40]!r} is not known", where, f"one of: {', '.join(known)}")
+    if kind not in classes:
+        raise InputError(f"__class__ = {kind[:40]!r} is not known", where, f"one of: {', '.join(classes)}")
     try:
         return draw()
     except KeyError as missing:
         raise InputError(f"{kind} lacks {missing}", where, "a number in m or rad") from None
     except (ValueError, ZeroDivisionError, OverflowError, IndexError):
-        raise InputError(
-            f"the numbers of this {kind} make no shape", where, "sides that meet the circles they end on"
-        ) from None
+        right = "sides that meet the circles they end on"
+        raise InputError(f"the numbers of this {kind} make no shape", where, right) from None
 
 
-def _slot(lamination: Lamination) -> tuple[Slot, int, str]:
+def _slot(lamination: Lamination) -> tuple[Slot | PathSlot, int, str]:
     where = f"{lamination.where}.slot"
     node = _table(lamination.node, "slot", lamination.where)
     kind, copies = str(node.get("__class__")), _copies(node, "Zs", where)
     place = lamination.place(copies)
     if kind == "SlotUD":
-        return _drawn(kind, (kind,), where, lambda: _own_slot(node, where)), copies, kind
+        return _shape(kind, (kind,), where, lambda: _line_slot(node, where)), copies, kind
     sizes = _sizes(node, where)
     if kind in MAGNETS:
-        return _drawn(kind, MAGNETS, where, lambda: magnet_of(kind, place, sizes)), copies, kind
-    return _drawn(kind, SLOTS, where, lambda: slot_of(kind, place, sizes)), copies, kind
+        return _shape(kind, MAGNETS, where, lambda: magnet_of(kind, place, sizes)), copies, kind
+    return _shape(kind, SLOTS, where, lambda: slot_of(kind, place, sizes)), copies, kind
 
 
 def _lines(node: Node, key: str, where: str) -> list[tuple[complex, float, complex]]:
@@ -185,6 +211,8 @@ def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
     try:
         a, b = (complex(str(line[end]).replace(" ", "")) for end in ("begin", "end"))
         kind, left = line["__class__"], line.get("is_trigo_direction", True)
+        if max(abs(a), abs(b)) > LARGEST_M:
+            raise ValueError
     except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError("is no line", where, "__class__, begin and end, each a complex number in m") from None
     if kind == "Segment":
@@ -198,31 +226,19 @@ def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
     return a, bulge if left else -bulge, b
 
 
-def _loop(node: Node, key: str, where: str) -> Loop:
-    return closed([(a, bulge) for a, bulge, _ in _lines(node, key, where)])
-
-
-def _own_slot(node: Node, where: str) -> Slot:
+def _line_slot(node: Node, where: str) -> PathSlot:
     """A slot drawn line by line, begun at either side."""
     lines = _lines(node, "line_list", where)
     first, last = node.get("wind_begin_index"), node.get("wind_end_index")
     part = lines[first:last] if isinstance(first, int) and isinstance(last, int) else lines
     begin, end = part[0][0], part[-1][2]
     lid = arc(end, begin) if node.get("type_line_wind") or part is lines else 0.0
-    wire = closed([*((a, bulge) for a, bulge, _ in part), (end, lid)])
+    wire = loop_through([*((a, bulge) for a, bulge, _ in part), (end, lid)])
     path = vertices([*((a, bulge) for a, bulge, _ in lines), (lines[-1][2], 0.0)])
     if math.atan2(path[0][1], path[0][0]) > math.atan2(path[-1][1], path[-1][0]):
         back = path[::-1]
         path = [(x, y, -following[2]) for (x, y, _), following in zip(back, [*back[1:], (0.0, 0.0, 0.0)])]
-    return DrawnSlot(tuple(path), (wire,))
-
-
-@dataclass(frozen=True)
-class DrawnSlot:
-    """A slot whose path and filling the file draws, in place of `Slot`."""
-
-    path: Loop
-    filled: tuple[Loop, ...]
+    return PathSlot(tuple(path), (wire,))
 
 
 def _conductors(winding: Node, slots: int, where: str) -> float:
@@ -246,8 +262,8 @@ def _entries(matrix: Any, depth: int = 0) -> Iterator[float]:
 def _section(conductor: Node, where: str) -> float:
     sizes = _sizes(conductor, where)
     for letters, section in SECTIONS.items():
-        if all(sizes.get(letter) for letter in letters.split()):
-            return float(section(sizes))
+        if all(sizes.get(letter) for letter in letters.split()) and (area := float(section(sizes))) > 0:
+            return area
     kind = str(conductor.get("__class__"))[:40]
     raise InputError(f"{kind} has no section", where, f"one of: {'; '.join(SECTIONS)}")
 
@@ -258,6 +274,8 @@ def _fill(draft: Draft, lamination: Lamination, name: str, copies: int, room: fl
     winding = _table(lamination.node, "winding", lamination.where)
     count = _conductors(winding, copies, where)
     section = _section(_table(winding, "conductor", where), f"{where}.conductor")
+    if room < NOTHING:
+        raise InputError("its winding has no room", f"{lamination.where}.slot", "sizes that leave an area for it")
     fill = count * section / room
     if not 0.005 <= fill <= 0.95:
         right = "other conductors than the file's: between 0.5 % and 95 %"
@@ -279,34 +297,33 @@ def _stator(draft: Draft, stator: Lamination) -> None:
     words = f"stator.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
     draft.take("geometry.winding", words, fill=float(f"{fill:.9g}"))
     winding = stator.node["winding"]
-    radii = [math.hypot(x, y) for loop in slot.filled for x, y, _ in loop]
+    reach = radii((Outline(copies, slot.filled),))
     pairs = number(winding, "p", f"{stator.where}.winding", 1, 200)
     pitch = winding.get("coil_pitch") or copies / (2 * pairs)
     span = float(pitch) if isinstance(pitch, int | float) else 1.0
-    assumptions.end_windings(draft, 2 * min(radii), max(radii) - min(radii), copies, span, fill * room, fill)
+    assumptions.end_windings(draft, 2 * min(reach), max(reach) - min(reach), copies, span, fill * room, fill)
     straight = winding.get("Lewout")
     if isinstance(straight, int | float) and 0.5e-3 <= straight <= 0.1:
         draft.take("geometry.winding", "stator.winding.Lewout", straight_mm=_mm(straight))
     else:
-        draft.assume(
-            "geometry.winding", "in proportion to the bore", straight_mm=max(_mm(0.03 * 2 * stator.inner), 0.5)
-        )
-    stacking(draft, stator, "stator")
+        straight = max(_mm(0.06 * stator.inner), 0.5)
+        draft.assume("geometry.winding", "in proportion to the bore", straight_mm=straight)
+    _stacking(draft, stator, "stator")
 
 
-def stacking(draft: Draft, lamination: Lamination, name: str) -> None:
+def _stacking(draft: Draft, lamination: Lamination, name: str) -> None:
     factor = lamination.node.get("Kf1")
     if isinstance(factor, int | float) and factor != 1:
         draft.leave(f"{name}.Kf1", factor, "iron as drawn; the stacking factor lies in the material's density")
 
 
 def _vents(draft: Draft, lamination: Lamination, name: str, group: str) -> None:
-    for k, vent in enumerate(lamination.node.get("axial_vent") or ()):
+    for k, vent in enumerate(_parts(lamination.node, "axial_vent", lamination.where)):
         where = f"{lamination.where}.axial_vent[{k}]"
         sizes, kind = _sizes(vent, where), str(vent.get("__class__"))
-        loop = _drawn(kind, VENTS, where, partial(VENTS.get(kind, turned), sizes))
+        loop = _shape(kind, VENTS, where, partial(VENTS.get(kind, rotate), sizes))
         copies = _copies(vent, "Zh", where)
-        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [turned(loop, sizes.get("Alpha0", 0.0))])
+        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [rotate(loop, sizes.get("Alpha0", 0.0))])
 
 
 def _vent_circle(d: Mapping[str, float]) -> Loop:
@@ -315,12 +332,12 @@ def _vent_circle(d: Mapping[str, float]) -> Loop:
 
 def _vent_polar(d: Mapping[str, float]) -> Loop:
     a, b = (r * complex(math.cos(d["W1"] / 2), math.sin(d["W1"] / 2)) for r in (d["H0"], d["H0"] + d["D0"]))
-    return closed([a.conjugate(), (b.conjugate(), arc(b.conjugate(), b)), b, (a, arc(a, a.conjugate()))])
+    return loop_through([a.conjugate(), (b.conjugate(), arc(b.conjugate(), b)), b, (a, arc(a, a.conjugate()))])
 
 
 def _vent_trapeze(d: Mapping[str, float]) -> Loop:
     a, b = d["H0"] + 0.5j * d["W1"], d["H0"] + d["D0"] + 0.5j * d["W2"]
-    return closed([a.conjugate(), b.conjugate(), b, a])
+    return loop_through([a.conjugate(), b.conjugate(), b, a])
 
 
 VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "VentilationTrap": _vent_trapeze}
@@ -328,8 +345,12 @@ VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "Vent
 
 def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     node, top = rotor.node, rotor.outer
-    for k, hole in enumerate(_holes(node)):
-        _hole(draft, rotor, hole, f"rotor.hole[{k}]")
+    kind = str(node.get("__class__"))
+    if kind not in ROTORS:
+        raise InputError(f"__class__ = {kind[:40]!r} is not read", rotor.where, f"one of: {', '.join(ROTORS)}")
+    for key in HOLE_KEYS:
+        for k, hole in enumerate(_parts(node, key, rotor.where)):
+            _hole(draft, rotor, hole, key, k)
     magnet = next((node[key] for key in ("magnet", "magnet_north") if isinstance(node.get(key), Mapping)), None)
     if isinstance(node.get("slot"), Mapping):
         slot, copies, kind = _slot(rotor)
@@ -338,7 +359,7 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
         if magnet is not None:
             draft.draw("magnets", f"rotor.slot, {kind}", copies, slot.filled)
             _magnet_length(draft, magnet, rotor, "rotor.magnet")
-            top = max([top, *(math.hypot(x, y) for loop in slot.filled for x, y, _ in loop), *_crowns(slot.filled)])
+            top = max([top, *radii((Outline(copies, slot.filled),))])
         elif node.get("__class__") == "LamSquirrelCage" or "ring_mat" in node:
             _cage(draft, rotor, slot, copies, kind)
         elif isinstance(node.get("winding"), Mapping):
@@ -353,66 +374,46 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
         draft.take("geometry.rotor", "rotor.Rext", core_diameter_mm=_mm(2 * rotor.outer))
     if abs(rotor.length - stator.length) > 1e-6:
         draft.take("geometry.rotor", "rotor.L1", stack_length_mm=_mm(rotor.length))
-    stacking(draft, rotor, "rotor")
+    _stacking(draft, rotor, "rotor")
 
 
-def _crowns(loops: tuple[Loop, ...]) -> Iterator[float]:
-    """Where arcs of loops reach beyond their corners, on the middle line (m)."""
-    for loop in loops:
-        for a, b in zip(loop, (*loop[1:], loop[0])):
-            chord = math.dist(a[:2], b[:2])
-            yield math.hypot((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) + abs(a[2]) * chord / 2 * (
-                a[2] * (a[0] * b[1] - a[1] * b[0]) > 0
-            )
-
-
-def _holes(node: Node) -> list[Node]:
-    holes = [hole for key in ("hole", "hole_north", "hole_south") for hole in node.get(key) or ()]
-    if len(holes) > 50 or not all(isinstance(hole, Mapping) for hole in holes):
-        raise InputError("hole is no list of holes", "rotor", RIGHT)
-    return holes
-
-
-def _hole(draft: Draft, rotor: Lamination, node: Node, name: str) -> None:
-    where, kind = f"{rotor.where}{name.removeprefix('rotor')}", str(node.get("__class__"))
+def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> None:
+    """Every pole has it, or with `hole_north` and `hole_south` every other one."""
+    name, where, kind = f"rotor.{key}[{k}]", f"{rotor.where}.{key}[{k}]", str(node.get("__class__"))
     copies = _copies(node, "Zh", where)
     if kind == "HoleUD":
-        hole, present = _own_hole(node, where), node.get("magnet_dict") or {}
-        magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", True)]
+        hole, present = _surface_hole(node, where), _part(node, "magnet_dict")
     else:
-        hole = _drawn(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
+        hole = _shape(kind, (*HOLES, "HoleUD"), where, lambda: HOLES[kind](rotor.place(copies), _sizes(node, where)))
         present = node
-        magnets = [m for k, m in enumerate(hole.magnets) if node.get(f"magnet_{k}")]
-    draft.draw("pockets", f"{name}, {kind}", copies, joined([*hole.magnets, *hole.air]))
-    draft.draw("magnets", f"{name}, {kind}", copies, magnets)
-    first = present.get("magnet_0")
-    if isinstance(first, Mapping):
-        _magnet_length(draft, first, rotor, f"{name}.magnet_0")
+    magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", present is not node)]
+    turn = 2 * math.pi / copies if key == "hole_south" else 0.0
+    around = copies if key == "hole" else max(copies // 2, 1)
+    pockets = unite([*hole.magnets, *hole.air])
+    draft.draw("pockets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in pockets])
+    draft.draw("magnets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in magnets])
+    _magnet_length(draft, _part(present, "magnet_0"), rotor, f"{name}.magnet_0")
 
 
-def _own_hole(node: Node, where: str) -> Hole:
+def _surface_hole(node: Node, where: str) -> Hole:
     """A hole drawn surface by surface, its magnets by their labels."""
-    surfaces = node.get("surf_list")
-    if not isinstance(surfaces, list) or not 1 <= len(surfaces) <= 100:
-        raise InputError("surf_list is no list of surfaces", where, "SurfLine with line_list and label")
-    loops = [
-        (("Mag" in str(s.get("label"))), _loop(s, "line_list", f"{where}.surf_list[{k}]"))
-        for k, s in enumerate(surfaces)
-    ]
-    return Hole(
-        tuple(loop for is_magnet, loop in loops if is_magnet), tuple(loop for is_magnet, loop in loops if not is_magnet)
-    )
+    magnets: list[Loop] = []
+    air: list[Loop] = []
+    for k, surface in enumerate(_parts(node, "surf_list", where)):
+        lines = _lines(surface, "line_list", f"{where}.surf_list[{k}]")
+        loop = loop_through([(a, bulge) for a, bulge, _ in lines])
+        (magnets if "Mag" in str(surface.get("label")) else air).append(loop)
+    return Hole(tuple(magnets), tuple(air))
 
 
 def _magnet_length(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> None:
     length = magnet.get("Lmag")
     if isinstance(length, int | float) and abs(length - rotor.length) > 0.005 * rotor.length:
-        draft.leave(
-            f"{name}.Lmag", length, f"contradicts rotor.L1 = {rotor.length:g} m: magnets are as long as the rotor here"
-        )
+        words = f"contradicts rotor.L1 = {rotor.length:g} m: magnets are as long as the rotor here"
+        draft.leave(f"{name}.Lmag", length, words)
 
 
-def _cage(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
     where = rotor.where
     draft.draw("bars", f"rotor.slot, {kind}: what a bar fills", copies, slot.filled)
     area = sum(abs(loop_area(loop)) for loop in slot.filled)
@@ -420,21 +421,21 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -
     if abs(section / area - 1) > 0.02:
         words = f"contradicts the slot's {area * 1e6:.4g} mm2: bars fill their slots here"
         draft.leave("rotor.winding.conductor", f"{section * 1e6:.4g} mm2", words)
-    radii = [math.hypot(x, y) for loop in slot.filled for x, y, _ in loop]
+    reach = radii((Outline(copies, slot.filled),))
     ring, high = number(rotor.node, "Lscr", where, 1e-4, 1.0), number(rotor.node, "Hscr", where, 1e-4, 1.0)
-    most = 0.95 * (max(radii) - max(rotor.inner, 0.3 * rotor.outer))
+    most = 0.95 * (max(reach) - max(rotor.inner, 0.3 * rotor.outer))
     draft.take("geometry.rotor", "rotor.Lscr", end_mm=_mm(min(ring, 0.3)))
     if high < most:
         draft.take("geometry.rotor", "rotor.Hscr", ring_mm=_mm(high))
     else:
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
-        draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(radii) - min(radii), most)))
-    metal = str((rotor.node.get("ring_mat") or {}).get("name", "")).lower()
-    found = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
-    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": found})
+        draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(reach) - min(reach), most)))
+    metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
+    name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
+    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": name})
 
 
-def _coils(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) -> None:
+def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
     draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
     room = sum(abs(loop_area(loop)) for loop in slot.filled)
     fill, count, section = _fill(draft, rotor, "rotor", copies, room)
@@ -444,38 +445,33 @@ def _coils(draft: Draft, rotor: Lamination, slot: Slot, copies: int, kind: str) 
 
 
 def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
-    rotor, shaft = pair[1], document.get("shaft") or {}
-    given = shaft.get("Drsh") if isinstance(shaft, Mapping) else None
-    given = given if isinstance(given, int | float) and given > 0 else None
+    rotor, shaft = pair[1], _part(document, "shaft")
+    diameter = shaft.get("Drsh")
+    diameter = diameter if isinstance(diameter, int | float) and diameter > 0 else None
     if rotor.inner > 0:
         draft.take("geometry.shaft", "rotor.Rint", diameter_mm=_mm(2 * rotor.inner))
-        if given and abs(given - 2 * rotor.inner) > 1e-6:
-            draft.leave("shaft.Drsh", given, f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here")
+        if diameter and abs(diameter - 2 * rotor.inner) > 1e-6:
+            words = f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here"
+            draft.leave("shaft.Drsh", diameter, words)
         return
     draft.take("geometry.rotor", "rotor.Rint = 0", inside="solid")
-    if given:
-        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(given))
+    if diameter:
+        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(diameter))
     else:
-        draft.assume(
-            "geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=max(_mm(0.6 * rotor.outer), 5.0)
-        )
+        diameter = max(_mm(0.6 * rotor.outer), 5.0)
+        draft.assume("geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=diameter)
 
 
 def _frame(draft: Draft, document: Node, stator: Lamination, family_template: str) -> None:
     assumptions.template(draft, family_template)
-    node = document.get("frame") or {}
+    node = _part(document, "frame")
     inner, outer = node.get("Rint"), node.get("Rext")
-    if (
-        isinstance(inner, int | float)
-        and isinstance(outer, int | float)
-        and outer > inner
-        and family_template != "open"
-    ):
+    housed = family_template != "open"
+    if housed and isinstance(inner, int | float) and isinstance(outer, int | float) and outer > inner:
         draft.take("geometry.housing", "frame.Rext - frame.Rint", thickness_mm=_mm(outer - inner))
         if abs(inner - stator.outer) > 1e-5:
-            draft.leave(
-                "frame.Rint", inner, f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"
-            )
+            words = f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"
+            draft.leave("frame.Rint", inner, words)
     ends = sum(draft.value("geometry.winding", key) for key in ("straight_mm", "end_mm"))
     ends = max(ends, draft.value("geometry.rotor", "end_mm") or 0.0) * 1e-3
     stack = max(stator.length, (draft.value("geometry.rotor", "stack_length_mm") or 0.0) * 1e-3)
@@ -486,12 +482,13 @@ def _losses(draft: Draft, stator: Lamination, family_template: str) -> None:
     winding = stator.node["winding"]
     slots, where = draft.value("geometry.stator", "slots"), f"{stator.where}.winding"
     section, count = _section(winding["conductor"], where), _conductors(winding, slots, where)
-    radii = 1e-3 * draft.value("geometry.stator", "bore_diameter_mm") / 2, stator.outer
-    iron = 7600.0 * stator.length * math.pi * (radii[1] ** 2 - radii[0] ** 2) * 0.7  # slots leave some 0.7 of the ring
+    ring = math.pi * (stator.outer**2 - stator.inner**2)
+    iron = 7600.0 * stator.length * ring * 0.7  # kg; slots leave some 0.7 of the ring
     length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
     density = assumptions.CURRENT_DENSITY.get(family_template, assumptions.USUAL_DENSITY)
-    ways = winding.get("Npcp")
-    assumptions.losses(draft, section * 1e6, length, float(ways) if isinstance(ways, int) else 1.0, iron, density)
+    parallel = winding.get("Npcp")
+    parallel = float(parallel) if isinstance(parallel, int) and 0 < parallel < 1000 else 1.0
+    assumptions.losses(draft, section * 1e6, length, parallel, iron, density)
 
 
 def _mm(length: float) -> float:

@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Callable
 
-from geom.importing.plane import Place, Point, Sizes, Slot, arc, closed
+from geom.importing.plane import Place, Point, Sizes, Slot, arc, loop_through
 
 # Depth and width of each corner, from the surface on, and the corner where the winding begins.
 STEPS = {
@@ -149,12 +149,37 @@ def _w28(place: Place, d: Sizes) -> Slot:
     return Slot([(z1, 0.0), (z2, arc(z2, z3, centre)), (z3, 0.0), (z4, 0.0)], float(s), 2)
 
 
+def _w30(place: Place, d: Sizes) -> Slot:
+    """Between parallel teeth, flat under the tooth tips and at the bottom, with rounded corners."""
+    s, z1, flank = place.way, place.on_surface(d["W0"]), 1j * cmath.exp(1j * place.half)
+    z2 = z1 + s * d["H0"]
+    (a, r), (b, q) = (
+        (place.beside_tooth(x, d["W3"] + 2 * radius), radius)
+        for x, radius in ((z2.real + s * d["R1"], d["R1"]), (z2.real + s * (d["H1"] - d["R2"]), d["R2"]))
+    )
+    z3, z4, z5, z6 = a - s * r, a + r * flank, b + q * flank, b + s * q
+    half = [(z1, 0.0), (z2, 0.0), (z3, arc(z3, z4, a)), (z4, 0.0), (z5, arc(z5, z6, b)), (z6, 0.0)]
+    return Slot(half, 0.0, 2)
+
+
+def _double_cage(place: Place, d: Sizes) -> Slot:
+    """A round bar over a deep one with a neck between them."""
+    s, z1 = place.way, place.on_surface(d["W1"])
+    c1, r1, r2 = z1.real + s * d["H1"], d["D1"] / 2, d["D2"] / 2
+    c2, neck = c1 + s * d["H2"], d["W2"] / 2
+    z2 = c1 - s * math.sqrt(r1**2 - d["W1"] ** 2 / 4) + 1j * z1.imag
+    z3, z4 = (c + side * s * math.sqrt(r**2 - neck**2) + 1j * neck for c, side, r in ((c1, 1, r1), (c2, -1, r2)))
+    z5, z6 = c2 + 1j * r2, c2 + s * d["H3"] + 1j * d["R3"]
+    half = [(z1, 0.0), (z2, arc(z2, z3, c1)), (z3, 0.0), (z4, arc(z4, z5, c2)), (z5, 0.0), (z6, 0.0)]
+    return Slot(half, float(s), 1)
+
+
 def _pole(place: Place, d: Sizes, shoe: list[Point], z5: complex, rest: list[Point]) -> Slot:
     """Between two salient poles: coils on either side of each, beside its body."""
     wide = (d["W1"] - d["W2"]) / 2 - d["W3"]
     a, b = shoe[-1][0] - d["H3"], z5 + d["H4"]
-    coil = closed([place.from_tooth(t) for t in (a, b, b + 1j * wide, a + 1j * wide)])
-    other = closed([place.from_tooth(t).conjugate() for t in (a, a + 1j * wide, b + 1j * wide, b)])
+    coil = loop_through([place.from_tooth(t) for t in (a, b, b + 1j * wide, a + 1j * wide)])
+    other = loop_through([place.from_tooth(t).conjugate() for t in (a, a + 1j * wide, b + 1j * wide, b)])
     half = [(place.from_tooth(t), -bulge) for t, bulge in [*shoe, (z5, 0.0), *rest]]
     return Slot(half, 0.0, 0, filling=(coil, other))
 
@@ -192,6 +217,8 @@ CURVED: dict[str, Callable[[Place, Sizes], Slot]] = {
     "SlotW25": _w25,
     "SlotW26": _w26,
     "SlotW28": _w28,
+    "SlotW30": _w30,
+    "SlotDC": _double_cage,
     "SlotW60": _w60,
     "SlotW61": _w61,
 }
@@ -222,7 +249,7 @@ def magnet_of(kind: str, place: Place, d: Sizes) -> Slot:
         low, a, bottom, foot = z2.real, z2.real + 0.5j * width, 0.0, 0.0
     b, centre = _magnet_top(kind, low, s, d["Hmag"], width, d)
     top = 0.0 if kind == "SlotM10" else arc(b, b.conjugate(), centre)
-    magnet = closed([(a.conjugate(), foot), (a, 0.0), (b, top), (b.conjugate(), 0.0)])
+    magnet = loop_through([(a.conjugate(), foot), (a, 0.0), (b, top), (b.conjugate(), 0.0)])
     return Slot([(z1, 0.0), (z2, 0.0)], bottom, 0, filling=(magnet,))
 
 

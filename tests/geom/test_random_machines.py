@@ -19,7 +19,7 @@ FEW = {
     "series-dc": {"rotor.slots": 12, "housing.fins": 8, "jacket.channels": 5, "rotor.ducts": 3, "fan.blades": 3},
     "pmsm": {"stator.slots": 9, "rotor.poles": 6, "housing.fins": 6, "housing.turns": 3},
     "tefc": {"stator.slots": 9, "rotor.bars": 9, "housing.fins": 6, "housing.turns": 3},
-    "drawn": {"stator.slots": 9, "housing.fins": 6, "housing.turns": 3},
+    "cross-section": {"stator.slots": 9, "housing.fins": 6, "housing.turns": 3},
 }
 OFTEN_ZERO = {"fan.depth_mm": 15.0, "stator.wedge_mm": 0.8, "stator.liner_gap_mm": 0.5, "commutator.bars": 8}
 OFTEN_ZERO |= {"rotor.core_diameter_mm": 165.0, "rotor.stack_length_mm": 140.0}

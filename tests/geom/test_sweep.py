@@ -17,7 +17,7 @@ from geom.machine_file import families, machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
 
-ROOT = {"series-dc": "rotor", "pmsm": "stator", "tefc": "stator", "drawn": "stator"}
+ROOT = {"series-dc": "rotor", "pmsm": "stator", "tefc": "stator", "cross-section": "stator"}
 
 
 def drawn(family, seed, few=False):

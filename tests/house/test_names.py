@@ -70,6 +70,8 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/case_folder/runs.py": "effects by their own name, KIND@PLACE",
     "extras/rating/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "extras/workbench/access_control.py": "hosts of requests",
+    "geom/importing/motor_cad.py": "keys and words of a .mot file",
+    "geom/importing/pyleecan.py": "classes of pyleecan's files",
 }
 
 

@@ -12,17 +12,11 @@ from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.radial_flux import parameters
 from geom.families.radial_flux.checks import check, check_cage, check_magnets
-from geom.families.radial_flux.housing import coolant, enclosure, ports
+from geom.families.radial_flux.housing import FACES, coolant, enclosure, ports
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
 from geom.families.shaft_fan import shaft_fan
-
-FACES = {
-    ("housing", "ambient"): "housing.fins",
-    ("housing", "jacket"): "jacket.wall",
-    **{(f"jacket.{end}.tube", "jacket"): f"jacket.{end}.bore" for end in ("inlet", "outlet")},
-}
 
 
 def build_pmsm(g: Geometry) -> tuple[Part, ...]:

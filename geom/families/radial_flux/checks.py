@@ -13,10 +13,10 @@ from geom.families.radial_flux.rotors import shapes_of_magnets
 from geom.families.shaft_fan import check_fan
 
 
-def check(g: Geometry, at: Layout, drawn: bool = False) -> None:
-    """Raise InputError for the first rule that does not hold.  drawn : slots are outlines, not tapered or parallel"""
+def check(g: Geometry, at: Layout, outlined: bool = False) -> None:
+    """Raise InputError for the first rule that does not hold.  outlined : slots are outlines"""
     fit = Fit(g)
-    if not drawn:
+    if not outlined:
         _check_stator(fit, g, at)
     _check_frame(fit, g, at)
     _check_housing(fit, g, at)

@@ -12,6 +12,12 @@ from geom.description.roles import Role
 from geom.families.channels import Nozzle, Turns
 from geom.families.radial_flux.layout import Layout
 
+FACES = {
+    ("housing", "ambient"): "housing.fins",
+    ("housing", "jacket"): "jacket.wall",
+    **{(f"jacket.{end}.tube", "jacket"): f"jacket.{end}.bore" for end in ("inlet", "outlet")},
+}
+
 
 def enclosure(g: Geometry, at: Layout) -> tuple[Part, ...]:
     seat = g.bearing.outer_diameter / 2

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from written_machines import V_SHAPE, motor_cad, saved
+from foreign_machines import V_SHAPE, motor_cad, saved
 
 from geom import COARSE, InputError, build_mesh, import_draft, load_machine
 from geom.machine_file import machine_from

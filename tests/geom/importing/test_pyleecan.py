@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from written_machines import put, pyleecan, saved
+from foreign_machines import put, pyleecan, saved
 
-from geom import COARSE, InputError, build_mesh, import_draft, load_machine
+from geom import COARSE, InputError, build_mesh, check_cad, import_draft, load_machine
 from geom.description.profile import loop_area
 from geom.importing.holes import HOLES
-from geom.importing.plane import Place, joined
+from geom.importing.plane import Place, unite
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
 from geom.machine_file import machine_from
 
@@ -36,6 +36,16 @@ def trapeze(height, a, b):
     return height * (a + b) / 2
 
 
+def half_chord(radius):
+    """From the middle of a circle to a chord of 1 mm (m)."""
+    return math.sqrt(radius**2 - 0.0005**2)
+
+
+def cap(radius, width):
+    """What a chord cuts off a circle."""
+    return radius**2 * math.asin(width / 2 / radius) - width / 2 * math.sqrt(radius**2 - width**2 / 4)
+
+
 SLOT = {"H0": 0.001, "H1": 0.0015, "H2": 0.02, "W0": 0.003, "W1": 0.007, "W2": 0.01, "W3": 0.011}
 ROUND = math.pi / 2
 FILLED = {  # what the winding fills, m2
@@ -52,6 +62,16 @@ FILLED = {  # what the winding fills, m2
     ),
     "SlotW27": (SLOT, trapeze(0.0015, 0.007, 0.01) + trapeze(0.02, 0.01, 0.011)),
     "SlotW29": (SLOT, 0.02 * 0.01),
+    "SlotDC": (
+        mm("W1=1 H1=2.5 D1=4 H2=6 W2=1 D2=3 H3=10 R3=1"),
+        4e-6 * math.pi
+        - 2 * cap(0.002, 0.001)
+        + 1e-3 * (0.006 - half_chord(0.002) - half_chord(0.0015))
+        + ROUND * 0.0015**2
+        - cap(0.0015, 0.001)
+        + trapeze(0.01, 0.003, 0.002)
+        + ROUND * 1e-6,
+    ),
 }
 
 
@@ -68,6 +88,7 @@ MORE = {
     "SlotW15": {"H0": 0.001, "H1": 0.002, "H2": 0.02, "R1": 0.001, "R2": 0.002, "W0": 0.003, "W3": 0.007},
     "SlotW23": {"H0": 0.001, "H1": 0.001, "H2": 0.02, "W0": 0.003, "W3": 0.007, "is_cstt_tooth": 1.0},
     "SlotW25": {"H1": 0.002, "H2": 0.02, "W3": 0.007, "W4": 0.011},
+    "SlotW30": {"H0": 0.001, "H1": 0.02, "R1": 0.001, "R2": 0.002, "W0": 0.003, "W3": 0.007},
     "SlotW28": {"H0": 0.001, "H3": 0.02, "R1": 0.002, "W0": 0.003, "W3": 0.007},
 }
 
@@ -124,7 +145,7 @@ def test_buried_magnets_lie_in_their_holes(kind):
     sizes, magnets, whole = BURIED[kind]
     hole = HOLES[kind](ROTOR, sizes)
     assert area(hole.magnets) == pytest.approx(magnets, rel=2e-3, abs=1e-12)
-    pockets = joined([*hole.magnets, *hole.air])
+    pockets = unite([*hole.magnets, *hole.air])
     assert area(pockets) >= area(hole.magnets) - 1e-9
     assert whole is None or area(pockets) == pytest.approx(whole, rel=PART)
     assert max(math.hypot(x, y) for loop in pockets for x, y, _ in loop) < 0.0795
@@ -148,6 +169,15 @@ def test_a_small_machine_has_the_volumes_of_its_file(tmp_path):
     assert machine.features.air_gap == pytest.approx(0.0005)
     mesh = build_mesh(machine, **COARSE)
     assert set(mesh.parts) == {part.name for part in machine.parts}
+
+
+def test_solids_of_round_slots_are_watertight(tmp_path):
+    """End turns of round-bottomed slots do not merely touch the circle around them."""
+    slot = {"__class__": "SlotW11", "Zs": 12, **mm("H0=1 H1=1 H2=12 R1=3 W0=2 W1=4 W2=6")}
+    machine = load_machine(saved(tmp_path, pyleecan(stator__slot=slot)))
+    for check in check_cad(machine, 0.5):
+        assert check.watertight, check.part
+        assert check.solid_volume == pytest.approx(check.volume, rel=0.02)
 
 
 def test_the_file_written_says_where_each_value_is_from(tmp_path):
@@ -188,10 +218,20 @@ def test_a_cage_and_a_wound_rotor(tmp_path):
     assert built.part("winding.field").identity.turns
 
 
+def test_north_and_south_poles_with_holes_of_their_own(tmp_path):
+    machine = pyleecan()
+    (hole,) = machine["rotor"]["hole"]
+    machine["rotor"] |= {"__class__": "LamHoleNS", "hole": None, "hole_north": [hole]}
+    machine["rotor"]["hole_south"] = [{**hole, "W0": 0.016}]
+    built = load_machine(saved(tmp_path, machine))
+    assert built.part("magnets").volume == pytest.approx(2 * 0.003 * (0.02 + 0.016) * 0.04, rel=1e-6)
+
+
 FAULTS = {
     "another program": ({"__class__": "Simu1"}, "is no machine"),
     "outer rotor": ({"stator__is_internal": True}, "the stator is inside"),
-    "unknown slot": ({"stator__slot__class": "x", "stator__slot____class__": "os.system"}, "is not known"),
+    "unknown rotor": ({"rotor____class__": "LamSlotMulti"}, "LamSlotMulti' is not read"),
+    "unknown slot": ({"stator__slot____class__": "os.system"}, "is not known"),
     "no number": ({"stator__slot__H2": "deep"}, "lacks 'H2'"),
     "infinite": ({"stator__Rext": 1e400}, "Infinity is no number"),
     "slots cut": ({"stator__slot__W2": 0.6}, "cuts its neighbour"),
@@ -212,8 +252,8 @@ def test_faults_are_one_message_with_their_place(tmp_path, fault):
         if path == "__class__":
             machine[path] = value
         elif path.endswith("____class__"):
-            machine["stator"]["slot"]["__class__"] = value
-        elif not path.endswith("__class"):
+            put(machine, [*path.removesuffix("____class__").split("__"), "__class__"], value)
+        else:
             put(machine, path.split("__"), value)
     with pytest.raises(InputError, match=words.replace("(", r"\(")):
         load_machine(saved(tmp_path, machine))

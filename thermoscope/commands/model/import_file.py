@@ -10,7 +10,8 @@ import typer
 
 from geom.errors import InputError
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
-from geom.importing.draft import ASSUMED, LEFT, TAKEN, Draft
+from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
+from thermoscope.case_folder.folder import checked_losses
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
@@ -27,16 +28,16 @@ def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPL
     from geom.machine_file import machine_from
 
     draft = import_draft(file, family_template)
-    machine_from(draft.sections(), str(file))  # nothing is written that cannot be built
-    written = write_draft(draft, out or Path())
+    checked_losses(machine_from(draft.sections(), str(file)))  # nothing is written that cannot be built
+    target_file = write_draft(draft, out or Path())
     document = {
         "machine": draft.name,
         "program": draft.program,
-        "file": written,
+        "file": target_file,
         "values": [entry.document() for entry in draft.entries],
         "readings_C": draft.readings,
     }
-    give(document, target, lambda: import_summary(draft, written))
+    give(document, target, lambda: import_summary(draft, target_file))
     return 0
 
 
@@ -51,8 +52,8 @@ def write_draft(draft: Draft, folder: Path) -> Path:
     return target
 
 
-def import_summary(draft: Draft, written: Path) -> Summary:
+def import_summary(draft: Draft, target_file: Path) -> Summary:
     """How many values of each kind, and the table of them."""
-    kinds: dict[str, Any] = {kind: sum(e.kind == kind for e in draft.entries) for kind in (TAKEN, ASSUMED, LEFT)}
-    sentence = f"{written}: {', '.join(f'{count} values {kind}' for kind, count in kinds.items())}."
-    return Summary(sentence, [draft.table()], f"Next: thermoscope model build {quote(str(written))}; --json FILE")
+    kinds: dict[str, Any] = {kind: sum(e.kind == kind for e in draft.entries) for kind in (COPIED, ASSUMED, UNUSED)}
+    sentence = f"{target_file}: {', '.join(f'{count} values {kind}' for kind, count in kinds.items())}."
+    return Summary(sentence, [draft.table()], f"Next: thermoscope model build {quote(str(target_file))}; --json FILE")

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
-from geom.description.outlines import Outline, Outlines, corners, notched_loop, refuse_cuts
+from geom.description.outlines import INSET, Outline, Outlines, notched_loop, radii, refuse_cuts
 from geom.description.parameters import Measure, Parameter, choice
 from geom.description.parameters import length as mm
 from geom.description.part import Part, extrude, fluid
@@ -20,13 +20,14 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.families.family import Family
 from geom.families.fit import Fit
-from geom.families.radial_flux import FACES, parameters
+from geom.families.radial_flux import parameters
 from geom.families.radial_flux.checks import check
-from geom.families.radial_flux.housing import coolant, enclosure, ports
+from geom.families.radial_flux.housing import FACES, coolant, enclosure, ports
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.stator import stator
 from geom.families.shaft_fan import shaft_fan
 
+FILLS = ("winding.fill", "winding.end_fill")  # of any conductor, single turns too
 NAMES = {
     "slots": "cut into the bore, from the bore to the bore",
     "wires": "what the winding fills",
@@ -40,7 +41,7 @@ NAMES = {
 rotor = Measure("the bore less the gap on either side", lambda g: g.stator.bore_diameter - 2 * g.stator.air_gap)
 inside = Measure("shaft to rotor surface", lambda g: rotor.span(g) / 2 - g.shaft.diameter / 2)
 PARAMETERS = (
-    *(replace(p, low=0.005, high=0.95) if p.key.endswith("fill") else p for p in parameters.COMMON),
+    *(replace(p, low=0.005, high=0.95) if p.key in FILLS else p for p in parameters.COMMON),
     mm("rotor.core_diameter", 0, 5, 3000, rotor(0.8, 1.0), "iron of the rotor; 0: up to the air gap", off=True),
     mm("rotor.stack_length", 0, 5, 3000, parameters.stack(0.8, 1.0), "of the rotor; 0: as the stator's", off=True),
     choice("rotor.inside", ("bored", "solid"), "laminations around the shaft, or to the axis between two stubs of it"),
@@ -56,18 +57,18 @@ class _Places(Layout):
 
     def __init__(self, g: Geometry) -> None:
         super().__init__(g)
-        drawn: Outlines = getattr(g, "outlines", None) or {name: () for name in NAMES}
-        self.drawn = drawn
+        outlines: Outlines = getattr(g, "outlines", None) or {name: () for name in NAMES}
+        self.outlines = outlines
         self.surface = g.rotor.core_diameter / 2 or self.rotor
         stack = g.rotor.stack_length or g.stator.stack_length
         self.iron0, self.iron1 = self.middle - stack / 2, self.middle + stack / 2
-        if drawn["wires"]:
-            self.wire0, self.wire1 = min(corners(drawn["wires"])), max(corners(drawn["wires"]))
-        self.mouth = max([self.slot0 if not drawn["wires"] else self.bore, *corners(drawn["slots"])])
-        self.valley = min([self.surface, *corners(drawn["notches"])])
+        if outlines["wires"]:
+            self.wire0, self.wire1 = min(radii(outlines["wires"])), max(radii(outlines["wires"]))
+        self.mouth = max([self.slot0 if not outlines["wires"] else self.bore, *radii(outlines["slots"])])
+        self.valley = min([self.surface, *radii(outlines["notches"])])
 
 
-def build_drawn(g: Geometry) -> tuple[Part, ...]:
+def build_section(g: Geometry) -> tuple[Part, ...]:
     """Solids and fluids of a machine with a drawn cross-section. Raises InputError for parts that do not fit."""
     at = _Places(g)
     _check(g, at)
@@ -76,28 +77,29 @@ def build_drawn(g: Geometry) -> tuple[Part, ...]:
 
 
 def _check(g: Geometry, at: _Places) -> None:
-    fit, drawn = Fit(g), at.drawn
-    check(g, at, drawn=bool(drawn["slots"] or drawn["wires"]))
+    fit, outlines = Fit(g), at.outlines
+    check(g, at, outlined=bool(outlines["slots"] or outlines["wires"]))
     fit.need(at.surface <= at.rotor + 1e-9, "rotor.core_diameter", f"at most {2e3 * at.rotor:.5g}, to leave the gap")
     fit.need(g.shaft.diameter / 2 < at.valley, "shaft.diameter", f"less than {2e3 * at.valley:.5g} mm, the rotor")
     room = min(at.iron0 - at.cap0, at.cap1 - at.iron1)
     fit.need(room > 0.0, "rotor.stack_length", "less, to clear the end-caps")
-    if drawn["bars"] or drawn["coils"]:
+    if outlines["bars"] or outlines["coils"]:
         fit.below(0.98 * room, "rotor.end", ", the end space")
-    if drawn["bars"]:
-        fit.below(max(corners(drawn["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
-    refuse_cuts(drawn, ("slots", "notches"))
-    _inside(drawn, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
-    _inside(drawn, ("pockets", "bars", "coils", "notches"), (g.shaft.diameter / 2, at.surface + 1e-7), "the rotor")
-    _inside(drawn, ("magnets",), (g.shaft.diameter / 2, at.bore), "the bore")
+    if outlines["bars"]:
+        fit.below(max(radii(outlines["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
+    refuse_cuts(outlines, ("slots", "notches"))
+    _inside(outlines, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
+    shaft = g.shaft.diameter / 2 if g.rotor.inside == "bored" else 0.0
+    _inside(outlines, ("pockets", "bars", "coils", "notches"), (shaft, at.surface + 1e-7), "the rotor")
+    _inside(outlines, ("magnets",), (shaft, at.bore), "the bore")
 
 
-def _inside(drawn: Outlines, names: tuple[str, ...], span: tuple[float, float], what: str) -> None:
+def _inside(outlines: Outlines, names: tuple[str, ...], span: tuple[float, float], what: str) -> None:
     for name in names:
-        for radius in corners(drawn[name]):
+        for radius in radii(outlines[name]):
             if not span[0] <= radius <= span[1]:
-                right = f"corners from {span[0] * 1e3:.5g} to {span[1] * 1e3:.5g} mm from the axis, {what}"
-                raise InputError(f"a corner lies {radius * 1e3:.5g} mm from the axis", f"[[outlines.{name}]]", right)
+                right = f"points from {span[0] * 1e3:.5g} to {span[1] * 1e3:.5g} mm from the axis, {what}"
+                raise InputError(f"a point lies {radius * 1e3:.5g} mm from the axis", f"[[outlines.{name}]]", right)
 
 
 def _shaft(g: Geometry, at: _Places) -> tuple[Part, ...]:
@@ -110,24 +112,30 @@ def _around(groups: tuple[Outline, ...]) -> list[Profile]:
     return [profile for group in groups for profile in group.around()]
 
 
+def _end_turns(inner: float, outer: float) -> Profile:
+    """A ring for the end turns of conductors between two radii (m)."""
+    inset = INSET * (outer - inner)
+    return shapes.ring(inner + inset, outer - inset)
+
+
 def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
-    drawn = at.drawn
+    outlines = at.outlines
     bore = (shapes.circle_loop(g.shaft.diameter / 2),) if g.rotor.inside == "bored" else ()
-    holes = tuple(profile.outer for profile in _around(drawn["pockets"]))
-    core = Profile(notched_loop(at.surface, drawn["notches"]), (*bore, *holes))
+    holes = tuple(profile.outer for profile in _around(outlines["pockets"]))
+    core = Profile(notched_loop(at.surface, outlines["notches"]), (*bore, *holes))
     yield Part("rotor.core", "electrical-steel", ((core, at.iron0, at.iron1),), role=Role.ROTOR)
     left, right = (at.iron0 - g.rotor.end, at.iron0), (at.iron1, at.iron1 + g.rotor.end)
-    if drawn["magnets"]:
-        prisms = extrude(_around(drawn["magnets"]), at.iron0, at.iron1)
+    if outlines["magnets"]:
+        prisms = extrude(_around(outlines["magnets"]), at.iron0, at.iron1)
         yield Part("magnets", "magnet-ndfeb", prisms, role=Role.MAGNET)
-    if bars := extrude(_around(drawn["bars"]), at.iron0, at.iron1):
-        top = max(corners(drawn["bars"]))
+    if bars := extrude(_around(outlines["bars"]), at.iron0, at.iron1):
+        top = max(radii(outlines["bars"]))
         ring = shapes.ring(top - g.rotor.ring, top)
         yield Part("rotor.cage", "aluminium-cast", (*bars, (ring, *left), (ring, *right)), role=Role.CAGE)
-    if drawn["coils"]:
-        radii = list(corners(drawn["coils"]))
-        ring, filling = shapes.ring(min(radii), max(radii)), (g.rotor.fill, g.winding.impregnation)
-        coils = extrude(_around(drawn["coils"]), at.iron0, at.iron1)
+    if outlines["coils"]:
+        reach = radii(outlines["coils"])
+        ring, filling = _end_turns(min(reach), max(reach)), (g.rotor.fill, g.winding.impregnation)
+        coils = extrude(_around(outlines["coils"]), at.iron0, at.iron1)
         yield Part("winding.field", "winding", coils, filling, role=Role.WINDING, turns=True)
         for end, span in (("left", left), ("right", right)):
             name = f"winding.field.{end}"
@@ -135,12 +143,12 @@ def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
 
 
 def _stator(g: Geometry, at: _Places) -> tuple[Part, ...]:
-    drawn = at.drawn
-    if not drawn["wires"]:
+    outlines = at.outlines
+    if not outlines["wires"]:
         return stator(g, at)
-    vents = tuple(profile.outer for profile in _around(drawn["vents"]))
-    core = Profile(shapes.circle_loop(at.core), (notched_loop(at.bore, drawn["slots"]), *vents))
-    wires, w, ring = _around(drawn["wires"]), g.winding, shapes.ring(at.wire0, at.wire1)
+    vents = tuple(profile.outer for profile in _around(outlines["vents"]))
+    core = Profile(shapes.circle_loop(at.core), (notched_loop(at.bore, outlines["slots"]), *vents))
+    wires, w, ring = _around(outlines["wires"]), g.winding, _end_turns(at.wire0, at.wire1)
     loose = (w.end_fill, w.end_impregnation)
     left = (*extrude(wires, at.coil0, at.core0), (ring, at.ring0, at.coil0))
     right = (*extrude(wires, at.core1, at.coil1), (ring, at.coil1, at.ring1))
@@ -164,16 +172,16 @@ def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
         fluid("air.left", (whole, at.cap0, max(at.core0, at.iron0))),
         fluid("air.right", (whole, min(at.core1, at.iron1), at.cap1)),
         *coolant(g, at),
-        *([fluid("air.inside")] if _hollow(at.drawn, at.surface) else []),
+        *([fluid("air.inside")] if _hollow(at.outlines, at.surface) else []),
     )
 
 
-def _hollow(drawn: Outlines, surface: float) -> bool:
+def _hollow(outlines: Outlines, surface: float) -> bool:
     """Is there a hole through the iron that no magnet fills?"""
-    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (drawn["pockets"], drawn["magnets"]))
-    buried = max(corners(drawn["magnets"]), default=0.0) < surface
-    return bool(drawn["vents"]) or holes > magnets * buried + 1e-7
+    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
+    buried = max(radii(outlines["magnets"]), default=0.0) < surface
+    return bool(outlines["vents"]) or holes > magnets * buried + 1e-7
 
 
 _DOC = "Radial-flux machine with a drawn cross-section: any slots, magnets, barriers, cage or wound rotor, as outlines"
-DRAWN = Family("drawn", _DOC, PARAMETERS, build_drawn, FACES, ports, parameters.features, NAMES)
+CROSS_SECTION = Family("cross-section", _DOC, PARAMETERS, build_section, FACES, ports, parameters.features, NAMES)

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from written_machines import pyleecan, saved
+from foreign_machines import pyleecan, saved
 
 import thermoscope as ts
 from geom import load_machine

@@ -21,7 +21,11 @@ def sections(**outlines):
     slots = {"slots": [{"copies": 12, "loops_mm": [sector(60, 80, HALF, lid=False)]}]}
     wires = {"wires": [{"copies": 12, "loops_mm": [sector(64, 80, HALF)]}]}
     stator = {"outer_diameter_mm": 200.0, "bore_diameter_mm": 120.0, "stack_length_mm": 100.0, "air_gap_mm": 1.0}
-    return {"machine": {"family": "drawn"}, "geometry": {"stator": stator}, "outlines": slots | wires | outlines}
+    return {
+        "machine": {"family": "cross-section"},
+        "geometry": {"stator": stator},
+        "outlines": slots | wires | outlines,
+    }
 
 
 def magnets(inner, outer, half=0.4):
@@ -52,7 +56,8 @@ def test_magnets_on_the_surface_and_a_rotor_without_bore_mesh():
 
 FAULTS = {
     "neighbour": ({"magnets": magnets(50, 54, 0.9), "pockets": magnets(50, 54, 0.9)}, "cuts its neighbour"),
-    "crossing": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 5], [40, 0], [30, 5]]]}]}, "crosses itself"),
+    "crossing": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 5], [40, 0], [30, 2]]]}]}, "crosses itself"),
+    "flat": ({"pockets": [{"copies": 1, "loops_mm": [[[30, 0], [40, 0], [35, 0]]]}]}, "has no area"),
     "outside": ({"magnets": magnets(50, 70)}, "from the axis"),
     "unknown": ({"coil": []}, "unknown shapes 'coil'"),
     "no copies": ({"bars": [{"copies": 0, "loops_mm": []}]}, "copies = 0"),
