@@ -148,8 +148,8 @@ def split(branches: Sequence[Sequence[Passage]], low: float, high: float, fluid:
     each = np.exp([np.interp(p, drops, flows) for drops, flows, _ in curves])
     total, some = np.unique(each.sum(axis=0), return_index=True)
     shares = each[:, some] / total
-    some = _needed(np.log(total), shares, 0, len(total) - 1)
-    return np.log(total[some]), shares[:, some]
+    needed = _needed(np.log(total), shares, 0, len(total) - 1)
+    return np.log(total[needed]), shares[:, needed]
 
 
 def _kinks(duct: Passage, fluid: Fluid) -> list[float]:
