@@ -91,15 +91,15 @@ def _temperatures(
     return list(_between(film, fluid, usual, [ends[0], *some, ends[1]]))
 
 
-def _limit(fluid: Callable[[float], Fluid], known: float, step: float) -> float:
+def _limit(fluid: Callable[[float], Fluid], inside: float, step: float) -> float:
     """Where a fluid freezes or boils between a temperature at which it is known and the next, to 0.02 K."""
-    gone = known + step
+    gone = inside + step
     if _exists(fluid, gone):
-        return known
+        return inside
     for _ in range(8):
-        middle = 0.5 * (known + gone)
-        known, gone = (middle, gone) if _exists(fluid, middle) else (known, middle)
-    return known
+        middle = 0.5 * (inside + gone)
+        inside, gone = (middle, gone) if _exists(fluid, middle) else (inside, middle)
+    return inside
 
 
 def _exists(fluid: Callable[[float], Fluid], T: float) -> bool:

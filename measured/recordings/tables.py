@@ -209,7 +209,9 @@ def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
             f"{low:g} to {high:g}{unit}: check the unit in the sheet, or leave the cell empty where nothing was read",
         )
     rows = np.diff(np.flatnonzero(~np.isnan(values)))
-    slower = rows.size > LEAST and rows.max() <= rows.min() + 1  # a column that is recorded less often lacks nothing
+    slower = (
+        rows.size > LEAST and 1 < rows.min() >= rows.max() - 1
+    )  # a column that is recorded less often lacks nothing
     if missing.size and column.electrical is None and not slower:
         line = missing[0] + HEADER + first
         return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]

@@ -28,7 +28,7 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
     stream.log("scale/bar", rr.Image(np.repeat(ramp[:, None], WIDE, axis=1)), static=True)
     at = marks(low, high)
     height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
-    words = [f"{m:.{decimals(high - low)}f} °C" for m in at]
+    words = [f"{m:.{decimals(low, high)}f} °C" for m in at]
     points = rr.Points2D(
         [[WIDE + GAP, h] for h in height],
         labels=words,

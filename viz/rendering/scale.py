@@ -35,6 +35,7 @@ def marks(low: float, high: float) -> list[float]:
     return [low, *(round(i * step, 12) for i in range(first, last + 1)), high]
 
 
-def decimals(span: float) -> int:
-    """Digits after the point that tell the marks of a range apart."""
-    return max(0, -math.floor(math.log10(step_of(span) / FINE) + 1e-9))
+def decimals(low: float, high: float) -> int:
+    """Digits after the point that all marks of a rounded range need."""
+    every, most = marks(low, high), max(0, -math.floor(math.log10(step_of(high - low) / FINE) + 1e-9))
+    return next((n for n in range(most) if all(abs(round(m, n) - m) < 1e-9 for m in every)), most)

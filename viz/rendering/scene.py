@@ -134,7 +134,7 @@ def colour_bar(p: pyvista.Plotter, title: str, theme: Theme = LIGHT, **options: 
     every = marks(low, high)
     for mark in every:
         share = (mark - low) / (high - low)
-        words = f"{minus(f'{mark:.{decimals(high - low)}f}')}{unit if mark == every[-1] else ''}"
+        words = f"{minus(f'{mark:.{decimals(low, high)}f}')}{unit if mark == every[-1] else ''}"
         if style["vertical"]:
             at, anchor = (x + wide + gap[0], y + share * tall), ("left", "center")
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ from viz.viewer.packing import packed_integers, packed_numbers
 from viz.viewer.part_shapes import ERROR_K, packed_fields
 
 FRAMES = 21  # instants of a test that the range of its errors is looked up at
+UNSEEN = 0.02  # of a range of colours: what lies beyond it by less has its last colour
 STEP_K = 0.02  # of fields and readings: a twentieth of what a thermocouple tells, and small shapes then take few bits
 
 
@@ -124,11 +126,13 @@ def temperature_document(
 ) -> dict[str, Any]:
     """Temperatures and readings of tests; those of more tests replace them.
 
-    revisions : names of a test's states;  limits : of the colours (degC), wider where a state is beyond
+    revisions : names of a test's states;  limits : of the colours (degC), wider where a state is clearly beyond
     """
     every = [part for t in tests for part in t.states]
-    ends = [*(limits or ()), *(float(end) for f in every for end in (f.min(), f.max()))]
-    low, high = rounded(min(ends), max(ends))
+    low, high = limits or (math.inf, -math.inf)
+    slack = UNSEEN * (high - low) if limits else 0.0
+    ends = [end for f in every for end in map(float, (f.min(), f.max())) if not low - slack <= end <= high + slack]
+    low, high = rounded(min(low, *ends), max(high, *ends)) if ends else rounded(low, high)
     return {
         "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K),
         "revisions": list(revisions),

@@ -5,15 +5,17 @@ import pytest
 from geom.errors import InputError
 from thermoscope.commands.show.picture import PICTURES, picture
 
+WITHOUT_GEOMETRY = ["curves", "bands", "residuals", "losses", "sizes"]
 
-@pytest.mark.parametrize("what", ["curves", "bands", "residuals", "losses"])
+
+@pytest.mark.parametrize("what", WITHOUT_GEOMETRY)
 def test_a_case_without_geometry_has_its_plots(case, tmp_path, what):
     file = tmp_path / "shown" / f"{what}.png"
     assert picture(str(case), what, file, None) == 0
     assert file.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("what", sorted(set(PICTURES) - {"curves", "bands", "residuals", "losses"}))
+@pytest.mark.parametrize("what", sorted(set(PICTURES) - set(WITHOUT_GEOMETRY)))
 def test_what_a_case_lacks_is_said_and_nothing_written(case, tmp_path, what):
     """No machine, and no revision yet."""
     file = tmp_path / "shown.png"

@@ -13,7 +13,7 @@ def test_ends_are_round_hold_the_range_and_stay(span):
     at = marks(low, high)
     assert (at[0], at[-1]) == (low, high)
     assert 2 <= len(at) <= 11
-    assert all(round(x, decimals(high - low)) == pytest.approx(x, abs=1e-9) for x in at)
+    assert all(round(x, decimals(low, high)) == pytest.approx(x, abs=1e-9) for x in at)
 
 
 def test_a_known_range():
