@@ -18,7 +18,7 @@ from geom.errors import InputError
 from lumped.model.sites import ambient, neighbours
 from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
-from measured.doubt import FORM, temper
+from measured.doubt import FORM
 from validation.calibration.calibrate import no_progress
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
@@ -239,11 +239,7 @@ def timed_worth(
 ) -> list[Promising]:
     """All that an event may have been.  price : share of what and in which test"""
     share = price * float(np.exp(max(occurrence.log_share, -600.0)))  # a share of zero has no logarithm
-    rows, out = tangent_worth(evidence, bases, occurrence.event.name, share, values), []
-    for c in rows:  # what the repeats explain is tempered, and so is what they cost
-        nats = c.worth - c.log_prior + NOTHING.log_prior
-        out.append(Promising(c.effect, c.log_prior + occurrence.repeats / temper(nats), c.worth + occurrence.repeats))
-    return out
+    return tangent_worth(evidence, bases, occurrence.event.name, share, values)
 
 
 def tangent_worth(

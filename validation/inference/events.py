@@ -20,8 +20,8 @@ from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Test
-from measured.doubt import USUAL, temper
-from measured.sensors.blocks import INSTANTS, groups
+from measured.doubt import USUAL
+from measured.sensors.blocks import groups
 from validation.calibration.calibrate import Fit
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
@@ -29,7 +29,7 @@ from validation.effects.during import During, gated
 from validation.effects.time_window import Event, Span, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
-from validation.inference.hypotheses import REPEATS, REPORTED, Weighed, probabilities, stretch_count
+from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
 
 Array = NDArray[np.float64]
@@ -40,7 +40,6 @@ COARSEST = (
     4.0  # samples between instants that tell one stretch from another; what carries weight is timed to the sample
 )
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
-PLACES = 3  # places where one more may be, of which none is: then there is no other
 MOVES = 3  # of the ends and refitting with them: by then they stand within a sample
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
 
@@ -49,13 +48,11 @@ FITTED = 4  # of the most probable refits: an event in any of them that will be 
 class TimedEvent:
     """An event with its ends at the samples.
 
-    log_share : log evidence of all ends of its first span over that of the best ones, less the price of there being so
-    many;  repeats : the same of all its other spans
+    log_share : log evidence of all ends over that of the best ones, less the price of there being so many
     """
 
     event: Event
     log_share: float
-    repeats: float
 
 
 def timed_event(
@@ -65,7 +62,7 @@ def timed_event(
 
     Parameters: `base` the effect that it is taken for; `reach_s` test -> how far (s) an end may move.
     """
-    spans, shares = {t: list(pairs) for t, pairs in event.spans.items()}, list[float]()
+    spans, log_share = {t: list(pairs) for t, pairs in event.spans.items()}, 0.0
     usual = float(np.mean([b - a for a, b in event.every]))
     tests = {t.name: t for t in evidence.tests}
     every = [(t, i) for t, pairs in spans.items() for i in range(len(pairs))]
@@ -74,8 +71,8 @@ def timed_event(
         length = usual if n else None
         one = timed_span(evidence, base, tests[test], spans[test][i], others, reach_s[test], values, length)
         spans[test][i] = one.event.spans[test][0]
-        shares.append(one.log_share)
-    return TimedEvent(Event.of(spans), shares[0], sum(shares[1:]))
+        log_share += one.log_share
+    return TimedEvent(Event.of(spans), log_share)
 
 
 def timed_span(
@@ -109,7 +106,7 @@ def timed_span(
         if reach_s <= COARSEST * step:
             break
     count = stretch_count(test.time.size, None if usual_s is None else usual_s / step)
-    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best]) - np.log(count)), 0.0)
+    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best]) - np.log(count)))
 
 
 def sample_step(test: Test) -> float:
@@ -228,24 +225,20 @@ def retimed(
     """
     P = probabilities(hypotheses, 1.0)
     order = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED]
-    # with its ends a little off the best event may fit worse than no event under a larger noise
-    quiet = max((h for h in hypotheses if h.fit and h.members), key=lambda h: h.log_prior + h.log_bayes, default=None)
-    few = [h for h in order if h.fit and h.members and h is not quiet][:FITTED] + ([quiet] if quiet else [])
+    few = [h for h in order if h.fit and h.members][:FITTED]
     for _ in range(MOVES):
         new = moved_events(evidence, few, reach_s)
         if not new:
             break
-        priors: dict[Effect, float] = {e: evidence.causes[k].log_prior - price for k, (e, price) in new.items()}
+        priors: dict[Effect, float] = {e: evidence.causes[k].log_prior for k, e in new.items()}
         evidence = joined(evidence, priors, evidence.fit.values, list(new))
         few = [refit(evidence, h) if set(h.members) & set(new) else h for h in few]
     return evidence
 
 
-def moved_events(
-    evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Mapping[str, float]
-) -> dict[int, tuple[During, float]]:
-    """Events whose refits want other ends or more repeats, with these; and the price (nats) of when the latter were."""
-    new: dict[int, tuple[During, float]] = {}
+def moved_events(evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Mapping[str, float]) -> dict[int, During]:
+    """Events whose refits want other ends, with these."""
+    new: dict[int, During] = {}
     for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
@@ -253,66 +246,11 @@ def moved_events(
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
                 event = refit_ends(evidence, h.fit, effect, effect.event, reach_s)
-                event, price = further_repeats(evidence, h.fit, effect, event)
-                new[k] = During.of(effect.base, event.name), price / temper(h.log_bayes)
+                new[k] = During.of(effect.base, event.name)
     others = {e.name for k, e in enumerate(evidence.effects) if k not in new}
-    new = {k: x for k, x in new.items() if x[0].name != evidence.names[k] and x[0].name not in others}
-    names = [e.name for e, _ in new.values()]
-    return {k: x for k, x in new.items() if names.count(x[0].name) == 1}
-
-
-def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) -> tuple[Event, float]:
-    """The event with further repeats of about its size and length, as long as each is worth saying when; their price.
-
-    Where the scan of a long record sees too little of a short one, a refit says how large it must be. Tangents say
-    where one may be, a run whether it is.
-    """
-    usual, paid, one_more = float(np.median([b - a for a, b in event.every])), 0.0, True
-    while one_more and len(event.every) < REPEATS:
-        one_more = False
-        for gain, test, span in likely_repeats(evidence, fit, effect, event, usual):
-            price = float(np.log(stretch_count(test.time.size, usual / sample_step(test))))
-            if gain <= price:
-                break
-            reach, before = 1.5 * pulse_spacing(test, usual), [*event.spans.get(test.name, ())]
-            span = refit_span(fit, effect, test, [*before, span], len(before), reach)
-            closer, near = closer_look(fit, test, span, usual, fit.values)
-            misfit = Misfit.create(closer, near, effect.name)
-            was, now = (
-                misfit.of(
-                    with_condition(fit.network, effect.condition, Event.of({test.name: spans}).name if spans else "")
-                )
-                for spans in (before, [*before, span])
-            )
-            if one_more := was - now > price and all(span[1] <= a or b <= span[0] for a, b in before):
-                event, paid = Event.of({**event.spans, test.name: [*before, span]}), paid + price
-                break
-    return event, paid
-
-
-def pulse_spacing(test: Test, usual_s: float) -> float:
-    """Between the instants at which a repeat is looked for (s): its length, or what the blocks of a fit tell apart."""
-    return max(usual_s, float(np.ptp(test.time)) / INSTANTS)
-
-
-def likely_repeats(
-    evidence: Evidence, fit: Fit, effect: During, event: Event, usual_s: float
-) -> list[tuple[float, Test, Span]]:
-    """Stretches of every test that may be further repeats, by tangents about a refit, each with what it would gain
-    (nats) at a size of its own: the likeliest few, most gain first."""
-    out = []
-    for test in evidence.tests:
-        at = np.arange(test.time[0], test.time[-1] - usual_s, pulse_spacing(test, usual_s))
-        spans = [instants_around(test, t, 0.0)[0] for t in at]
-        spans = [(a, a + usual_s) for a in spans]
-        spans = [s for s in spans if all(s[1] <= a or b <= s[0] for a, b in event.spans.get(test.name, ()))]
-        if spans:
-            effects = [During.of(effect.base, Event.of({test.name: [s]}).name) for s in spans]
-            score = fit_score(fit, effect_columns(fit, [test], effects, fit.values))
-            z = np.sign(fit.values[effect.name]) * np.where(score.visible, score.u, 0.0)
-            gain = 0.5 * np.maximum(z, 0.0) ** 2 / np.maximum(np.diag(score.V), 1e-300)
-            out += [(float(g), test, s) for g, s in zip(gain, spans, strict=True)]
-    return sorted(out, key=lambda x: -x[0])[:PLACES]
+    new = {k: e for k, e in new.items() if e.name != evidence.names[k] and e.name not in others}
+    names = [e.name for e in new.values()]
+    return {k: e for k, e in new.items() if names.count(e.name) == 1}
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:

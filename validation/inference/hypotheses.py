@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
-REPEATS = 20  # of one event
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 

@@ -282,9 +282,9 @@ def _pairs_corrected(
 
 
 def rivals(hypotheses: Sequence[Weighed]) -> list[int]:
-    """Where evidence is too great for tangents to be trusted: single effects that come near the best, whatever a larger
-    noise makes of nothing."""
-    alone = sorted((-h.log_prior - h.log_bayes, i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[:MOST]
+    """Where evidence is too great for tangents to be trusted: single effects that come near the most probable."""
+    P = probabilities(hypotheses, 1.0)
+    alone = sorted((-P[i], i) for i, h in enumerate(hypotheses) if len(h.members) == 1)[:MOST]
     best = hypotheses[alone[0][1]].log_bayes if alone else 0.0
     if best < GREAT:
         return []

@@ -22,7 +22,7 @@ from validation.calibration.model_error import nodes
 from validation.effects.build import conductance_scale, power_scale
 from validation.effects.time_window import Event, Span
 from validation.inference.evidence import Evidence
-from validation.inference.hypotheses import REPEATS, stretch_count
+from validation.inference.hypotheses import stretch_count
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, average_size, fit_score
 
@@ -32,6 +32,7 @@ PLACES = 4  # of most evidence, whose curves are searched for change points
 PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its level, and a half more for either
 CLEAR = 2.0  # standard deviations from which a level is a pulse
 WHOLE = 0.9  # of a test: what lasts longer is a condition of that test, and no event
+REPEATS = 20  # of one event
 ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 

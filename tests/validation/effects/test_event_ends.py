@@ -70,4 +70,3 @@ def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():
         events.append(timed_event(evidence, film, where, dict.fromkeys(held, 100.0), fit.values))
     assert events[0].event.name == events[1].event.name
     assert events[0].log_share == pytest.approx(events[1].log_share, abs=1e-3)
-    assert events[0].repeats == pytest.approx(events[1].repeats, abs=1e-3)
