@@ -35,7 +35,8 @@ class Steady(TableResult):
     def __repr__(self) -> str:
         if len(self.names) > SCREEN:
             return f"<Steady: {len(self.names)} temperatures, by name>"
-        return table(["place", "degC"], [[name, self[name]] for name in self.names])
+        (one,) = self.tables()
+        return table(one.columns, one.rows)
 
     def tables(self) -> tuple[Table, ...]:
         """A row for each place."""

@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from geom.errors import InputError
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
 from thermoscope.case_folder.folder import checked_losses
+from thermoscope.commands.model.machines import write_machine_file
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
@@ -29,7 +29,7 @@ def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPL
 
     draft = import_draft(file, family_template)
     checked_losses(machine_from(draft.sections(), str(file)))  # nothing is written that cannot be built
-    target_file = write_draft(draft, out or Path())
+    target_file = write_machine_file(draft.name, draft.toml(), out or Path())
     document = {
         "machine": draft.name,
         "program": draft.program,
@@ -39,17 +39,6 @@ def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPL
     }
     give(document, target, lambda: import_summary(draft, target_file))
     return 0
-
-
-def write_draft(draft: Draft, folder: Path) -> Path:
-    """The machine file in a folder. InputError where one of that name lies there."""
-    target = folder / f"{draft.name}.toml"
-    if target.exists():
-        raise InputError("is there already: it stays", str(target), "another folder: --out DIR")
-    text = draft.toml()
-    folder.mkdir(parents=True, exist_ok=True)
-    target.write_text(text, encoding="utf-8")
-    return target
 
 
 def import_summary(draft: Draft, target_file: Path) -> Summary:

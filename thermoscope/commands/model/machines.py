@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from dataclasses import asdict
 from difflib import get_close_matches
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from geom.errors import InputError
+from geom.storage import write_whole
 from geom.table import Table
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
@@ -53,12 +53,16 @@ def copy_machine(name: str, folder: Path) -> Path:
     if name not in library():
         near = ", ".join(get_close_matches(name, library(), cutoff=0.0))
         raise InputError(f"no machine {name!r} comes along", "--copy", f"for example {near}")
+    return write_machine_file(name, library()[name].read_bytes(), folder)
+
+
+def write_machine_file(name: str, text: str | bytes, folder: Path) -> Path:
+    """A machine file in a folder, whole or not at all. InputError where one of that name lies there."""
     target = folder / f"{name}.toml"
     if target.exists():
         raise InputError("is there already: it stays", str(target), "another folder: --out DIR")
     folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(library()[name], target)
-    return target
+    return write_whole(target, text)
 
 
 def described(entry: Entry, page: Path | None) -> dict[str, Any]:
