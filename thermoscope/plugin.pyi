@@ -164,6 +164,7 @@ from measured.importing.draft import (
     squares_of as squares_of,
     test_name as test_name,
 )
+from measured.importing.case_files import imported_table as imported_table
 from measured.importing.guess import assigned as assigned, guesses as guesses
 from measured.importing.target import Target as Target, target_of as target_of
 from measured.recordings.csv_file import read_csv as read_csv

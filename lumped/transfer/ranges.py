@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 import warnings
 from collections.abc import Iterator
@@ -12,6 +13,11 @@ _thread = threading.local()
 
 class RangeWarning(UserWarning):
     """A correlation or a map was used outside the range of its source."""
+
+    @property
+    def subject(self) -> str:
+        """Of what it warns: its words without their numbers, the same however often and however far outside."""
+        return re.sub(r"(?<![\w.])-?\d[\d.e+-]*", "", str(self).partition(" = ")[0])
 
 
 def out_of_range(what: str) -> None:

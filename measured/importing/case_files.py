@@ -20,11 +20,12 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
-from measured.importing.aligned import Recording
+from measured.importing.clock import Clock, read_timed
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
+from measured.importing.source import Source
 from measured.input_folders import within_inputs
-from measured.recordings.data_table import csv_text
+from measured.recordings.data_table import DataTable, csv_text
 
 TIME = "time_s"
 ROLES = ("calibrate", "validate", "hold-out")
@@ -93,7 +94,7 @@ def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Se
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         for i, record in enumerate(draft.records):
-            write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record)))
+            write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record.source, record.clock)))
         write_whole(folder / f"tests/{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
     write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
@@ -109,14 +110,19 @@ def _file(draft: Draft, i: int) -> str:
     return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
 
 
-def readings(record: Recording) -> dict[str, NDArray[np.float64]]:
+def readings(source: Source, clock: Clock) -> dict[str, NDArray[np.float64]]:
     """Time (s) and all columns of numbers as the file has them; rows without a time of their own are left out."""
-    t = record.clock.seconds
+    t = clock.seconds
     keep = np.flatnonzero(np.isfinite(t))
     keep = keep[np.concatenate([[True], np.diff(t[keep]) > 0])]
-    columns = [g.column for g in record.guesses if g.column != TIME and record.source.is_numeric(g.column)]
-    body = {c: record.source.numbers(c)[keep] for c in columns}
+    columns = [c for c in source.columns if c not in (TIME, *clock.columns) and source.is_numeric(c)]
+    body = {c: source.numbers(c)[keep] for c in columns}
     return {TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}}
+
+
+def imported_table(file: Path) -> DataTable:
+    """A recorder's own file as the tests of a case have it: time_s, and columns of numbers under their names."""
+    return DataTable.of(readings(*read_timed(file)).items(), file)
 
 
 def _sheet(draft: Draft) -> Iterator[str]:

@@ -27,7 +27,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
-from validation.effects.during import During, effect_words
+from validation.effects.during import During
 from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, working
 from validation.threads import side_by_side
 
@@ -239,7 +239,7 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     n = [sum(c["n"] for c in t["channels"]) for t in unseen or tests]
     pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in unseen or tests])
     was, now = np.sqrt(np.average(pairs**2, axis=0, weights=n))
-    words = " and ".join(effect_words(effect(name, scene_of(folder.case))) for name in names)
+    words = " and ".join(effect(name, scene_of(folder.case)).statement for name in names)
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
     verb, on = "Found" if now < was else "Added", "Held out" if unseen else "Error"

@@ -54,11 +54,11 @@ def ranges_as_notes() -> Iterator[None]:
     usual, so_far = warnings.showwarning, set[str]()
 
     def as_note(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        what = str(message).split(" = ")[0]  # test after test has another number
-        if category.__name__ != "RangeWarning":
+        subject = getattr(message, "subject", None)  # test after test has another number
+        if subject is None:
             usual(message, category, *where, **more)
-        elif what not in so_far:
-            so_far.add(what)
+        elif subject not in so_far:
+            so_far.add(subject)
             notes([str(message)])
 
     warnings.showwarning = as_note

@@ -61,17 +61,22 @@ class Above(ReadingEffect):
         return match[1], match[2], float(match[3])
 
     @property
+    def statement(self) -> str:
+        target, name, level = self.parts()
+        return f"the declared {target.replace(':', ' ')} is off where {name} is above {level:g}"
+
+    @property
     def inputs(self) -> tuple[str, ...]:
         return (self.parts()[1],)
 
     def words(
         self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
     ) -> str:
-        """ "the declared loss:stator is 40 % too high above current_A 150"."""
+        """ "the declared loss stator is 40 % too high above current_A 150"."""
         target, name, level = self.parts()
         side = "too low" if a > 0 else "too high"
         wrong = 100.0 * abs(a if a > 0 else a / (1.0 + a))  # a loss of which 1 + a is true is so much too high
-        return f"the declared {target} is {wrong:.0f} % {side} where {name} is above {level:g}"
+        return f"the declared {target.replace(':', ' ')} is {wrong:.0f} % {side} where {name} is above {level:g}"
 
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()

@@ -78,6 +78,11 @@ class Effect(ABC):
         return f"{self.kind}@{self.place}"
 
     @property
+    def statement(self) -> str:
+        """What it says of the machine and where, in words: "forced convection by vehicle wind at flange.right"."""
+        return f"{self.title} {place_words(self.place)}"
+
+    @property
     def large(self) -> tuple[float, ...]:
         """Usual amplitudes that leave the tangent behind: the share that something loses where it only can lose."""
         return self.typical[:1] if self.mapping == "relative" and self.sign < 0 else ()
@@ -132,6 +137,11 @@ class ReadingEffect(Effect):
         self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
     ) -> str:
         """What an amplitude means, beside what the network has there at the values of its parameters."""
+
+
+def place_words(place: str) -> str:
+    """Where something sits, in words: "at rotor", "between stator.core and housing"."""
+    return f"between {place.replace('|', ' and ')}" if "|" in place else f"at {place}"
 
 
 def with_parameter(network: Network, parameter: Parameter) -> Network:

@@ -61,9 +61,13 @@ class During(Effect):
         return self.event.tests if self.event else (self.condition,)
 
     @property
-    def words(self) -> str:
-        """Where and when."""
-        return f"at {self.base.place} {self.event.words if self.event else f'in {self.condition}'}"
+    def when(self) -> str:
+        """In which test, or from when to when."""
+        return self.event.words if self.event else f"in {self.condition}"
+
+    @property
+    def statement(self) -> str:
+        return f"{self.base.statement} {self.when}"
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> Iterable[str]:
@@ -135,8 +139,3 @@ class During(Effect):
 def gated(law: Law) -> bool:
     """Does a law hold for a while only?"""
     return isinstance(law, Shaped) and isinstance(law.shape, TimeWindow)
-
-
-def effect_words(effect: Effect) -> str:
-    """An effect in plain words: what it is, where, and when it held."""
-    return f"{effect.title} {effect.words}" if isinstance(effect, During) else f"{effect.title} at {effect.place}"

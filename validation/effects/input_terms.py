@@ -16,7 +16,7 @@ from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, InputPower, Inputs, Law
 from lumped.transfer.ranges import within_silence
 from measured.sensors.operators import head
-from validation.effects.base import Effect, ReadingEffect, with_parameter
+from validation.effects.base import Effect, ReadingEffect, place_words, with_parameter
 from validation.effects.build import Shaped, conductance_scale, exchange, heat, links_between, power_scale
 
 PLACE = re.compile(r"([^|]+)(?:\|([^|]+))?\|([^|]+)")
@@ -59,6 +59,7 @@ class InputTerm(ReadingEffect):
     """
 
     ends: ClassVar[int]
+    noun: ClassVar[str]
     empirical = True
     typical = (1.0, 100.0)
     prior_sd = 0.5
@@ -77,6 +78,11 @@ class InputTerm(ReadingEffect):
             right = "|".join([*("PLACE" for _ in range(self.ends)), "INPUT^POWER at LEVEL"])
             raise InputError(f"'{self.place}' is not a place and what it follows", f"effect '{self.name}'", right)
         return tuple(ends), factors
+
+    @property
+    def statement(self) -> str:
+        ends, factors = self.parts()
+        return f"a {self.noun} {place_words('|'.join(ends))} that follows {' and '.join(name for name, *_ in factors)}"
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -135,6 +141,7 @@ class InputLoss(InputTerm):
     """Heat at one place."""
 
     kind = "loss.input"
+    noun = "loss"
     ends = 1
     title = "a loss that follows an input as no declared loss there does"
     unit = "W"
@@ -161,6 +168,7 @@ class InputConductance(InputTerm):
     """A conductance between two places, or a place and a boundary; its constant part is what is declared there."""
 
     kind = "conductance.input"
+    noun = "conductance"
     ends = 2
     title = "a conductance that follows an input as no declared one there does"
     unit = "W/K"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from measured.doubt import SHARPNESS, USUAL
-from validation.effects.base import Effect
+from validation.effects.base import Effect, place_words
 from validation.effects.during import During
 from validation.effects.time_window import event
 from validation.inference.decide import SURE, Posterior
@@ -95,5 +95,5 @@ def words(posterior: Posterior, about: str) -> str:
     share = inclusion(posterior.hypotheses, len(e.effects)) * [concerns(x, about) for x in e.effects]
     best = e.effects[int(np.argmax(share))]
     if not isinstance(best, During):
-        return f"can it be that {best.title}, {best.place.replace('|', ' and ')}?"
-    return f"was there {THINGS.get(best.kind, best.title)} {best.words}?"
+        return f"can it be: {best.statement}?"
+    return f"was there {THINGS.get(best.kind, best.title)} {place_words(best.base.place)} {best.when}?"

@@ -17,7 +17,7 @@ from measured.sensors.faults import PlainFaults
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.base import Effect, ReadingEffect
-from validation.effects.during import During, effect_words
+from validation.effects.during import During
 from validation.effects.time_window import Event
 from validation.inference.decide import Decision, Group, Posterior, precedence
 from validation.inference.evidence import Evidence, smallest_visible, thresholds
@@ -123,7 +123,7 @@ def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
     A cause that leads has the probability of its row among the candidates. Plain faults are no part of it.
     """
     e, words = posterior.evidence, {"nothing": "nothing is missing"}
-    words |= {name: effect_words(effect) for name, effect in zip(e.names, e.effects, strict=True)}
+    words |= {name: effect.statement for name, effect in zip(e.names, e.effects, strict=True)}
     words |= {f"heat@{h.heat}": f"heat of unknown cause at {h.heat}" for h in posterior.hypotheses if h.heat}
     causes = [tuple(e.names[k] for k in h.members) or (e.name(h),) for h in posterior.hypotheses]
     nats = {each[0]: h.nats for each, h in zip(causes, posterior.hypotheses, strict=True) if len(each) == 1}
@@ -222,7 +222,7 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
         absorbed=float(s.absorbed[k]),
         twin=e.twins[k],
         title=effect.title,
-        words=effect_words(effect),
+        words=effect.statement,
         isolating_test=effect.isolating_test,
     )
     if h.fit is None:
@@ -427,10 +427,10 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
             return f"{text} ({percent(best.probability)})"
         unit = "" if best.unit == "1" else f" {best.unit}"
         size = "" if effect.whole else f", {best.value:.3g}{unit}{impossible_words(effect, best)}"
-        return f"{'fault' if effect.fault else 'missing'}: {effect_words(effect)}{size} ({percent(best.probability)})"
+        return f"{'fault' if effect.fault else 'missing'}: {effect.statement}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    likely = [f"{effect_words(e.effects[k])} ({percent(p)})" for k, p in members]
+    likely = [f"{e.effects[k].statement} ({percent(p)})" for k, p in members]
     likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 

@@ -118,7 +118,6 @@ class Session:
 
     def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""
-        assert self.one is not None
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
         temperatures = [
@@ -126,7 +125,7 @@ class Session:
             for n in dict.fromkeys(places)
             if n in estimates
         ]
-        alarms = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in self.one.open.values()]
+        alarms = [_alarm_text(e.kind, e.where, e.amplitude, e.probability) for e in sample.open]
         return f"{sample.time_s / MINUTE:7.1f} min  {', '.join(temperatures)} degC{''.join('; ' + s for s in alarms)}"
 
     def csv(self) -> str:

@@ -40,7 +40,7 @@ class Event:
 class Sample:
     """time_s;  x (n,) degC all states;  u (nb,) boundaries;  heat, heat_sd (m,) W
 
-    S (N, N) : S S' is the covariance of slow states and heats
+    S (N, N) : S S' is the covariance of slow states and heats;  open : what was said by then and still holds
     """
 
     time_s: float
@@ -50,6 +50,7 @@ class Sample:
     heat_sd: Array
     S: Array
     along: Array
+    open: tuple[Event, ...] = ()
 
     def at(self, row: Row) -> tuple[float, float]:
         """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
@@ -184,7 +185,7 @@ class Observer:
     def _sample(self, by: Driven, k: int) -> Sample:
         f = self.filter
         sd = np.linalg.norm(f.S[f.process.slow.size :], axis=1)
-        return Sample(float(by.time[k]), f.x.copy(), by.u[k], f.q.copy(), sd, f.S, f.along)
+        return Sample(float(by.time[k]), f.x.copy(), by.u[k], f.q.copy(), sd, f.S, f.along, tuple(self.open.values()))
 
 
 def observer(

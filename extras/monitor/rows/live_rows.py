@@ -18,6 +18,7 @@ from thermoscope.plugin import (
     Column,
     DataTable,
     Sheet,
+    imported_table,
     numbers,
     recording_pieces,
     seconds_of,
@@ -153,15 +154,31 @@ def table_of(
     """The test whose sheet fits a recording, its columns under it, and its rows, at most so many at once."""
     if like is not None and like not in sheets:
         raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
-    name = like or next(iter(sheets))
-    parts = tables_in(follow, most, sheets[name].worksheet)
+    sheets = sheets if like is None else {like: sheets[like]}
+    name = next(iter(sheets))
+    try:
+        return _fitting(follow, tables_in(follow, most, sheets[name].worksheet), sheets, network)
+    except InputError as fault:
+        if not Path(follow).is_file():
+            raise
+        try:  # as a recorder writes it, which `new` has read too
+            return _fitting(follow, imported_table(Path(follow)).cut(most), sheets, network)
+        except InputError:
+            raise fault from None
+
+
+def _fitting(
+    follow: str, parts: Iterator[DataTable], sheets: Mapping[str, Sheet], network: Network
+) -> tuple[str, LiveTable, Iterator[DataTable]]:
+    """The first sheet that has what drives the machine."""
     first = next(parts, DataTable({}))
     if not first.columns:
         raise InputError("holds no row", follow, "a header line and rows of numbers")
-    tables = {n: LiveTable(s, network, first.columns, follow) for n, s in sheets.items() if like in (None, n)}
+    tables = {n: LiveTable(s, network, first.columns, follow) for n, s in sheets.items()}
     for fitting, one in tables.items():
         if not one.missing():
             return fitting, one, (part for part in chain([first], parts) if part.rows)
+    name = next(iter(sheets))
     lacks = tables[name].missing()[0]
     raise InputError(
         f"column '{lacks}' is not in the header", f"{follow} (read as test '{name}')", suggestion(lacks, first.columns)

@@ -85,7 +85,7 @@ def once() -> Iterator[list[str]]:
         warnings.simplefilter("ignore")
         warnings.simplefilter("always", RangeWarning)
         yield notes
-    last = {str(w.message).split("=")[0]: str(w.message) for w in caught}
+    last = {w.message.subject: str(w.message) for w in caught if isinstance(w.message, RangeWarning)}
     notes.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
 
 

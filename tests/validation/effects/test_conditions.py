@@ -285,7 +285,7 @@ def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
         cases.append(replace(test, channels=channels))
     found = diagnose(Case("bench", Model(net), tuple(cases)), plan=False)
     assert found.odds[0].effects[0].startswith("law@loss:heat|load>0.")
-    assert "the declared loss:heat is" in found.words
+    assert "the declared loss heat is" in found.words
     assert "% too high where load is above" in found.words
 
 

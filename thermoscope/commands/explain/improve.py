@@ -99,7 +99,7 @@ def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     fell = f", error {fall({'before': c.rmse_K[0], 'after': c.rmse_K[1]})}" if c.rmse_K else ""
-    return f"{c.effect}: {c.title}, {size}, odds {percent(c.probability)}{fell}"
+    return f"{c.words}, {size}, odds {percent(c.probability)}{fell}"
 
 
 def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str) -> Summary:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
 from geom.errors import InputError
@@ -21,14 +20,13 @@ from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.case_files import folder_whole, write_case
-from measured.importing.clock import Clock, clock_of, in_time_order
+from measured.importing.clock import Clock, read_timed
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
-from measured.importing.source import Source, read_source, signature
+from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
-from measured.recordings.grid import LONGEST_S
 from measured.recordings.sheet import MAX_GAP_S
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
@@ -112,7 +110,10 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     if end is not None and end <= start:
         raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
     with progress() as tell:
-        read = [read_recording(file, wishes.period_s, tell) for file in dict.fromkeys(files)]
+        read = []
+        for file in dict.fromkeys(files):
+            tell(f"reading {file.name}")
+            read.append(read_timed(file, wishes.period_s))
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
@@ -129,21 +130,6 @@ def places(words: Sequence[str]) -> dict[str, str]:
                 f"'{word}' is no COLUMN=PLACE", "--place", "such as T_Wickl_U=winding; PLACE may be an input"
             )
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
-
-
-def read_recording(file: Path, period_s: float | None, tell: Progress) -> tuple[Source, Clock]:
-    """A file and its clock.  period_s : between rows, where it has none"""
-    tell(f"reading {file.name}")
-    source = read_source(file)
-    try:
-        clock = clock_of(source, period_s)
-    except InputError:
-        source = in_time_order(source)
-        clock = clock_of(source, period_s)
-    span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
-    if span > LONGEST_S:
-        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
-    return source, clock
 
 
 def model_of_case(settings: Settings, network: Network) -> Model:

@@ -162,3 +162,29 @@ def test_cells_that_say_that_nothing_was_read_are_empty_as_in_a_test(thermoscope
     done = thermoscope("use", "watch", case, "--follow", "live.csv", "--json", "-", cwd=tmp_path)
     assert done.code == 0, done.err
     assert done.document["samples"] == 59
+
+
+def test_a_recorders_own_file_is_read_as_new_reads_it(thermoscope, case, rows, tmp_path):
+    """Semicolons, decimal commas, a clock of its own, under the names that the sheet knows."""
+    header, *lines = rows.read_text().splitlines()[:60]
+    other = header.replace("time_s", "Zeit (s)").replace(",", ";")
+    (tmp_path / "raw.csv").write_text("\n".join([other, *(x.replace(",", ";").replace(".", ",") for x in lines)]))
+    (tmp_path / "plain.csv").write_text("\n".join([header, *lines]))
+    raw, plain = (
+        thermoscope("use", "watch", case, "--follow", f"{name}.csv", "--json", "-", cwd=tmp_path)
+        for name in ("raw", "plain")
+    )
+    assert raw.code == plain.code == 0, raw.err
+    assert raw.document["places"] == plain.document["places"]
+
+
+def test_a_sensor_that_dies_is_not_called_lost_before(thermoscope, case, rows, tmp_path):
+    """Rows of a file are read many at once; each minute says what stood then."""
+    header, *lines = rows.read_text().splitlines()[:400]  # 2 s apart
+    at = header.split(",").index("T_winding")
+    cells = [[c if i < 200 or j != at else "" for j, c in enumerate(x.split(","))] for i, x in enumerate(lines)]
+    (tmp_path / "live.csv").write_text("\n".join([header, *map(",".join, cells)]))
+    done = thermoscope("use", "watch", case, "--follow", "live.csv", cwd=tmp_path)
+    minutes = [line for line in done.out.splitlines() if " min  " in line]
+    lost = ["T_winding lost" in line for line in minutes]
+    assert lost == [60 * k > 200 * 2 + 30 for k in range(len(minutes))], "after half a minute without a reading"
