@@ -8,7 +8,7 @@ import shutil
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
@@ -91,11 +91,12 @@ def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Se
         f"sample_s = {sample_of(drafts):g}",
         "",
     ]
+    names = sensor_names(drafts)
     for draft, role in zip(drafts, roles(len(drafts)), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         for i, record in enumerate(draft.records):
             write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record.source, record.clock)))
-        write_whole(folder / f"tests/{draft.name}.toml", "\n".join(map(visible, _sheet(draft))) + "\n")
+        write_whole(folder / f"tests/{draft.name}.toml", "\n".join(map(visible, _sheet(draft, names))) + "\n")
     write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
 
@@ -125,7 +126,23 @@ def imported_table(file: Path) -> DataTable:
     return DataTable.of(readings(*read_timed(file)).items(), file)
 
 
-def _sheet(draft: Draft) -> Iterator[str]:
+def sensor_names(drafts: Sequence[Draft]) -> dict[tuple[str, str], str]:
+    """(column, place) -> the name that it has in the first of the tests: "T1 (degC)" is "T1" of another file.
+
+    A sensor that a file writes otherwise is still the same, for its offset, its limit and the tests that are held out.
+    """
+    out: dict[tuple[str, str], str] = {}
+    first: dict[tuple[str, str], str] = {}
+    for draft in drafts:
+        own = {g.column for g in draft.guesses}
+        for record in draft.records:
+            for g in (g for g in record.guesses if g.place):
+                name = first.setdefault((record.source.labels[g.column].strip().lower(), g.place), g.column)
+                out[g.column, g.place] = g.column if name in own else name
+    return out
+
+
+def _sheet(draft: Draft, names: Mapping[tuple[str, str], str]) -> Iterator[str]:
     first = draft.records[0]
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
@@ -154,7 +171,7 @@ def _sheet(draft: Draft) -> Iterator[str]:
             f"shift_s = {record.shift_s:.6g}   # {record.how}",
         )
     for guess in draft.guesses:
-        yield from _column(guess)
+        yield from _column(guess, names.get((guess.column, guess.place), guess.column))
 
 
 def _constants(table: str, values: object) -> Iterator[str]:
@@ -163,13 +180,15 @@ def _constants(table: str, values: object) -> Iterator[str]:
         yield from (f"{toml_key(name)} = {value:g}" for name, value in values.items())
 
 
-def _column(g: Guess) -> Iterator[str]:
-    """A column's table; of one that is left out a line that says why."""
+def _column(g: Guess, name: str) -> Iterator[str]:
+    """A column's table under a name; of one that is left out a line that says why."""
     yield ""
     if not g.used:
         yield f"# {toml_value(g.column)} is left out: {g.doubt}"
         return
-    yield f"[columns.{toml_key(g.column)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    yield f"[columns.{toml_key(name)}]" + (f"   # {g.doubt}" if g.doubt else "")
+    if name != g.column:
+        yield f"column = {toml_value(g.column)}"
     yield f'quantity = "{g.quantity}"'
     yield f'unit = "{g.unit}"'
     yield f"place = {toml_value(g.place)}" if g.place else f"input = {toml_value(g.feeds)}"

@@ -32,6 +32,7 @@ SCALED_C = 60.0  # warmer at rest is no room and no machine in it
 NEAR_F = 18.0  # degF between the sensors of such a machine
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
 SOME = np.array([1.0, 1e3, 1e6])  # of every input: small, usual, large
+CURE_OF_COPIES = "keep one of them; a hold-out that is fitted under another name judges nothing"
 SWITCHES = ((0.0, 1.0), (0.0, 100.0))  # levels of an input that is switched: as a number, in percent
 
 
@@ -40,7 +41,7 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
     each = [finding for p in patients for check in RECORDING_CHECKS for finding in check(p)]
     inside = [finding for p in patients for check in INSIDE for finding in check(p, network)]
     inputs = [*_unused(patients, network), *_switched(patients, network)]
-    return (*each, *inside, *_rates(patients), *_copies(patients), *_cold(network), *inputs, *_stores(network))
+    return (*each, *inside, *_rates(patients), *_copies(patients), *_alone(patients), *_cold(network), *inputs, *_stores(network))
 
 
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
@@ -186,7 +187,19 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
     for a, b in combinations(patients, 2):
         common = set(a.samples.values) & set(b.samples.values)
         if common and all(np.array_equal(a.samples.values[n], b.samples.values[n], equal_nan=True) for n in common):
-            yield Finding(f"{a.name}, {b.name}", "", "are the same recording under two names", "keep one of them")
+            yield Finding(f"{a.name}, {b.name}", "", "are the same recording under two names", CURE_OF_COPIES)
+
+
+def _alone(patients: list[Patient]) -> Iterator[Finding]:
+    """One test: what it can still be used for."""
+    if len(patients) == 1:
+        yield Finding(
+            patients[0].name,
+            "",
+            "is the only test: nothing unseen judges the model, and an effect is judged on the second half of it",
+            'a further recording with role = "hold-out"',
+            True,
+        )
 
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:

@@ -159,14 +159,14 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            why.append(f"{' or '.join(c.effect for c in choice)}: not added")
+            why.append(f"not added: {' or '.join(c.words for c in choice)}")
             break
         for names in ((name,), needed_together(diagnosis, name)):
             if names and present.isdisjoint(names):
                 step = add(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-                why.append(f"{step.effect} was not accepted: {step.why}")
+                why.append(refusal(names, step))
     further, document, refusals = further_step(case, supervisor, diagnosis, left_out, progress)
     return further, document, "; ".join([*(why or [diagnosis.words]), *refusals])
 
@@ -201,8 +201,13 @@ def further_step(
         step = _present(case, names, progress) if present.isdisjoint(names) else None
         if step and step.accepted:
             return step, document, why
-        why += [f"{step.effect} was not accepted: {step.why}"] if step else []
+        why += [refusal(names, step)] if step else []
     return None, {}, why
+
+
+def refusal(names: Sequence[str], step: Revision) -> str:
+    """What was tried and why it does not stand, in words."""
+    return f"not accepted: {' and '.join(effect(name).statement for name in names)}, as {step.why}"
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:

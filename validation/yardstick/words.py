@@ -28,7 +28,8 @@ def sentence(yard: Yardstick, comparison: Comparison) -> str:
     others = {kind: K for kind, K in yard.errors.items() if np.isfinite(K)}
     each = ", ".join(f"{NAMES[kind]} {K:.2f} K" for kind, K in others.items())
     if not yard.hold_out:
-        return f"Fitted tests {error:.2f} K; each predicted from the others by {each}."
+        parts = "each" if len(yard.tests) > 1 else "its parts, each"
+        return f"Fitted tests {error:.2f} K; {parts} predicted from the others by {each}."
     return f"Held out {error:.2f} K; {each}.{_rest(yard, comparison, error)}"
 
 

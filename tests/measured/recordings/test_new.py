@@ -455,3 +455,11 @@ def test_a_sensor_that_reads_a_word_for_most_of_the_test_is_still_one(tmp_path, 
     source = read_source(text(tmp_path, rows))
     assert source.is_numeric("T_winding [degC]")
     assert np.isfinite(source.numbers("T_winding [degC]")).sum() == 30
+
+
+def test_a_sensor_has_one_name_however_a_file_writes_its_unit(tmp_path):
+    first = text(tmp_path, record(100), "one.csv")
+    other = text(tmp_path, record(100, "Time (sec),T_winding,I (A)"), "two.csv")
+    case = made(tmp_path, first, other)
+    names = [[c.name for c in test.channels] for test in case.tests]
+    assert names == [["T_winding [degC]"]] * 2

@@ -123,4 +123,5 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
             f"; not so? thermoscope explain diagnose {quote(called)} --without {quote(added[-1].partition(' + ')[0])}"
         )
     plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
-    return Summary(f"{document['verdict']}: {document['why']}; {outcome}.", [errors, plain, *further], more)
+    why = document["why"]
+    return Summary(f"{why[:1].upper()}{why[1:]}; {outcome}.", [errors, plain, *further], more)
