@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
 BLOCK = re.compile(r"```sh\n(.*?)```\n(?:\n```text\n.*?```\n)?", re.DOTALL)
 TOOK = re.compile(r"(<!-- took:begin -->\n).*?(<!-- took:end -->)", re.DOTALL)
-FEW = 9  # lines of an output on any other page: enough to know it by
+FEW = 12  # lines of an output on any other page: enough to know it by
 WAITING = ("thermoscope show serve",)
 
 

@@ -60,6 +60,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     time = time[rows]
     start, time = float(time[0]), time - time[0]
     gaps = _gaps(time)
+    own = own_rows(table, sheet)
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
@@ -79,7 +80,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         values[column.name], sensor_sigma = _in_memory(column, raw, file)
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
-        notes += _look(column, values[column.name], file, rows.start)
+        notes += _look(column, values[column.name], file, rows.start, own[column.name][rows])
     return Samples(file, time, values, gaps, tuple(notes), sigma, start)
 
 
@@ -191,10 +192,24 @@ def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
-def _look(column: Column, values: Array, file: Path, first: int) -> list[str]:
-    """Missing readings and impossible temperatures of one column; first : row at which the test begins."""
-    missing = np.flatnonzero(np.isnan(values))
-    if missing.size == values.size:
+def own_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
+    """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing."""
+    if not sheet.recorders:
+        return dict.fromkeys((c.name for c in sheet.columns), np.ones(table.rows, bool))
+    filled = {c.name: ~np.isnan(numbers(table, c.header, Path())) for c in sheet.columns}
+    return {
+        name: np.logical_or.reduce([other for other in filled.values() if (other & rows).any()] or [rows])
+        for name, rows in filled.items()
+    }
+
+
+def _look(column: Column, values: Array, file: Path, first: int, own: NDArray[np.bool_]) -> list[str]:
+    """Missing readings and impossible temperatures of one column.
+
+    first : row at which the test begins;  own : rows in which its recorder read anything
+    """
+    missing = np.flatnonzero(np.isnan(values) & own)
+    if np.isnan(values).all():
         raise InputError(
             "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"
         )

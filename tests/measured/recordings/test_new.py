@@ -463,3 +463,11 @@ def test_a_sensor_has_one_name_however_a_file_writes_its_unit(tmp_path):
     case = made(tmp_path, first, other)
     names = [[c.name for c in test.channels] for test in case.tests]
     assert names == [["T_winding [degC]"]] * 2
+
+
+def test_rows_of_another_recorder_are_no_missing_readings(tmp_path):
+    """Two clocks half a second apart: in every second row of all instants each recorder has nothing."""
+    other = "time_s,T_frame [degC]\n" + "".join(f"{i + 0.5},{25 + i / 10:.2f}\n" for i in range(100))
+    case_files = text(tmp_path, record(100), "one.csv"), text(tmp_path, other, "two.csv")
+    made(tmp_path, *case_files)
+    assert not [note for note in load_case(tmp_path / "made").notes if "missing" in note]
