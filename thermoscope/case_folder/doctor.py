@@ -41,16 +41,8 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
     each = [finding for p in patients for check in RECORDING_CHECKS for finding in check(p)]
     inside = [finding for p in patients for check in INSIDE for finding in check(p, network)]
     inputs = [*_unused(patients, network), *_switched(patients, network)]
-    return (
-        *each,
-        *inside,
-        *_rates(patients),
-        *_copies(patients),
-        *_alone(patients),
-        *_cold(network),
-        *inputs,
-        *_stores(network),
-    )
+    together = [f for check in (_rates, _copies, _alone) for f in check(patients)]
+    return (*each, *inside, *together, *_cold(network), *inputs, *_stores(network))
 
 
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:

@@ -28,7 +28,7 @@ def doctor(case: Case, target: Json = None) -> int:
         "doubts": [f.document() for f in doubts],
     }
     give(document, target, lambda: doctor_summary(wrong, doubts, case))
-    return 2 if wrong else 1 if doubts else 0
+    return 2 if wrong else 1 if any(not f.remark for f in doubts) else 0
 
 
 def looked(path: Path, tell: Progress) -> tuple[list[Finding], tuple[Finding, ...]]:
@@ -50,10 +50,12 @@ def looked(path: Path, tell: Progress) -> tuple[list[Finding], tuple[Finding, ..
 
 def doctor_summary(wrong: Sequence[Finding], doubts: Sequence[Finding], case: str) -> Summary:
     """What would be refused first; a line for each finding and its cure."""
-    number = len(wrong) + len(doubts)
-    things, look = ("thing", "looks") if len(doubts) == 1 and not wrong else ("things", "look")
+    remarks = sum(f.remark for f in doubts)
+    doubtful = len(doubts) - remarks
+    things, look = ("thing", "looks") if doubtful == 1 and not wrong else ("things", "look")
     refused = f"{len(wrong)} would be refused, " if wrong else ""
-    sentence = f"{refused}{len(doubts)} {things} {look} wrong." if number else "Nothing looks wrong."
+    sentence = f"{refused}{doubtful} {things} {look} wrong" if wrong or doubtful else "Nothing looks wrong"
+    sentence += f"; {remarks} may well be as meant." if remarks else "."
     lines = [
         f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what.removesuffix('?')}. Cure: {f.cure}"
         for word, rows in (("REFUSED ", wrong), ("", doubts))
