@@ -164,7 +164,7 @@ from measured.importing.draft import (
     squares_of as squares_of,
     test_name as test_name,
 )
-from measured.importing.case_files import imported_table as imported_table
+from measured.importing.case_files import imported_table as imported_table, read_timed as read_timed
 from measured.importing.guess import assigned as assigned, guesses as guesses
 from measured.importing.target import Target as Target, target_of as target_of
 from measured.recordings.csv_file import read_csv as read_csv
@@ -282,12 +282,7 @@ from thermoscope.commands.stored_diagnosis import (
     current_diagnosis as current_diagnosis,
     save_diagnosis as save_diagnosis,
 )
-from thermoscope.commands.test.new import (
-    drafts_of as drafts_of,
-    model_of_case as model_of_case,
-    read_recording as read_case_recording,
-    save_case as save_case,
-)
+from thermoscope.commands.test.new import drafts_of as drafts_of, model_of_case as model_of_case, save_case as save_case
 from thermoscope.commands.use.simulate_readings import short_of as short_of
 from thermoscope.console.summary import Summary as Summary
 from thermoscope.console.options import (
@@ -324,5 +319,4 @@ __all__ = [
     "heat_colours",
     "heat_source",
     "integration_stages",
-    "read_case_recording",
 ]  # what is called otherwise than at home: a type checker passes on no other name

@@ -27,12 +27,12 @@ from thermoscope.plugin import (
     missing_inputs,
     model_of_case,
     number,
+    read_timed,
     save_case,
     squares_of,
     target_of,
     test_name,
 )
-from thermoscope.plugin import read_case_recording as read_recording
 
 CHUNK = 2**20  # bytes: little memory, few system calls
 
@@ -118,8 +118,10 @@ class Dropped:
 
 def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
     """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
-    target = target_of(network)
-    recordings = [read_recording(file, None, tell) for file in files]
+    target, recordings = target_of(network), []
+    for file in files:
+        tell(f"reading {file.name}")
+        recordings.append(read_timed(file))
     return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
 
 

@@ -20,12 +20,13 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
-from measured.importing.clock import Clock, read_timed
+from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
-from measured.importing.source import Source
+from measured.importing.source import Source, read_source
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
+from measured.recordings.grid import LONGEST_S
 
 TIME = "time_s"
 ROLES = ("calibrate", "validate", "hold-out")
@@ -111,6 +112,23 @@ def _file(draft: Draft, i: int) -> str:
     return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
 
 
+def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock]:
+    """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock
+
+    InputError for times that run back, and for more than a year.
+    """
+    source = read_source(file)
+    try:
+        clock = clock_of(source, period_s)
+    except InputError:
+        source = in_time_order(source)
+        clock = clock_of(source, period_s)
+    span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
+    if span > LONGEST_S:
+        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
+    return source, clock
+
+
 def readings(source: Source, clock: Clock) -> dict[str, NDArray[np.float64]]:
     """Time (s) and all columns of numbers as the file has them; rows without a time of their own are left out."""
     t = clock.seconds
@@ -134,11 +152,11 @@ def sensor_names(drafts: Sequence[Draft]) -> dict[tuple[str, str], str]:
     out: dict[tuple[str, str], str] = {}
     first: dict[tuple[str, str], str] = {}
     for draft in drafts:
-        own = {g.column for g in draft.guesses}
+        columns = {g.column for g in draft.guesses}
         for record in draft.records:
             for g in (g for g in record.guesses if g.place):
                 name = first.setdefault((record.source.labels[g.column].strip().lower(), g.place), g.column)
-                out[g.column, g.place] = g.column if name in own else name
+                out[g.column, g.place] = g.column if name in columns else name
     return out
 
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, time, timedelta
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,10 +14,9 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from measured.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.importing.source import BINARY, Source, read_source
+from measured.importing.source import BINARY, Source
 from measured.importing.words import CLOCKS, VOCABULARY, is_time, tokens
 from measured.recordings.formats import EPOCH, TIME
-from measured.recordings.grid import LONGEST_S
 from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
@@ -93,23 +91,6 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
-
-
-def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock]:
-    """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock
-
-    InputError for times that run back, and for more than a year.
-    """
-    source = read_source(file)
-    try:
-        clock = clock_of(source, period_s)
-    except InputError:
-        source = in_time_order(source)
-        clock = clock_of(source, period_s)
-    span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
-    if span > LONGEST_S:
-        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
-    return source, clock
 
 
 def in_time_order(source: Source) -> Source:

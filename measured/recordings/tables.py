@@ -60,7 +60,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     time = time[rows]
     start, time = float(time[0]), time - time[0]
     gaps = _gaps(time)
-    own = own_rows(table, sheet)
+    filled = recorder_rows(table, sheet)
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
@@ -80,7 +80,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         values[column.name], sensor_sigma = _in_memory(column, raw, file)
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
-        notes += _look(column, values[column.name], file, rows.start, own[column.name][rows])
+        notes += _look(column, values[column.name], file, rows.start, filled[column.name][rows])
     return Samples(file, time, values, gaps, tuple(notes), sigma, start)
 
 
@@ -192,7 +192,7 @@ def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
-def own_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
+def recorder_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
     """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing."""
     if not sheet.recorders:
         return dict.fromkeys((c.name for c in sheet.columns), np.ones(table.rows, bool))
@@ -203,12 +203,12 @@ def own_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
     }
 
 
-def _look(column: Column, values: Array, file: Path, first: int, own: NDArray[np.bool_]) -> list[str]:
+def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[np.bool_]) -> list[str]:
     """Missing readings and impossible temperatures of one column.
 
-    first : row at which the test begins;  own : rows in which its recorder read anything
+    first : row at which the test begins;  awake : rows in which its recorder read anything
     """
-    missing = np.flatnonzero(np.isnan(values) & own)
+    missing = np.flatnonzero(np.isnan(values) & awake)
     if np.isnan(values).all():
         raise InputError(
             "the column holds no number", f"{file} column '{column.name}'", "readings, or use = false in the sheet"

@@ -11,6 +11,7 @@ from thermoscope.cli import whole_app
 from thermoscope.console.summary import LINES
 
 PAGE = tutorial.PAGE.read_text(encoding="utf-8")
+JOBS = (tutorial.ROOT / "docs" / "ten-jobs.md").read_text(encoding="utf-8")
 RUN = [c for c in tutorial.commands(PAGE) if c.startswith("thermoscope")]
 SHOWN = re.findall(r"```sh\n(.*?)```\n(?:\n```text\n(.*?)\n```\n)?", PAGE, re.DOTALL)
 
@@ -59,3 +60,20 @@ def test_outputs_replace_what_stood_there():
     out = tutorial.with_outputs(page, printed)
     assert out == ("x\n```sh\na b  # said\nc\n```\n\n```text\none\ntwo\n```\ny\n```sh\nc\n```\n\n```text\nthree\n```\n")
     assert tutorial.commands(out) == ["a b", "c", "c"]
+
+
+def test_there_are_ten_and_each_shows_what_it_prints():
+    jobs = re.split(r"(?m)^## ", JOBS)[1:]
+    assert [job.split()[0] for job in jobs] == [str(n) for n in range(1, 11)]
+    assert all("```text" in job for job in jobs), "python scripts/tutorial.py docs/ten-jobs.md writes it"
+    shown = "\n".join(re.findall(r"```text\n(.*?)```", JOBS, re.DOTALL))
+    assert max(map(len, shown.splitlines())) <= 80
+
+
+@pytest.mark.nightly
+def test_every_command_of_the_ten_jobs_runs(tmp_path):
+    """At 80 columns, in an empty folder; one that ends with a fault ends this."""
+    printed = tutorial.run(tutorial.commands(JOBS), tmp_path)
+    lines = [line for outputs in printed.values() for text in outputs for line in text.splitlines()]
+    assert len(lines) > 40
+    assert max(map(len, lines)) <= 80

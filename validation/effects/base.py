@@ -139,9 +139,9 @@ class ReadingEffect(Effect):
         """What an amplitude means, beside what the network has there at the values of its parameters."""
 
 
-def place_words(place: str) -> str:
+def place_words(where: str) -> str:
     """Where something sits, in words: "at rotor", "between stator.core and housing"."""
-    return f"between {place.replace('|', ' and ')}" if "|" in place else f"at {place}"
+    return f"between {where.replace('|', ' and ')}" if "|" in where else f"at {where}"
 
 
 def with_parameter(network: Network, parameter: Parameter) -> Network:

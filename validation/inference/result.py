@@ -312,7 +312,7 @@ class Diagnosis(TableResult):
     def __repr__(self) -> str:
         likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]
         rows = [[x.words, percent(x.probability)] for x in likely[:MOST_ODDS]]
-        return f"{self.verdict}: {self.words}\n{table(['explanation', 'probability'], rows)}"
+        return f"{self.words[:1].upper()}{self.words[1:]}\n{table(['explanation', 'probability'], rows)}"
 
     def tables(self) -> tuple[Table, ...]:
         """Hypotheses, candidates, events, contradictions, what would decide, and what cannot be seen."""

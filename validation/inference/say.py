@@ -447,9 +447,11 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     """What other instants of the same record would have said; "" where they say the same."""
     if not choice.others:
         return ""
-    names, d = posterior.evidence.names, choice.others[0]
-    other = " and ".join(" or ".join(names[k] for k in g[:2]) for g in d.groups)
-    other = other or {"adequate": "nothing missing"}.get(d.verdict, "unknown heat")
+    effects, d = posterior.evidence.effects, choice.others[0]
+    other = " and ".join(" or ".join(effects[k].statement for k in g[:2]) for g in d.groups)
+    other = other or {"adequate": "nothing is missing"}.get(d.verdict, "heat of unknown cause")
     how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
     claimed = "" if choice.verdict in ("adequate", "outside") else how
-    return f"; {claimed}every second sample alone leads to {d.verdict} ({other})"
+    if d.groups and d.groups == choice.groups:
+        return f"; {claimed}every second reading alone cannot tell them apart"
+    return f"; {claimed}every second reading alone says {other}"

@@ -153,9 +153,9 @@ def _sizes(sizes: Mapping[str, Any]) -> list[Table | str]:
     exit code hangs on."""
     requested, trials, mesh = sizes["wish_percent"], sizes["guard"], sizes["mesh"]
     meshes = [] if mesh is None else [{"asked": "mesh", "nominal": {"hot": mesh["worst"]}, "met": mesh["met"]}]
-    asked = f"means {requested['mean']:.3g}, hot spots and points {requested['hot']:.3g}"
+    limits = f"means {requested['mean']:.3g}, hot spots and points {requested['hot']:.3g}"
     table = Table.of(
-        f"Error in % of a part's rise (asked: {asked})",
+        f"Error in % of a part's rise (asked: {limits})",
         [*sizes["sizes"], *({**g, "asked": None} for g in trials), *meshes],
         "network | *states | mean=nominal.mean | hot spot=nominal.hot | point=nominal.point | "
         "*mean, random=random.mean | *hot, random=random.hot | point, random=random.point | *met",

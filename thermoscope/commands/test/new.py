@@ -19,8 +19,8 @@ from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
-from measured.importing.case_files import folder_whole, write_case
-from measured.importing.clock import Clock, read_timed
+from measured.importing.case_files import folder_whole, read_timed, write_case
+from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
