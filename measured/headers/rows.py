@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from measured.headers.cells import is_date, is_reading, is_unit, number, split_u
 from measured.headers.words import is_time, quantities_of, roles_of
 
 SAMPLE = 2000  # rows that are enough to find the table
-FEW = 64  # rows that are enough where the header is nearly always the first
+FEW = 24  # rows that are enough where the header is nearly always the first
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
@@ -82,7 +83,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     if above and len(set(names)) < len(names):  # names of groups over those of columns
-        groups = _forward_filled(above[-1])
+        groups = accumulate(above[-1], lambda group, cell: cell or group)  # merged cells are of the first one's group
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
         labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
@@ -153,14 +154,6 @@ def _informative(row: Row) -> int:
     return sum(2 if quantities_of(c) or roles_of(c) or is_time(c) or split_unit(c)[1] else 0 for c in cells) + (
         len(cells) > 1
     )
-
-
-def _forward_filled(cells: Sequence[str]) -> list[str]:
-    """Cells that are merged with those after them in each of them."""
-    out: list[str] = []
-    for cell in cells:
-        out.append(cell or (out[-1] if out else ""))
-    return out
 
 
 def trimmed(row: Row) -> Row:

@@ -25,6 +25,7 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
     _words(VOCABULARY["words"][name])
     for name in ("setpoint", "read", "modelled", "inlet", "nothing", "difference", "clock", "loss", "outer")
 )
+PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 SHORTEST = 4  # letters of a word that may be looked for inside another
 IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 LETTERED = re.compile(
@@ -57,7 +58,7 @@ def axis_of(name: str) -> str:
 
 def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
-    paths = [tokens(part) for part in re.split(r"[/\\.:|]", name)]  # Model Root/i_phase, Motor.T_winding
+    paths = [tokens(part) for part in PATH.split(name)]
     words = [word for path in paths for word in path]
     spoken = {
         w for path in paths for i, w in enumerate(path) if len(w) > 1 or (i == 0 and path in (paths[0], paths[-1]))

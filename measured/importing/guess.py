@@ -19,6 +19,7 @@ from measured.headers.words import (
     LETTERED,
     MODELLED,
     NOTHING,
+    PATH,
     QUANTITY,
     READ,
     ROLES,
@@ -59,7 +60,6 @@ FIRST = (
 ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
-PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/T_winding
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 

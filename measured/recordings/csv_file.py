@@ -217,17 +217,17 @@ def _layout(file: Path, content: bytes) -> tuple[Layout, int, int]:
     """
     if b"\n" not in content and b"\r" in content:
         raise InputError("its lines end with CR alone", str(file), "lines that end with LF or CR LF: save it again")
-    with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", errors="replace", newline="") as text:
+    with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
         reader = csv.reader(text, skipinitialspace=True)
         rows = [(row, reader.line_num) for row in islice(reader, FEW)]
         text.seek(0)
+        COLUMNS.check(max(len(row) for row, _ in rows), f"{file} line 1", "holds")
         plan = first_row_layout([row for row, _ in rows], str(file))
         lines = rows[plan.first - 1][1]
         start = sum(len(line.encode()) for line in islice(text, lines))
     for sign, name in ((";", "';'"), ("\t", "tabs")):
         if plan.width == 1 and sign in plan.names[0]:
             raise InputError(f"columns are separated by {name}", str(file), "commas between columns, points in numbers")
-    COLUMNS.check(plan.width, f"{file} line {lines}", "holds")
     for row, line in rows[plan.first : plan.first + 1]:
         if any(cell.strip() for cell in row[plan.width :]):
             what = f"{len(row)} values under {plan.width} names"

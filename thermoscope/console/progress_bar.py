@@ -39,6 +39,7 @@ PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 # Stages whose cost is that of files and meshes: they say little of how long fits take, which say much of each other.
 BUILDING = {"mesh", "conduction", "network", "field", "laws", "what", "error", "checking"}  # what is made once and kept
 PREPARING = BUILDING | {"reading", "preparing", "estimating"}
+RUNS = 0.7  # power: where a model runs in a fiftieth of the time, all that fits it takes a fifteenth (tclab, 200 tests)
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -147,18 +148,24 @@ class ProgressBar:
     def _pace(self, took: Mapping[str, float]) -> float:
         """What is still to come over what it took the last time, by the stages so far and what each took (s).
 
-        Of this very case it is what they took over what they took then. Of another, fits say that of fits; other
-        stages say only as much as they were of its work: a long file is read forty times as long, and the yardstick
-        after it takes twice as long. What others take of the computer slows all stages alike.
+        Of this very case it is what they took over what they took then. Of another, fits say that of fits, and the
+        error of the time steps, for which the model is run, that of small cases and large ones; other stages say only
+        as much as they were of its work: a long file is read forty times as long, and the yardstick after it takes
+        twice as long. What others take of the computer slows all stages alike.
         """
+        if self.same_case:
+            return self._quotient(took, 1.0, 1.0)
         fits = [s for s in took if _word(s) not in PREPARING]
-        guides = took if self.same_case or not sum(self.last[s] for s in fits) > PACED_S else fits
-        usual = sum(self.last[s] for s in guides)
-        busy = 1.0 if self.same_case else self._busy()
-        if not usual > PACED_S:
-            return busy
-        share = 1.0 if self.same_case or guides is fits else min(usual / sum(self.last.values()), 1.0)
-        return busy * float((sum(took[s] for s in guides) / busy / usual) ** share)
+        runs = [s for s in took if _word(s) == "estimating"]
+        share = min(sum(self.last[s] for s in took) / max(sum(self.last.values()), PACED_S), 1.0)
+        guides = ((fits, 1.0), (runs, RUNS), (took, share))
+        stages, power = next((g for g in guides if sum(self.last[s] for s in g[0]) > PACED_S), (took, share))
+        return self._quotient({s: took[s] for s in stages}, power, self._busy())
+
+    def _quotient(self, took: Mapping[str, float], power: float, busy: float) -> float:
+        """Of what stages took (s), over what they took the last time; others slow them by a factor `busy`."""
+        usual = sum(self.last[s] for s in took)
+        return busy * (sum(took.values()) / busy / usual) ** power if usual > PACED_S else busy
 
     def _busy(self) -> float:
         """How much longer than its own work this run takes, because others compute too."""
