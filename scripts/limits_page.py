@@ -5,6 +5,7 @@ python -m scripts.limits_page    writes the page
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 
 from geom.limits import LIMITS
@@ -22,6 +23,13 @@ THERMOSCOPE_MOST_ROWS=20000000 thermoscope test compare CASE
 | limit | usual | variable | what it bounds, and why this number |
 |---|---|---|---|
 """
+OTHERS = {  # that no variable raises: what -> where, unit
+    "a name": ("geom.description.names:LETTERS", "letters"),
+    "a name of a file": ("geom.description.names:LONGEST", "bytes"),
+    "a test": ("measured.recordings.grid:LONGEST_S", "s"),
+    "tabs of a workbench": ("extras.workbench.tabs:MOST", "tabs"),
+    "a heat capacity, at least": ("lumped.schemas.bounds:LEAST_J_K", "J/K"),
+}
 
 
 def limits_table() -> str:
@@ -32,7 +40,10 @@ def limits_table() -> str:
 
 def page() -> str:
     """The page as Markdown."""
-    return f"{HEAD}{limits_table()}\n"
+    names = {what: (*where.split(":"), unit) for what, (where, unit) in OTHERS.items()}
+    rows = [f"| {w} | {getattr(import_module(m), n):,.9g} | {unit} | `{m}:{n}` |" for w, (m, n, unit) in names.items()]
+    others = "\n".join(["Nothing raises these:", "", "| what | at most | unit | where |", "|---|---|---|---|", *rows])
+    return f"{HEAD}{limits_table()}\n\n{others}\n"
 
 
 if __name__ == "__main__":

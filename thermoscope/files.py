@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from geom.errors import InputError
 from geom.storage import CURES
@@ -45,7 +46,11 @@ def checked_target(target: str | None) -> str | None:
         raise InputError("lies in a folder that is not there", f"--json {path}", right)
     if path.exists() and (not path.is_file() or not _is_document(path)):
         raise InputError("is there already and is no document of this tool: it stays", f"--json {path}", right)
-    return target
+    try:
+        with TemporaryFile(dir=path.parent):  # by trying: /proc looks as if its owner might write there
+            return target
+    except OSError as fault:
+        raise InputError(f"cannot be written: {fault.strerror}", f"--json {path}", right) from None
 
 
 def _is_document(path: Path) -> bool:

@@ -155,7 +155,7 @@ from measured.electrical.switch_off import (
     allowed_delay as allowed_delay,
 )
 from measured.importing.aligned import Recording as Recording
-from measured.importing.cells import number as number
+from measured.headers.cells import number as number
 from measured.importing.dialogue import Dialogue as Dialogue
 from measured.importing.draft import (
     Draft as Draft,

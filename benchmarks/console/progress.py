@@ -1,10 +1,11 @@
 """How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
 
-    python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE]
+    python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE] [--page]
 
 Every shipped case by default, and the four commands that may take long; the first run builds what comes from a machine.
 After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
 which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
+--json FILE keeps the rows of earlier runs for other cases and commands; --page puts all of them into the docs.
 """
 
 from __future__ import annotations
@@ -20,10 +21,12 @@ import struct
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise, product
 from pathlib import Path
+
+from scripts.published import publish
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = tuple(sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml")))
@@ -84,14 +87,38 @@ def measured(name: str, case: str, run: str, cache: str) -> Row:
     return Row(name, case, run, took, later[0][1] / (took - later[0][0]), stood, widest)
 
 
+def verdict(rows: Sequence[Row]) -> str:
+    """How many of the runs that take long are as wanted."""
+    long = [row for row in rows if row.ratio is not None and row.stood_s is not None]
+    good = sum(0.5 <= (row.ratio or 0.0) <= 2.0 and (row.stood_s or 0.0) <= STOOD_S for row in long)
+    return f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s"
+
+
+def table(rows: Sequence[Row]) -> str:
+    """Of the docs."""
+    head = ["| command | case | run | took (s) | said over true | stood (s) |", "|---|---|---|---|---|---|"]
+    lines = [
+        f"| {r.command} | {r.case} | {r.run} | {r.took_s:.0f} | {r.ratio:.2f} | {r.stood_s:.0f} |"
+        for r in rows
+        if r.ratio is not None
+    ]
+    short = sorted({f"{r.command} {r.case} ({r.run})" for r in rows if r.ratio is None})
+    return "\n".join([*head, *lines, "", f"{verdict(rows)}.", *([f"Shorter: {', '.join(short)}."] if short else [])])
+
+
 def main() -> None:
     """A row per case and run."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="+", default=CASES)
     parser.add_argument("--commands", nargs="+", default=COMMANDS, choices=COMMANDS)
     parser.add_argument("--json", type=Path)
-    options, rows = parser.parse_args(), []
+    parser.add_argument("--page", action="store_true")
+    options = parser.parse_args()
+    rows = (
+        [Row(**row) for row in json.loads(options.json.read_text())] if options.json and options.json.exists() else []
+    )
     for command, case in product(options.commands, options.only):
+        rows = [row for row in rows if (row.command, row.case) != (command, case)]
         with tempfile.TemporaryDirectory() as cache:
             rows += [measured(command, case, run, cache) for run in ("first", "second")]
         for row in rows[-2:]:
@@ -100,11 +127,11 @@ def main() -> None:
                 f"{command:9s} {row.case:13s} {row.run:7s} {row.took_s:6.1f} s  {told}, {row.widest} columns",
                 flush=True,
             )
-    long = [row for row in rows if row.ratio is not None and row.stood_s is not None]
-    good = sum(0.5 <= (row.ratio or 0.0) <= 2.0 and (row.stood_s or 0.0) <= STOOD_S for row in long)
-    print(f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s")
+    print(verdict(rows))
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
+    if options.page:
+        publish(ROOT / "docs" / "benchmarks.md", "progress", table(rows))
 
 
 if __name__ == "__main__":

@@ -85,10 +85,10 @@ def optimise(
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     effort = Effort(population, generations, seed)
     with once() as messages:
-        document, where = optimised(name, request, method, effort, cluster, out)
+        document, where, stopped = optimised(name, request, method, effort, cluster, out)
     notes(messages)
     give(document, json, lambda: optimisation_summary(document, where))
-    return 0
+    return 130 if stopped else 0  # as shells have it
 
 
 @use_commands.command("compare-designs")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from math import ceil, floor
 
 from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency
@@ -52,9 +53,14 @@ def _pressure(altitude_m: float) -> float:
     return float(ATMOSPHERE_1976(altitude_m).P)
 
 
+def range_words(low: float, high: float) -> str:
+    """A range (degC) in tenths that lie in it."""
+    return f"{ceil(10 * low) / 10:g} to {floor(10 * high) / 10:g} degC"
+
+
 def _liquid(source, T: float) -> Fluid:
     if not source.t_min <= T <= source.t_max:
-        raise InputError(f"T = {T:g} degC", source.fluid_name, f"{source.t_min:g} to {source.t_max:g} degC")
+        raise InputError(f"T = {T:g} degC", source.fluid_name, range_words(source.t_min, source.t_max))
     step = 0.1 if source.t_max - 0.1 > T else -0.1
     rho = source.density(T)
     beta = -(source.density(T + step) - rho) / step / rho
@@ -97,7 +103,7 @@ def oil(T: float) -> Fluid:
         raise MissingDependency("oil needs the package CoolProp: pip install 'thermoscope[oil]'") from None
     low, high = (PropsSI(end, OIL) - ZERO_C for end in ("Tmin", "Tmax"))
     if not low <= T <= high:
-        raise InputError(f"T = {T:g} degC", "oil", f"{low:g} to {high:g} degC")
+        raise InputError(f"T = {T:g} degC", "oil", range_words(low, high))
 
     def of(what: str, T: float) -> float:
         return float(PropsSI(what, "T", T + ZERO_C, "P", OIL_PRESSURE, OIL))

@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from measured.importing.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
+from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
+from measured.headers.words import CLOCKS, VOCABULARY, is_time, tokens
 from measured.importing.source import BINARY, Source
-from measured.importing.words import CLOCKS, VOCABULARY, is_time, tokens
 from measured.recordings.formats import EPOCH, TIME
 from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
 INSTANT = re.compile(
-    r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])(?P<b>\d{1,2})[-/.](?P<c>\d{1,2}|\d{4})\.?"
+    r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])\s?(?P<b>\d{1,2})[-/.]\s?(?P<c>\d{1,2}|\d{4})\.?"
     r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"
     r"(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"

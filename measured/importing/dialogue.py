@@ -9,12 +9,12 @@ from dataclasses import dataclass, field, replace
 from geom.errors import InputError
 from geom.text import visible
 from lumped.schemas.reader import suggestion
-from measured.importing.cells import number, unit_of
+from measured.headers.cells import number, unit_of
+from measured.headers.words import SETPOINT, tokens
 from measured.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
 from measured.importing.guess import Guess
 from measured.importing.source import Source
 from measured.importing.target import Target
-from measured.importing.words import SETPOINT, tokens
 from measured.recordings.units import QUANTITIES
 
 

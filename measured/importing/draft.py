@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from geom.description.names import cut_short
+from measured.headers.words import axis_of
 from measured.importing.aligned import Recording
 from measured.importing.guess import AXES, Guess, in_memory
 from measured.importing.target import Target
-from measured.importing.words import axis_of
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
 LONGEST_STEP_S = 86400.0  # of an analysis

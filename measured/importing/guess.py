@@ -12,15 +12,14 @@ from numpy.typing import NDArray
 from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from measured.importing.cells import unit_of
-from measured.importing.clock import is_second_clock
-from measured.importing.source import Source
-from measured.importing.target import Target
-from measured.importing.words import (
+from measured.headers.cells import unit_of
+from measured.headers.words import (
     DIFFERENCE,
     INLET,
     LETTERED,
+    MODELLED,
     NOTHING,
+    PATH,
     QUANTITY,
     READ,
     ROLES,
@@ -30,6 +29,9 @@ from measured.importing.words import (
     roles_of,
     tokens,
 )
+from measured.importing.clock import is_second_clock
+from measured.importing.source import Source
+from measured.importing.target import Target
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
 from measured.recordings.tables import LARGEST, SWITCHED
 from measured.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
@@ -87,7 +89,7 @@ class Guess:
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
-    every = [guess(source, c, target) for c in source.cells if c not in clock]
+    every = _read(source, [guess(source, c, target) for c in source.cells if c not in clock])
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
@@ -95,6 +97,15 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
     return single(every if kelvin else _in_fahrenheit(source, every), target)
+
+
+def _read(source: Source, every: list[Guess]) -> list[Guess]:
+    """Without the temperatures of parts that a model made, where others were read."""
+    hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
+    made = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])} and roles_of(label)}
+    if len(made) == len(hot):
+        return every
+    return [Guess(g.column, "", doubt="modelled, not read") if g.column in made else g for g in every]
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -131,6 +142,8 @@ def _left_out(source: Source, column: str) -> str:
     if (count := int(np.isfinite(values).sum())) < LEAST:
         return f"read {count} {'time' if count == 1 else 'times'} in all"
     unit_text, label = source.units[column], source.labels[column]
+    if unit_of(unit_text) == "mV" and "voltage" not in quantities_of(label):
+        return "millivolts of a sensor"
     if not unit_text and (match := FOREIGN.search(label)) and match[1][0].isdigit():  # [0.1 °C]
         return f"its unit '{match[1]}' is of nothing a model reads"
     if unit_text and not unit_of(unit_text):

@@ -8,8 +8,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from measured.importing.cells import is_date, is_reading, number
-from measured.importing.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
+from measured.headers.cells import is_date, is_reading, number
+from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table

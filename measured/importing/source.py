@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from geom.description.names import plain_header
 from geom.errors import InputError
-from measured.importing.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from measured.headers.rows import Layout, layout
+from measured.headers.words import is_time, quantities_of, roles_of
 from measured.importing.long_table import side_by_side
-from measured.importing.rows import Layout, layout
 from measured.importing.text import text_table
-from measured.importing.words import is_time, quantities_of, roles_of
 from measured.recordings.csv_file import CHUNK
 from measured.recordings.data_table import DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, workbook_rows

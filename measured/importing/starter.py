@@ -17,10 +17,10 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
+from measured.headers.words import LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 from measured.importing.draft import Draft
 from measured.importing.guess import AXES, ELSE, Array, Guess, in_memory
 from measured.importing.source import Source
-from measured.importing.words import LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from geom.description.roles import Role
 from lumped.model.network import Network
-from measured.importing.words import INLET, roles_of, tokens
+from measured.headers.words import INLET, roles_of, tokens
 from measured.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many

@@ -6,12 +6,13 @@ import csv
 import io
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
-from measured.importing.cells import in_thousands, is_reading, number
-from measured.importing.rows import SAMPLE, Layout, layout
+from measured.headers.cells import in_thousands, is_reading, number
+from measured.headers.rows import SAMPLE, Layout, layout
 from measured.recordings.csv_file import Body, chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
@@ -19,9 +20,12 @@ BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have si
 SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
-PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251")
-CYRILLIC = re.compile("[А-яё]{4,}")
-LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñ℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
+PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949")
+WORDS = {
+    "cp1251": re.compile("[А-яё]{4,}"),
+    "cp949": re.compile("온도|시간|전류|권선|주위|전압|속도|환경|하우징|베어링"),
+}
+LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
@@ -54,7 +58,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     head = _split(lines[: 2 * SAMPLE], sign)
     if keys := _keys(head):
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
-        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys), 0), _raw(rows, len(keys)), notes, None
+        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
     body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
@@ -78,18 +82,24 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
 
 
 def _objects(text: str) -> tuple[Layout, Columns] | None:
-    """Of JSON: an object on every line, or a list of them; what stands inside another is called outer.inner."""
+    """Of JSON: an object on every line, a list of them, or one of columns; what stands inside another is called
+    outer.inner."""
     try:
-        every = (
-            json.loads(text)
-            if text.lstrip().startswith("[")
-            else [json.loads(t) for t in text.splitlines() if t.strip()]
-        )
+        every = json.loads(text)
     except ValueError:
-        return None
+        try:
+            every = [json.loads(t) for t in text.splitlines() if t.strip()]
+        except ValueError:
+            return None
+    if isinstance(every, dict):
+        inside = {name: one for name, one in _flat(every).items() if isinstance(one, list)}
+        most, _ = Counter(map(len, inside.values())).most_common(1)[0] if inside else (0, 0)
+        columns = {name: one for name, one in inside.items() if len(one) == most}
+        table = zip(*columns.values(), strict=True)
+        every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
     rows = [_flat(one) for one in every]
     names = tuple(dict.fromkeys(name for row in rows for name in row))
-    return Layout(names, ("",) * len(names), 0, len(names), 0), [[row.get(name) for row in rows] for name in names]
+    return Layout(names, ("",) * len(names), 0, len(names)), [[row.get(name) for row in rows] for name in names]
 
 
 def _flat(one: Any, name: str = "") -> dict[str, Any]:
@@ -154,7 +164,8 @@ def decoded(raw: bytes, file: Path) -> str:
         odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
         letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
         worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
-        worth["cp1251"] += sum(map(len, CYRILLIC.findall(letters["cp1251"])))
+        for page, words in WORDS.items():
+            worth[page] += sum(map(len, words.findall(letters[page])))
         return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
 
 

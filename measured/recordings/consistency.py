@@ -96,4 +96,4 @@ def checked_heat(
 def _cell(column: Column, samples: Samples) -> str:
     """Where a column is lowest."""
     row = int(np.nanargmin(samples.values[column.name]))
-    return cell(samples.file, column.header, row)
+    return cell(samples.file, column.header, row, samples.line)

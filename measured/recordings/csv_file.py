@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from geom.limits import COLUMNS
 from geom.recording_bounds import CHUNK, check_text, timed
+from measured.headers.rows import FEW, Layout, first_row_layout
 from measured.recordings.data_table import Column, DataTable, as_number, is_missing
 
 COMMA, QUOTE, LF, CR = b',"\n\r'
@@ -31,26 +32,28 @@ BLOCK = 2**20  # bytes that are read at once; csv takes ten times as long for on
 
 def read_csv(file: Path) -> DataTable:
     """The table of a CSV file under its own header."""
-    names, parts = csv_pieces(file)
+    plan, line, parts = csv_pieces(file)
     columns = [*parts]
-    return DataTable.of(((name, _joined([part[j] for part in columns])) for j, name in enumerate(names)), file)
+    pairs = ((name, _joined([part[j] for part in columns])) for j, name in enumerate(plan.names))
+    return DataTable.of(pairs, file, line=line, units=plan.units_by_name)
 
 
-def csv_pieces(file: Path, size: int = BLOCK) -> tuple[list[str], Iterator[Sequence[Any]]]:
-    """The names of the columns of a CSV file, and its cells column by column, so many bytes at once."""
+def csv_pieces(file: Path, size: int = BLOCK) -> tuple[Layout, int, Iterator[Sequence[Any]]]:
+    """Where the table of a CSV file begins, the line of its first row, and its cells column by column, so many bytes at
+    once."""
     blocks = cut_blocks(_checked(file, size), size)
     first = next(blocks, b"").removeprefix(b"\xef\xbb\xbf")
     if not first.strip():
         raise InputError("the file is empty: it holds no row", str(file), "a header line and rows of numbers")
     with _readable(file):
-        header, start, line = _header(file, first)
-    least = max((i for i, name in enumerate(header, 1) if name.strip()), default=0)
+        plan, start, line = _layout(file, first)
+    least = max((i for i, name in enumerate(plan.names, 1) if name.strip()), default=0)
 
     def pieces() -> Iterator[Sequence[Any]]:
         with _readable(file):
-            yield from Body(file, len(header), least).pieces(chain([first[start:]], blocks), line)
+            yield from Body(file, plan.width, least).pieces(chain([first[start:]], blocks), line)
 
-    return header, pieces()
+    return plan, line, pieces()
 
 
 @contextmanager
@@ -207,27 +210,29 @@ def in_rows(pieces: Iterator[Sequence[Any]], most: int) -> Iterator[Sequence[Any
         yield rest
 
 
-def _header(file: Path, content: bytes) -> tuple[list[str], int, int]:
-    """The names of the columns, the byte after them, and the line that begins there.
+def _layout(file: Path, content: bytes) -> tuple[Layout, int, int]:
+    """Where the table begins, by row, by byte, and by line.
 
     InputError where the first row has more values than there are names.
     """
-    with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
-        reader = csv.reader(text, skipinitialspace=True)
-        header = next(reader, [])
-        lines, first = reader.line_num, next(reader, [])
-        text.seek(0)
-        start = sum(len(line.encode()) for line in islice(text, lines))
     if b"\n" not in content and b"\r" in content:
         raise InputError("its lines end with CR alone", str(file), "lines that end with LF or CR LF: save it again")
+    with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
+        reader = csv.reader(text, skipinitialspace=True)
+        rows = [(row, reader.line_num) for row in islice(reader, FEW)]
+        text.seek(0)
+        COLUMNS.check(max(len(row) for row, _ in rows), f"{file} line 1", "holds")
+        plan = first_row_layout([row for row, _ in rows], str(file))
+        lines = rows[plan.first - 1][1]
+        start = sum(len(line.encode()) for line in islice(text, lines))
     for sign, name in ((";", "';'"), ("\t", "tabs")):
-        if len(header) == 1 and sign in header[0]:
+        if plan.width == 1 and sign in plan.names[0]:
             raise InputError(f"columns are separated by {name}", str(file), "commas between columns, points in numbers")
-    COLUMNS.check(len(header), f"{file} line 1", "holds")
-    if any(cell.strip() for cell in first[len(header) :]):
-        what = f"{len(first)} values under {len(header)} names"
-        raise InputError(what, f"{file} line 2", f"{MANY}, the header is line 1")
-    return header, start, lines + 1
+    for row, line in rows[plan.first : plan.first + 1]:
+        if any(cell.strip() for cell in row[plan.width :]):
+            what = f"{len(row)} values under {plan.width} names"
+            raise InputError(what, f"{file} line {line}", f"{MANY}, the header is line {lines}")
+    return plan, start, lines + 1
 
 
 def chunks(file: Path, size: int = CHUNK) -> Iterator[bytes]:

@@ -84,7 +84,7 @@ class DataTable:
 
     def with_columns(self, **columns: Column) -> DataTable:
         """With these columns, in place of those of the same name."""
-        return DataTable({**self.cells, **columns})
+        return replace(self, cells={**self.cells, **columns})
 
 
 def _typed(values: Any) -> Column:

@@ -24,8 +24,9 @@ from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
 from geom.recording_bounds import CHUNK, check_archive, check_shape, check_size, counted_rows, timed
 from lumped.schemas.reader import suggestion
+from measured.headers.rows import first_row_layout
 from measured.recordings.csv_file import csv_pieces, in_rows, read_csv
-from measured.recordings.data_table import HEADER, DataTable
+from measured.recordings.data_table import DataTable
 
 Array = NDArray[np.float64]
 Columns = Iterable[tuple[object, Any]]  # pairs of a name and its values
@@ -120,9 +121,9 @@ def recording_pieces(file: Path, most: int, worksheet: str = "") -> Iterator[Dat
     if _suffix(file) not in ("", *PLAIN):
         yield from read_recording(file, worksheet, 0).cut(most)
         return
-    names, pieces = csv_pieces(file, PIECE)
+    plan, line, pieces = csv_pieces(file, PIECE)
     for i, columns in enumerate(in_rows(pieces, most)):
-        yield DataTable.of(zip(names, columns, strict=True), file, line=HEADER + i * most)
+        yield DataTable.of(zip(plan.names, columns, strict=True), file, line=line + i * most)
 
 
 def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) -> DataTable:
@@ -151,9 +152,11 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
 
 
 def _xlsx(file: Path, worksheet: str) -> Contents:
-    header, *rows = workbook_rows(file, worksheet) or [[]]
-    names = [f"column {j + 1}" if name is None else name for j, name in enumerate(header)]
-    return zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True), {}
+    rows = workbook_rows(file, worksheet) or [[]]
+    plan = first_row_layout(rows, str(file))
+    names = [name or f"column {j + 1}" for j, name in enumerate(plan.names)]
+    columns = zip(*rows[plan.first :], strict=True) if rows[plan.first :] else [()] * len(names)
+    return zip(names, columns, strict=True), {"line": plan.first + 1, "units": plan.units_by_name}
 
 
 def workbook_rows(file: Path, worksheet: str | None) -> list[list[Any]]:

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from geom.constants import ZERO_C
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
+from measured.headers.cells import unit_of
 from measured.recordings.alignment import clock_shift, merged
 from measured.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
 from measured.recordings.formats import EPOCH, TIME, read_recording, recording
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from measured.recordings.sheet import Column, Recorder, Sheet
-from measured.recordings.units import converted
+from measured.recordings.units import QUANTITIES, converted
 from measured.sensors.faults import longest_run
 
 Array = NDArray[np.float64]
@@ -35,7 +36,7 @@ class Samples:
     """time (n,) s from 0;  values : column -> (n,), NaN where nothing was read;  gaps : (from, to) s
 
     sigma_K : channel -> 1-sigma that follows from its readings, for sensors whose sheet gives none
-    start_s : where the test begins in its recording, if that was cropped
+    start_s, line : where the test begins in its recording, which may have been cropped, and in its file
     """
 
     file: Path
@@ -45,6 +46,7 @@ class Samples:
     notes: tuple[str, ...] = field(default=())
     sigma_K: Mapping[str, float] = field(default_factory=dict)
     start_s: float = 0.0
+    line: int = HEADER
 
 
 def load_table(path: Path, sheet: Sheet) -> Samples:
@@ -58,7 +60,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     time = _times(table, replace(sheet, time_unit="s") if sheet.recorders else sheet, file)
     rows = _window(time, sheet, file)
     time = time[rows]
-    start, time = float(time[0]), time - time[0]
+    start, time, line = float(time[0]), time - time[0], table.line + rows.start
     gaps = _gaps(time)
     filled = recorder_rows(table, sheet)
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
@@ -69,7 +71,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
             what = f"{int(codes.sum())} readings of {raw[codes][0]:g} are kept: a logger's code, or a reading?"
             notes.append(f"{file.name} column '{column.header}': {what}")
         elif column.electrical is None and codes.any():
-            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, HEADER + rows.start))
+            notes.append(code_note(f"{file.name} column '{column.header}'", raw, codes, line))
             raw = np.where(codes, np.nan, raw)
         if is_switch(table[column.header]) and column.quantity not in SWITCHED:
             raise InputError(
@@ -80,8 +82,9 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         values[column.name], sensor_sigma = _in_memory(column, raw, file)
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
-        notes += _look(column, values[column.name], file, rows.start, filled[column.name][rows])
-    return Samples(file, time, values, gaps, tuple(notes), sigma, start)
+        notes += _other_unit(column, table.units.get(column.header, ""), file)
+        notes += _look(column, values[column.name], file, line, filled[column.name][rows])
+    return Samples(file, time, values, gaps, tuple(notes), sigma, start, line)
 
 
 def _in_memory(column: Column, raw: Array, file: Path) -> tuple[Array, float | None]:
@@ -112,7 +115,7 @@ def _beside(main: DataTable, time: str, recorder: Recorder) -> tuple[DataTable, 
     table.require([recorder.time, *recorder.align[1:]], recorder.where)
     main.require(recorder.align[:1], recorder.where)
     seconds = converted(numbers(table, recorder.time, file), "time", recorder.time_unit)
-    _rising(seconds, table[recorder.time], recorder.time, file)
+    _rising(seconds, table, recorder.time, file)
     if recorder.align:
         here, there = recorder.align
         shift = clock_shift(
@@ -132,15 +135,16 @@ def _times(table: DataTable, sheet: Sheet, file: Path) -> Array:
     if not sheet.time:
         return np.arange(table.rows, dtype=np.float64) * sheet.period_s
     t = seconds_of(table, sheet, file)
-    _rising(t, table[sheet.time], sheet.time, file)
+    _rising(t, table, sheet.time, file)
     return np.asarray(t - t[0], float)
 
 
-def _rising(t: Array, column: NDArray[Any], name: str, file: Path) -> None:
-    """InputError where a time (s) is missing or no later than the one before. column : as the file has them"""
+def _rising(t: Array, table: DataTable, name: str, file: Path) -> None:
+    """InputError where a time (s) of the column of this name is missing or no later than the one before."""
+    column = table[name]
     missing = np.flatnonzero(np.isnan(t))
     if missing.size:
-        raise InputError("a time is missing", cell(file, name, int(missing[0])), "a time in every row")
+        raise InputError("a time is missing", cell(file, name, int(missing[0]), table.line), "a time in every row")
     wrong = np.flatnonzero(np.diff(t) <= 0)
     if wrong.size:
         row = int(wrong[0]) + 1
@@ -148,7 +152,7 @@ def _rising(t: Array, column: NDArray[Any], name: str, file: Path) -> None:
         count = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
         raise InputError(
             f"time {_text(column[row])} {what}{count}",
-            cell(file, name, row),
+            cell(file, name, row, table.line),
             "times that rise from row to row: sort the file by time and delete repeated rows",
         )
 
@@ -192,6 +196,15 @@ def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
+def _other_unit(column: Column, written: str, file: Path) -> list[str]:
+    """A note where the unit that the file gives, under its header or with its channels, is not that of the sheet."""
+    unit, of, both = unit_of(written), column.quantity, np.array([0.0, 1.0])
+    if unit not in QUANTITIES[of].units or np.allclose(converted(both, of, unit), converted(both, of, column.unit)):
+        return []
+    what = f"its file says {unit}; {column.unit} is taken, as the sheet says"
+    return [f"{file.name} column '{column.header}': {what}"]
+
+
 def recorder_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
     """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing."""
     if not sheet.recorders:
@@ -206,7 +219,7 @@ def recorder_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]
 def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[np.bool_]) -> list[str]:
     """Missing readings and impossible temperatures of one column.
 
-    first : row at which the test begins;  awake : rows in which its recorder read anything
+    first : line at which the test begins;  awake : rows in which its recorder read anything
     """
     missing = np.flatnonzero(np.isnan(values) & awake)
     if np.isnan(values).all():
@@ -220,7 +233,7 @@ def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[
         unit = " degC" if column.is_temperature else ""
         raise InputError(
             f"{values[row]:g}{unit} {what if column.is_temperature else 'cannot be'}",
-            cell(file, column.name, row + first),
+            cell(file, column.name, row, first),
             f"{low:g} to {high:g}{unit}: check the unit in the sheet, or leave the cell empty where nothing was read",
         )
     rows = np.diff(np.flatnonzero(~np.isnan(values)))
@@ -228,7 +241,7 @@ def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[
         rows.size > LEAST and 1 < rows.min() >= rows.max() - 1
     )  # a column that is recorded less often lacks nothing
     if missing.size and column.electrical is None and not slower:
-        line = missing[0] + HEADER + first
+        line = missing[0] + first
         return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]
     return []
 

@@ -208,6 +208,14 @@ def test_json_makes_no_folders(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that even its owner may not write to")
+def test_json_is_tried_before_any_work(tmp_path):
+    """A case that is not there would be the next fault."""
+    done = answered("test", "compare", tmp_path / "none", "--json", "/proc/x.json")
+    assert done.code == 2
+    assert done.errors[-1].startswith("error: --json /proc/x.json: cannot be written")
+
+
 def test_a_file_name_that_is_no_text(tmp_path):
     """Bytes that no UTF-8 says: refused by its name, as escapes."""
     name = os.fsdecode(b"\xff\xfe")

@@ -13,6 +13,7 @@ from input_cases import case_of, changed, edited
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare
 
+UNITS = ("A", "km/h", "degC", "degC", "degC", "degC")  # of its columns
 STAND, START = "tests/stand.csv", pd.Timestamp("2024-03-31 00:30:00")
 
 
@@ -112,8 +113,6 @@ REFUSED = {
         lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", instants(t).time_s)),
         ["line 2", "time_s", "test new"],
     ),
-    "a line of units": (lines(lambda rows: [rows[0], "s,A,km/h,degC,degC,K,degC", *rows[1:]]), ["line 2", "'s'"]),
-    "a preamble": (lines(lambda rows: ["# logger 3", *rows]), ["line 2", "the header is line 1"]),
     "a trailer": (lines(lambda rows: [*rows, "# end"]), ["line 302", "cut off"]),
     "a trailer with commas": (lines(lambda rows: [*rows, "End,,,,,,"]), ["line 302", "'End'"]),
     "a line of commas": (lines(lambda rows: [*rows, ",,,,,,"]), ["line 302", "a time is missing"]),
@@ -171,6 +170,11 @@ def test_refused_in_one_line_with_its_place(tmp_path, spoil, words):
 
 SAME = {
     "a workbook": excel(),
+    "a line of units": lines(lambda rows: [rows[0], ",".join(["s", *UNITS]), *rows[1:]]),
+    "a preamble": lines(lambda rows: ["# logger 3", "Started,2026-03-28", "", *rows]),
+    "a workbook with a line of units": excel(
+        lambda t: pd.concat([pd.DataFrame([["s", *UNITS]], columns=t.columns), t])
+    ),
     "numbers in words": excel(lambda t: t.astype(str)),
     "instants in Excel": excel(instants),
     "a Parquet": parquet(index=False),
@@ -192,6 +196,13 @@ def test_read_as_its_plain_file_is(tmp_path, plain, change):
     case = case_of(tmp_path)
     change(case)
     assert compare(load_case(case).case).rmse_K == pytest.approx(plain, abs=1e-6)
+
+
+def test_a_unit_that_the_file_says_and_the_sheet_does_not_is_said(tmp_path):
+    case = case_of(tmp_path)
+    lines(lambda rows: [rows[0], "s,A,m/s,degC,degC,degC,degC", *rows[1:]])(case)
+    (note,) = [note for note in load_case(case).notes if "its file says" in note]
+    assert note == "stand.csv column 'wind': its file says m/s; km/h is taken, as the sheet says"
 
 
 def test_an_empty_cell_is_a_missing_reading_with_its_line(tmp_path):

@@ -123,6 +123,17 @@ def test_limits_of_meshes_and_step_files(tmp_path, monkeypatch):
         import_step(file)
 
 
+@pytest.mark.nightly
+def test_a_wire_of_a_kilometre_is_refused_before_it_is_meshed(tmp_path):
+    import cadquery as cq
+
+    ring, wire = cq.Workplane().circle(50).circle(40).extrude(100), cq.Workplane().circle(0.5).extrude(1e6)
+    cq.Assembly().add(ring, name="housing").add(wire, name="wire").export(str(tmp_path / "motor.step"))
+    (tmp_path / "motor.step.toml").write_text('[materials]\nhousing = "aluminium-cast"\nwire = "copper"\n')
+    with pytest.raises(InputError, match="limit 'mesh_points'"):
+        build_mesh(import_step(tmp_path / "motor.step"))
+
+
 def test_a_limit_that_is_no_number_is_said(monkeypatch):
     for limit in LIMITS:
         monkeypatch.setenv(limit.variable, "many")

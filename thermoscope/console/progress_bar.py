@@ -37,7 +37,9 @@ ALONE = re.compile(COUNT.pattern)
 QUIET_S = 15.0  # a pipe that says nothing for longer looks as if it hung
 PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 # Stages whose cost is that of files and meshes: they say little of how long fits take, which say much of each other.
-PREPARING = {"reading", "preparing", "estimating", "mesh", "conduction", "network", "field", "laws", "what", "error"}
+BUILDING = {"mesh", "conduction", "network", "field", "laws", "what", "error", "checking"}  # what is made once and kept
+PREPARING = BUILDING | {"reading", "preparing", "estimating"}
+RUNS = 0.7  # power: where a model runs in a fiftieth of the time, all that fits it takes a fifteenth (tclab, 200 tests)
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -54,6 +56,7 @@ class ProgressBar:
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
     loop : start of a loop in the stage (s), part of it that is done;  share : on the line;  share_s : when
+    cpu : s that this process has computed, rising;  begun : clock and cpu at the first stage
     """
 
     last: dict[str, float]
@@ -70,6 +73,8 @@ class ProgressBar:
     share: float = 0.0
     share_s: float = 0.0
     same_case: bool = True
+    cpu: Callable[[], float] = time.process_time
+    begun: tuple[float, float] = (0.0, 0.0)
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage.
@@ -82,6 +87,7 @@ class ProgressBar:
             return False
         if not (self.now or self.took):
             self.share_s = self.clock()
+            self.begun = (self.share_s, self.cpu())
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -125,7 +131,11 @@ class ProgressBar:
         if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
         after = order.index(self.now) + 1 if self.now in self.last else 0
-        later = sum(self.last[s] for s in order[after:] if s not in self.took and s != self.now)
+        coming = [s for s in order[after:] if s not in self.took and s != self.now]
+        building = [s for s in order if _word(s) in BUILDING]
+        if {*building} & {*order[:after]} and not {*building} & {*self.took, self.now}:
+            coming = [s for s in coming if s not in building]  # a declared network, or a machine that was kept
+        later = sum(self.last[s] for s in coming)
         rest += self._pace(took) * later
         spent, instant = here + sum(self.took.values()), self.clock()
         worth = max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) >= self.shortest_s
@@ -138,17 +148,29 @@ class ProgressBar:
     def _pace(self, took: Mapping[str, float]) -> float:
         """What is still to come over what it took the last time, by the stages so far and what each took (s).
 
-        Of this very case it is what they took over what they took then. Of another, fits say that of fits; other
-        stages say only as much as they were of its work: a long file is read forty times as long, and the yardstick
-        after it takes twice as long.
+        Of this very case it is what they took over what they took then. Of another, fits say that of fits, and the
+        error of the time steps, for which the model is run, that of small cases and large ones; other stages say only
+        as much as they were of its work: a long file is read forty times as long, and the yardstick after it takes
+        twice as long. What others take of the computer slows all stages alike.
         """
-        fits = [s for s in took if s.split()[-1] not in PREPARING]
-        guides = took if self.same_case or not sum(self.last[s] for s in fits) > PACED_S else fits
-        usual = sum(self.last[s] for s in guides)
-        if not usual > PACED_S:
-            return 1.0
-        share = 1.0 if self.same_case or guides is fits else min(usual / sum(self.last.values()), 1.0)
-        return float((sum(took[s] for s in guides) / usual) ** share)
+        if self.same_case:
+            return self._quotient(took, 1.0, 1.0)
+        fits = [s for s in took if _word(s) not in PREPARING]
+        runs = [s for s in took if _word(s) == "estimating"]
+        share = min(sum(self.last[s] for s in took) / max(sum(self.last.values()), PACED_S), 1.0)
+        guides = ((fits, 1.0), (runs, RUNS), (took, share))
+        stages, power = next((g for g in guides if sum(self.last[s] for s in g[0]) > PACED_S), (took, share))
+        return self._quotient({s: took[s] for s in stages}, power, self._busy())
+
+    def _quotient(self, took: Mapping[str, float], power: float, busy: float) -> float:
+        """Of what stages took (s), over what they took the last time; others slow them by a factor `busy`."""
+        usual = sum(self.last[s] for s in took)
+        return busy * (sum(took.values()) / busy / usual) ** power if usual > PACED_S else busy
+
+    def _busy(self) -> float:
+        """How much longer than its own work this run takes, because others compute too."""
+        passed, computed = self.clock() - self.begun[0], self.cpu() - self.begun[1]
+        return max(passed / computed, 1.0) if computed > PACED_S else 1.0
 
     def _done(self, here: float) -> float:
         """Part of the stage, as it grows between two counts: as if the next piece took as long as those before it."""
@@ -160,6 +182,11 @@ class ProgressBar:
         """The message with share and time left."""
         remaining = self.left()
         return f"{message} ({_remaining(remaining)})" if remaining else message
+
+
+def _word(stage: str) -> str:
+    """Of a stage without the number of its block."""
+    return stage.rpartition(" ")[2]
 
 
 def _remaining(remaining: tuple[float, float]) -> str:
@@ -210,7 +237,9 @@ def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]
         yield stages
         stages.leave()
         if sum(stages.took.values()) > shortest_s:
-            durations = {**{k: v for k, v in durations.items() if k not in keys}, **dict.fromkeys(keys, stages.took)}
+            again = {s: t for s, t in stages.took.items() if _word(s) not in BUILDING}
+            others = {k: v for k, v in durations.items() if k not in keys}
+            durations = others | {keys[1]: stages.took, keys[0]: again or stages.took}
             with suppress(InputError):  # a folder that can only be read
                 write_whole(cache_folder() / FILE, json.dumps(dict(list(durations.items())[-MOST:])))
     finally:

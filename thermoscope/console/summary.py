@@ -6,6 +6,7 @@ Columns that do not fit are left out, the least important first; rows that do no
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import sys
 from collections.abc import Iterator, Sequence
@@ -22,6 +23,8 @@ from geom.text import visible
 LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
 GAP = "  "
 TITLE, LEAST = 2, 8  # lines over the rows of a table; letters that a shortened word keeps
+
+NUMBERS = re.compile(r"[-+]?\d[\d.,eE+()\s-]*(?:[^\W\d]?\S{0,8})?")  # one, an interval, or either with its unit
 
 _limit: ContextVar[int | None] = ContextVar("lines", default=LINES)
 
@@ -165,8 +168,8 @@ def _fitting(table: Table, body: list[list[str]], widths: list[int], width: int)
 
 
 def _numbers(body: list[list[str]], j: int) -> bool:
-    """Does a column hold numbers, which are not to be shortened?"""
-    return any(row[j][:1].isdigit() or (row[j][:1] in "+-" and row[j][1:2].isdigit()) for row in body)
+    """Does a column hold numbers, which are not to be shortened? Names that begin with a digit may be."""
+    return any(NUMBERS.fullmatch(row[j]) for row in body)
 
 
 def _total(widths: Sequence[int], columns: Sequence[int]) -> int:

@@ -54,7 +54,7 @@ def error_budgets(folder: OpenCase, records: Mapping[str, Record], progress: Pro
     if folder.built is not None and isinstance(network.recovery, Shapes):  # only then the field's packages are loaded
         from lumped.build.rated_errors import cached_errors, hot_rows
 
-        progress("estimating the error of mesh and condensation")
+        progress("checking mesh and condensation")
         rated = cached_errors(folder.built, looks)
         rows |= hot_rows(network, rated)
     each = counted("estimating the error of the time steps", records.items(), len(records))

@@ -60,7 +60,10 @@ def tables_in(name: str, most: int, worksheet: str = "") -> Iterator[DataTable]:
 
 @dataclass
 class LiveTable:
-    """The columns of a stream.  sheet : what they are;  network : what must be given;  header : names in the stream"""
+    """The columns of a stream.  sheet : what they are;  network : what must be given;  header : names in the stream
+
+    first_line : of the rows
+    """
 
     sheet: Sheet
     network: Network
@@ -68,6 +71,7 @@ class LiveTable:
     where: str
     last: dict[str, float] = field(default_factory=dict)
     time: float = -np.inf
+    first_line: int = 0
 
     def missing(self) -> list[str]:
         """Columns without which nothing runs."""
@@ -130,7 +134,8 @@ class LiveTable:
 
     def _times(self, table: DataTable, file: Path) -> Array:
         if not self.sheet.time:
-            return np.asarray((table.line - HEADER + np.arange(table.rows)) * self.sheet.period_s, float)
+            self.first_line = self.first_line or table.line
+            return np.asarray((table.line - self.first_line + np.arange(table.rows)) * self.sheet.period_s, float)
         time = seconds_of(table, self.sheet, file)
         wrong = np.flatnonzero(~(np.diff(time, prepend=self.time) > 0.0))
         if wrong.size:

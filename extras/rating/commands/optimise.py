@@ -16,30 +16,36 @@ from extras.rating.design.design_problem import DesignRequest, checked_request, 
 from extras.rating.design.machine_keys import MachineFile, machine_file_text, short_key
 from extras.rating.designs import WORDS
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
-from extras.rating.optimisation.search import METHODS, Design, Effort, pareto_set
+from extras.rating.optimisation.search import METHODS, Design, Effort, StoppedSearchError, pareto_set
 from thermoscope import InputError
 from thermoscope.plugin import Summary, Table, csv_lines, file_stem, notes, progress, write_whole
 
 
 def optimised(
     name: str, request: DesignRequest, method: str, effort: Effort, cluster: str | None, out: Path | None
-) -> tuple[dict[str, Any], Path]:
-    """The Pareto set of a case or a machine file, and the folder of its table, plots and machine files."""
+) -> tuple[dict[str, Any], Path, bool]:
+    """The Pareto set of a case or a machine file, the folder of its table, plots and machine files, and whether the
+    user stopped the search."""
     from thermoscope.plugin import dask_cluster
 
     with progress() as tell, dask_cluster(cluster) if cluster else nullcontext() as executor:
         folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
         notes([effort_words(problem, effort)])
-        designs = pareto_set(problem, METHODS[method], effort, executor, tell)
-        document = document_of(problem, designs, method, effort)
-        if file is not None and any(v.conducts for v in problem.space.variables):
+        count, stopped = effort.population * effort.generations, False
+        try:
+            designs = pareto_set(problem, METHODS[method], effort, executor, tell)
+        except StoppedSearchError as stop:
+            notes([f"stopped: {stop.judged} of {count} designs were judged; the best of these are written and stay"])
+            designs, count, stopped = stop.designs, stop.judged, True
+        document = document_of(problem, designs, method, count)
+        if not stopped and file is not None and any(v.conducts for v in problem.space.variables):
             samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
             document["interpolation_error"] = Condensations(problem, tell).verified(samples)
         where = out or Path("out") / f"{file_stem(folder.case.name)}-designs"
         tell(f"writing {where}")
         files = _write(where, problem, designs, document, file)
-    return {"case": folder.case.name, **document, "files": files}, where
+    return {"case": folder.case.name, **document, "files": files}, where, stopped
 
 
 def effort_words(problem: Problem, effort: Effort) -> str:
@@ -71,12 +77,12 @@ def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
     return out
 
 
-def document_of(problem: Problem, designs: Sequence[Design], method: str, effort: Effort) -> dict[str, Any]:
+def document_of(problem: Problem, designs: Sequence[Design], method: str, judged: int) -> dict[str, Any]:
     usual = {v.name: v.usual for v in problem.space.variables}
     reference = problem.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
     return {
         "method": method,
-        "judged": effort.population * effort.generations,
+        "judged": judged,
         "objectives": list(problem.aimed),
         "robust": problem.sure is not None,
         "limits": [{"place": s.name, "degC": s.limit} for s in problem.spots],

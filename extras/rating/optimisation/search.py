@@ -39,6 +39,14 @@ class Effort:
     seed: int = 1
 
 
+class StoppedSearchError(KeyboardInterrupt):
+    """The user stopped a search.  designs : the best so far, that meet every limit;  judged : designs in all"""
+
+    def __init__(self, designs: list[Design], judged: int) -> None:
+        super().__init__()
+        self.designs, self.judged = designs, judged
+
+
 def nsga2(objectives: int, population: int, seed: int) -> Any:
     """NSGA-II. Any number of objectives."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
@@ -69,8 +77,8 @@ def pareto_set(
 
     executor : where designs are judged, such as a Dask cluster's; None: here
 
-    Raises InputError where no design meets its limits, with the limit that the nearest one misses, and
-    MissingDependency without pymoo.
+    Raises InputError where no design meets its limits, with the limit that the nearest one misses,
+    MissingDependency without pymoo, and StoppedSearchError where the user stops it and some meet their limits.
     """
     try:
         import pymoo  # noqa: F401
@@ -82,9 +90,14 @@ def pareto_set(
     posed = _posed(problem, archive, executor)
     algorithm = method(len(problem.aimed), effort.population, effort.seed)
     algorithm.setup(posed, termination=("n_gen", effort.generations), seed=effort.seed, verbose=False)
-    for generation in range(1, effort.generations + 1):
-        algorithm.next()
-        progress(f"generation {generation} of {effort.generations}")
+    try:
+        for generation in range(1, effort.generations + 1):
+            algorithm.next()
+            progress(f"generation {generation} of {effort.generations}")
+    except KeyboardInterrupt:
+        if not any(design.performance.feasible for design in archive):
+            raise
+        raise StoppedSearchError(non_dominated(archive, problem), len(archive)) from None
     return non_dominated(archive, problem)
 
 

@@ -13,6 +13,7 @@ from extras.rating.commands.optimise import read_bounds
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.design_problem import temperatures_of
 from extras.rating.design.machine_keys import MachineFile, machine_file_text
+from extras.rating.optimisation import search
 from extras.rating.optimisation.space import Space
 from geom import load_machine
 from geom.description.reading import read_geometry
@@ -42,6 +43,26 @@ def test_a_pareto_set_of_a_case(thermoscope, tmp_path):
     page = (out / "pareto.html").read_text()
     assert "parcoords" in page
     assert "scatter3d" in page
+
+
+def test_a_search_that_is_stopped_gives_the_best_so_far(thermoscope, tmp_path, monkeypatch):
+    """Ctrl-C in the third generation."""
+    case, out = small_case(tmp_path), tmp_path / "designs"
+    usual, calls = search.judged, []
+
+    def judged(problem, X, executor=None):
+        calls.append(len(X))
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return usual(problem, X, executor)
+
+    monkeypatch.setattr(search, "judged", judged)
+    words = ["--limit", "winding=400", "--vary", "current_A=40:90", "--at", "ambient=20", "--json", "-"]
+    said = thermoscope("use", "optimise", case, *words, *EFFORT, "--out", out)
+    assert said.code == 130
+    assert said.document["judged"] == sum(calls[:2]) == 24
+    assert "stopped: 24 of 48 designs were judged; the best of these are written and stay" in said.err
+    assert len(list(csv.DictReader((out / "pareto.csv").open()))) == len(said.document["designs"])
 
 
 @pytest.mark.parametrize(

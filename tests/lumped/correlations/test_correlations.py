@@ -7,6 +7,7 @@ import ht
 import numpy as np
 import pytest
 
+from geom.errors import InputError
 from lumped.correlations import RangeWarning, tabulated
 from lumped.correlations.air_gap import becker_kaye, taylor_film
 from lumped.correlations.contacts import (
@@ -153,6 +154,12 @@ def test_glycol_is_the_published_table(T, rho, cp, k, mu):
     f = ethylene_glycol(T, 0.5)
     assert (f.rho, f.cp, f.k) == pytest.approx((rho, cp, k), rel=2e-3)
     assert f.mu == pytest.approx(mu, rel=5e-3)
+
+
+def test_what_a_coolant_is_not_known_at_is_said_in_tenths():
+    with pytest.raises(InputError, match=r"T = -50 degC; -35\.9 to 100 degC"):
+        ethylene_glycol(-50.0, 0.5)
+    ethylene_glycol(-35.9, 0.5)
 
 
 def test_fluids_at_20_degC():

@@ -85,6 +85,28 @@ def test_rows_that_are_no_rows_are_refused(tmp_path, rows, words):
         read_csv(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize("before", ["", "Logger 7,v1.2\n", "Logger 7,v1.2\n\nStarted,2026-03-28\n"])
+@pytest.mark.parametrize("units", ["", "s,degC,A\n"])
+def test_a_case_finds_the_header_where_a_new_one_does(tmp_path, before, units):
+    """A preamble and a row of units: the same names as for `new`, and a fault keeps its line in the file."""
+    (tmp_path / "a.csv").write_text(f"{before}time,T_coil,I\n{units}0,20.5,1\n1,21.5,\n2,x,3\n3,22.5,4\n4,23,5\n")
+    table = read_csv(tmp_path / "a.csv")
+    assert table.columns == list(read_source(tmp_path / "a.csv").cells) == ["time", "T_coil", "I"]
+    assert np.array_equal(table["I"], [1.0, np.nan, 3.0, 4.0, 5.0], equal_nan=True)
+    line = (before + units).count("\n") + 4
+    with pytest.raises(InputError, match=f"line {line}: 'x' is no number"):
+        numbers(table, "T_coil", tmp_path / "a.csv")
+
+
+def test_no_row_under_a_header_is_taken_for_part_of_it(tmp_path):
+    """A first row of words is refused by its line, and a header of words stays the header beside a row of them."""
+    (tmp_path / "a.csv").write_text("time,T,x,y,z\nstart,OVER,OVER,OVER,OVER\n" + "1,2,3,4,5\n" * 5)
+    table = read_csv(tmp_path / "a.csv")
+    assert (table.columns, table.rows) == (["time", "T", "x", "y", "z"], 6)
+    with pytest.raises(InputError, match="line 2: 'OVER' is no number"):
+        numbers(table, "T", tmp_path / "a.csv")
+
+
 def test_a_row_cut_off_in_a_later_block_is_named_by_its_line(tmp_path):
     lines = readings().to_csv(index=False).splitlines()
     lines[ROWS - 1] = lines[ROWS - 1].rpartition(",")[0]

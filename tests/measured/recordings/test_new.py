@@ -13,7 +13,7 @@ from small_case import HEADER, NETWORK, measured
 
 from geom.errors import InputError, MissingDependency
 from lumped.declarations.network import load_network
-from measured.importing.cells import number, split_unit
+from measured.headers.cells import number, split_unit
 from measured.importing.clock import clock_of
 from measured.importing.guess import guesses
 from measured.importing.source import read_source

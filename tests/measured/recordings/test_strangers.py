@@ -4,6 +4,7 @@ import json
 import tomllib
 import zipfile
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +13,13 @@ from logger_formats import signals
 
 from geom.description.roles import Role
 from geom.errors import InputError
+from measured.headers.cells import split_unit
+from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, longest_part
-from measured.importing.cells import split_unit
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
 from measured.importing.target import Target
-from measured.importing.words import roles_of
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
@@ -394,3 +395,67 @@ def test_of_a_recording_with_a_gap_the_longest_part_is_the_test():
     assert "no rows of a.csv from 995 s to 2200 s" in notes[0]
     hourly = replace(record, clock=Clock(3600.0 * np.arange(9), None, (), ""))
     assert longest_part(hourly, 120.0) == ((0.0, None), ())
+
+
+def of(names, letters, sep=","):
+    """Text of columns under their names."""
+    return table(sep.join(names), *(S[c] for c in letters), sep=sep)
+
+
+PLAIN = ("t [s]", "T_winding [C]", "T_frame [C]", "T_amb [C]", "I [A]")
+LABELLED = "Name:\tTime\tWinding\tFrame\tRoom\tCurrent\nUnit:\ts\t°C\t°C\t°C\tA\nStep:\t5\t5\t5\t5\t5\n"
+SHORT = "No.;;T winding;T frame;T room;Current\nUnit:;;°C;°C;°C;A\nDate;Time;;;;\n"
+LEGEND = "# T1 = Winding head\n# T2 = Frame\n# T3 = Ambient air\n# I1 = Phase current\n"
+PATHS = (
+    "t [s]",
+    *(f"Test bed 3/{n}" for n in ("Motor/Winding [C]", "Motor/Frame [C]", "Room/Air [C]", "Supply/I [A]")),
+)
+KOREAN = ("시간(s)", "권선 온도(℃)", "하우징 온도(℃)", "주위 온도(℃)", "전류(A)")
+HUNGARIAN = ("Idő", "Tekercs (°C)", "Ház (°C)", "Környezeti hőmérséklet (°C)", "Áram (A)")
+WRITTEN = {  # each is a winding, a frame, the room and a current
+    "labels before numbers": LABELLED.rstrip("\n") + of([], "tWHAI", "\t").replace("\n", "\n\t").rstrip("\t"),
+    "a clock's name in a row of its own": SHORT
+    + "\n".join(
+        f"03.11.25;08:{k // 12:02d}:{5 * (k % 12):02d};{w:.2f};{h:.2f};{a:.2f};{i:.2f}"
+        for k, (w, h, a, i) in enumerate(zip(S["W"], S["H"], S["A"], S["I"]))
+    ),
+    "lines that say what a channel is": LEGEND + of(("time_s", "T1_C", "T2_C", "T3_C", "I1_A"), "tWHAI", "\t"),
+    "the test bed before every name": of(PATHS, "tWHAI"),
+    "Korean": of(KOREAN, "tWHAI").encode("cp949"),
+    "Hungarian": of(HUNGARIAN, "tWHAI", ";").encode("cp1250"),
+    "columns of JSON": json.dumps(
+        {n: [*S[c]] for n, c in zip(("time_s", "winding_C", "frame_C", "room_C", "I_A"), "tWHAI")}
+    ),
+    "millivolts beside degrees": of((*PLAIN, "T_winding [mV]"), "tWHAIW"),
+    "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
+}
+
+
+@pytest.mark.parametrize("kind", WRITTEN)
+def test_a_winding_a_frame_the_room_and_a_current(tmp_path, kind):
+    text = WRITTEN[kind]
+    (tmp_path / "a.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
+    assert new([tmp_path / "a.csv"], Wishes(out=tmp_path / "made", yes=True), str(tmp_path / "new.json")) == 0
+    test = load_case(tmp_path / "made").case.tests[0]
+    assert test.time[-1] == pytest.approx(S["t"][-1])
+    assert np.array([c.y for c in test.channels]) == pytest.approx(np.array([S["W"], S["H"]]), abs=0.006)
+    assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
+    assert test.inputs["current_A"] == pytest.approx(S["I"], abs=0.006)
+
+
+@pytest.mark.parametrize("stamp", ["%Y. %m. %d. %H:%M:%S", "%Y.%m.%d. %H:%M:%S", "%Y.%m.%d %H:%M:%S"])
+def test_points_and_blanks_in_dates(tmp_path, stamp):
+    cells = [datetime.fromtimestamp(1762157670 + 5 * k, UTC).strftime(stamp) for k in range(9)]
+    (tmp_path / "a.csv").write_text("time,T_coil [C]\n" + "".join(f"{c},{20 + k}\n" for k, c in enumerate(cells)))
+    clock = clock_of(read_source(tmp_path / "a.csv"))
+    assert clock.start == pytest.approx(1762157670)
+    assert clock.seconds == pytest.approx(5.0 * np.arange(9))
+
+
+@pytest.mark.parametrize("end", ["first", "decimal comma"])
+def test_one_number_more_than_names_is_refused(tmp_path, end):
+    """Whether the first column has no name, or a comma stands in a number, nobody can tell."""
+    rows = [f"{3 * k + 7},{5 * k},{20 + k},22,3" if end == "first" else f"{5 * k},{20 + k},5,22,3" for k in range(9)]
+    (tmp_path / "a.csv").write_text("t [s],T_coil [C],T_amb [C],I [A]\n" + "\n".join(rows))
+    with pytest.raises(InputError, match="5 values under 4 names"):
+        read_source(tmp_path / "a.csv")

@@ -76,7 +76,7 @@ def compared(
     from validation.comparison.error_budget import documents
     from validation.parameters.unknowns import strain_words
 
-    tell(f"estimating the error of {'mesh and condensation' if folder.built else 'the time steps'}")
+    tell("checking mesh and condensation" if folder.built else "estimating the error of the time steps")
     budgets = folder.budgets
     tell("running the model")
     result = folder.compared

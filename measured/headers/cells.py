@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
-from measured.importing.words import VOCABULARY
+from measured.headers.words import VOCABULARY
 from measured.recordings.data_table import MISSING
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
@@ -29,7 +29,7 @@ SPAN = re.compile(
 _MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\\d_]{{0,7}}"
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
-    r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
+    r"(\d{4}[-/.]\s?\d{1,2}[-/.]\s?\d{1,2}\.?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
     rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)([T ,].*)?",
     re.IGNORECASE,
 )

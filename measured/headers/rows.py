@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 
 from geom.errors import InputError
-from measured.importing.cells import is_date, is_reading, is_unit, number, split_unit
-from measured.importing.words import is_time, quantities_of, roles_of
+from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit
+from measured.headers.words import is_time, quantities_of, roles_of
 
 SAMPLE = 2000  # rows that are enough to find the table
+FEW = 24  # rows that are enough where the header is nearly always the first
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
 TALLEST = 8  # rows of names, tags, kinds and units over the readings
+EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
 
 Row = Sequence[object]
 
@@ -25,14 +29,20 @@ Row = Sequence[object]
 class Layout:
     """names, units : one per column, "" where the file gives none;  first : row where the readings begin
 
-    width : columns;  preamble : rows before the names
+    width : columns;  preamble : rows before the names;  header : row of the names, -1 where the file gives none
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     first: int
     width: int
-    preamble: int
+    preamble: int = 0
+    header: int = -1
+
+    @property
+    def units_by_name(self) -> dict[str, str]:
+        """Name -> unit, of the columns that have one in a row under their names."""
+        return {name.strip(): unit for name, unit in zip(self.names, self.units, strict=True) if unit}
 
 
 def layout(rows: Sequence[Row], where: str) -> Layout:
@@ -52,7 +62,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     units = next((i for i in reversed(block) if _all_units(rows[i])), None)
     candidates = [i for i in block if i != units]
     if not candidates:
-        return Layout(("",) * width, ("",) * width, first, width, 0)
+        return Layout(("",) * width, ("",) * width, first, width)
     header = max(candidates, key=lambda i: (_informative(rows[i]), i))
     names = [str(c or "").strip() for c in trimmed(rows[header])]
     if names and names[0].strip("#%/ ") != names[0]:
@@ -60,38 +70,57 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         widest = max(len(row) for row in head[first:])  # cells that are empty in most rows have names too
         names = names[1:] if not names[0] and len(names) > max(width, widest) else names
     if len(names) == width - 1:
-        numbers = [number(row[0]) for row in head[first:] if row]  # as statistics programs number their rows
-        counted = len(numbers) > 1 and bool((np.diff(numbers[:FIRM]) == 1).all())
-        names = ["", *names] if all(names) and counted else [*names, ""]
-    if len(names) < width - 1:
+        ends = [[row[j] for row in head[first:] if len(row) == width] for j in (0, -1)]
+        counts = [number(cell) for cell in ends[0][:FIRM]]  # as statistics programs number their rows
+        if all(names) and len(counts) > 1 and bool((np.diff(counts) == 1).all()):
+            names = ["", *names]
+        elif not any(number(cell) == number(cell) for cell in ends[1]):  # remarks behind the readings
+            names = [*names, ""]
+    if len(names) < width:
         right = "as many as names: decimal commas become points, or columns stand between ';'"
         raise InputError(f"{width} values under {len(names)} names", where, right)
     width = len(names) if len(names) > width else width
     names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     if above and len(set(names)) < len(names):  # names of groups over those of columns
-        groups = _forward_filled(above[-1])
+        groups = accumulate(above[-1], lambda group, cell: cell or group)  # merged cells are of the first one's group
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
         labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
         late = next((labels.index(c) - j for row in above for j, c in enumerate(row) if c and c in labels), 0)
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
-    return Layout(
-        tuple(names), tuple(_padded(rows[units], width) if units is not None else [""] * width), first, width, block[0]
-    )
+    written = _padded(rows[units] if units is not None else [], width)
+    return Layout(tuple(names), tuple(written), first, width, block[0], header)
+
+
+def first_row_layout(rows: Sequence[Row], where: str) -> Layout:
+    """The layout of a table that may be all words or a row or two: the first row is its header where it names every
+    column, or where no readings are found. No row under the header and its units is left out."""
+    try:
+        found = layout(rows[:FEW], where)
+    except InputError:
+        found = Layout((), (), 1, 0)
+    under = found.header + 1
+    units = found.units if under < found.first and _all_units(rows[under]) else ()
+    if found.header > 0 and sum(bool(str(c or "").strip()) for c in rows[0]) < found.width:
+        return replace(found, units=units or ("",) * found.width, first=under + bool(units))
+    names = [str(c or "") for c in rows[0]]
+    units = units if found.header == 0 else ()
+    return Layout(tuple(names), tuple(_padded(units, len(names))), 1 + bool(units), len(names), header=0)
 
 
 def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     """The rows over the readings that may be names, units, or groups of names: those that fill half of the table.
 
-    A row with its label alone ("Comment:", "trace_values") or with dates may stand between them, and is neither.
+    A row with its label alone ("Comment:", "trace_values"), with dates or with the clock's name alone may stand between
+    them, and is neither.
     """
     block: list[int] = []
     for i in reversed(range(max(0, first - TALLEST), first)):
         cells = [str(c).strip() for c in rows[i] if c is not None and str(c).strip()]
         alone = len(cells) == 1 < 0.5 * width <= (len(rows[i]) if block else width) and not cells[0].startswith("***")
-        if alone or any(map(is_date, cells)):
+        if alone or any(map(is_date, cells)) or (1 < len(cells) < 0.5 * width and all(map(is_time, cells))):
             continue
         if cells and (len(cells) < 0.5 * width or all(map(is_reading, cells))):
             break
@@ -101,9 +130,13 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
 
 
 def _called(names: list[str], before: Sequence[Row]) -> list[str]:
-    """Names of channels with what a table before the readings calls them: there a row for each says what it is."""
+    """Names of channels with what a table before the readings calls them: there a row for each says what it is, or a
+    line as "T1 = winding"."""
     labels = [split_unit(name)[0] for name in names]
-    table = {str(row[0]).strip(): row for row in map(trimmed, before) if len(row) > 1 and str(row[0]).strip() in labels}
+    lines = (
+        [*m.groups()] if len(row) == 1 and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before)
+    )
+    table = {str(row[0]).strip(): row for row in lines if len(row) > 1 and str(row[0]).strip() in labels}
     if len(table) < 2 or any(map(roles_of, names)):
         return names
     scores = [
@@ -121,14 +154,6 @@ def _informative(row: Row) -> int:
     return sum(2 if quantities_of(c) or roles_of(c) or is_time(c) or split_unit(c)[1] else 0 for c in cells) + (
         len(cells) > 1
     )
-
-
-def _forward_filled(cells: Sequence[str]) -> list[str]:
-    """Cells that are merged with those after them in each of them."""
-    out: list[str] = []
-    for cell in cells:
-        out.append(cell or (out[-1] if out else ""))
-    return out
 
 
 def trimmed(row: Row) -> Row:
@@ -155,12 +180,10 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
             after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
             names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
-            if (
-                after - i < SHORT * sum(fits)
-                and max(map(len, map(trimmed, rows[i:after]))) < width
-                and len(set(names)) >= width
-            ):
-                continue
+            settings = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
+            labels = [not is_reading("" if row[0] is None else row[0]) for row in rows[i : i + FIRM]]
+            if (settings and after - i < SHORT * sum(fits)) or (labels[0] and not any(labels[1:])):
+                continue  # also a row of rates or factors behind its label: "Interval:", 0.5, 0.5
             while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 i -= 1  # a remark behind the readings of a first row
             return i

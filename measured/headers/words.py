@@ -21,10 +21,11 @@ def _words(text: str) -> frozenset[str]:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
+SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
     _words(VOCABULARY["words"][name])
-    for name in ("setpoint", "read", "inlet", "nothing", "difference", "clock", "loss", "outer")
+    for name in ("setpoint", "read", "modelled", "inlet", "nothing", "difference", "clock", "loss", "outer")
 )
+PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 SHORTEST = 4  # letters of a word that may be looked for inside another
 IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 LETTERED = re.compile(
@@ -57,7 +58,7 @@ def axis_of(name: str) -> str:
 
 def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
-    paths = [tokens(part) for part in re.split(r"[/\\.:|]", name)]  # Model Root/i_phase, Motor.T_winding
+    paths = [tokens(part) for part in PATH.split(name)]
     words = [word for path in paths for word in path]
     spoken = {
         w for path in paths for i, w in enumerate(path) if len(w) > 1 or (i == 0 and path in (paths[0], paths[-1]))
@@ -77,12 +78,17 @@ def quantities_of(name: str) -> list[str]:
 def roles_of(name: str) -> list[Role]:
     """Roles whose words stand in a name, whole words first, then in their order; long words also inside others.
 
-    Of an outer winding the winding: words for outside mean the air only where no part is named.
+    Of an outer winding the winding, and of the room of a test bed the room: words for outside and for a test bed come
+    last.
     """
     words = tokens(name)
     hits = {}
     for role, terms in ROLES.items():
-        at = [(w in OUTER, w not in terms, i) for i, w in enumerate(words) if w in terms or _inside(w, terms)]
+        at = [
+            (w in OUTER or role is Role.TEST_BED, w not in terms, i)
+            for i, w in enumerate(words)
+            if w in terms or _inside(w, terms)
+        ]
         if at:
             hits[role] = min(at)
     if not hits and OUTSIDE.search(name):
