@@ -13,13 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Ints
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
 Array = NDArray[np.float64]
 ALPHA_AL = 1.0 / 245.0  # 1/K at 20 degC, cast aluminium: 1 / (225 + 20), IEC 60034-2-1
 RATIOS = 1e-6, 1e3  # i_q / i_d: from no load to far beyond pull-out, which lies below 1 / leakage factor
-TINY = 1e-30  # V, in place of none at all
+STEPS = 64  # of the ratio, a third of it each, and closer where the field stands still: in between is one maximum
+NEAR, APART = np.geomspace(1e-3, 1.0, 30), 0.7  # of a logarithm; maxima are further apart
+TINY = 1e-30  # V or N m, in place of none at all
 
 
 @dataclass(frozen=True)
@@ -114,9 +117,36 @@ class InductionMachine:
             )
             return np.minimum(np.minimum(volts, amperes), self.magnetising)
 
-        low, high = np.full(demand.shape, np.log(RATIOS[0])), np.full(demand.shape, np.log(RATIOS[1]))
-        pull_out = np.exp(highest(lambda x: 2.0 * np.log(np.maximum(most(np.exp(x)), TINY)) + x, low, high))
-        ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - target, np.zeros(demand.shape), pull_out)
+        def rough(x: Array) -> Array:
+            """Torque at a logarithm of the ratio."""
+            return self.torque(most(np.exp(x)), np.exp(x) * most(np.exp(x)))
+
+        # A machine that brakes can have two maxima, the second close to where its field stands still.
+        still = self.slip_speed(np.ones(n.shape), np.ones(n.shape), Tc) / np.maximum(
+            np.abs(n) * self.pole_pairs * RPM, TINY
+        )
+        near = np.concatenate([-NEAR, [0.0], NEAR])
+        usual = np.linspace(np.log(RATIOS[0]), np.log(RATIOS[1]), STEPS)
+        steps = np.sort([*(np.full(n.shape, x) for x in usual), *(x - np.log(still) for x in near)], axis=0)
+        torques = np.array([rough(x) for x in steps])
+
+        def at(k: Ints) -> Array:
+            return np.take_along_axis(steps, np.clip(k, 0, len(steps) - 1)[None], 0)[0]
+
+        def summit(k: Ints) -> tuple[Array, Array]:
+            """The maximum beside a step, and its place."""
+            x = highest(lambda x: np.log(np.maximum(rough(x), TINY)), at(k - 1), at(k + 1))
+            return rough(x), x
+
+        reach = torques >= target
+        one = np.argmax(torques, axis=0)
+        two = np.argmax(np.where(np.abs(steps - at(one)) > APART, torques, -np.inf), axis=0)
+        (most_one, x_one), (most_two, x_two) = summit(one), summit(two)
+        second = most_two > most_one
+        reached = np.where(reach.any(axis=0), np.argmax(reach, axis=0), np.where(second, two, one))
+        first = np.where(reach.any(axis=0), at(reached), np.where(second, x_two, x_one))
+        start = np.where(reached > 0, np.exp(at(reached - 1)), 0.0)
+        ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - target, start, np.exp(first))
         return most(ratio), sign * ratio * most(ratio)
 
 

@@ -15,16 +15,23 @@ def export_observer(
     import numpy as np
 
     from extras.monitor.observer_code import code_writer, observer_files, observer_model
-    from extras.monitor.rows.observing import chosen, designed
+    from extras.monitor.rows.observing import chosen, designed, less_sure, model_gap, taught_tests
     from thermoscope.plugin import model_of, standing_reference
 
     with progress() as tell:
-        folder = open_case(case, tell).small  # a controller's memory is short
+        whole = open_case(case, tell)
+        folder = whole.small  # a controller's memory is short
+        looks, of_whole = (code_writer().outputs(model_of(f)[0], f, limits) for f in (folder, whole))
+        gap: dict[str, float] = {}
+        if folder is not whole:
+            tell("small network beside the large one")
+            rows = [{o.name: o.row for o in each} for each in (of_whole, looks)]
+            gap = model_gap([model_of(whole), model_of(folder)], taught_tests(whole), rows)
+            folder = less_sure(folder, gap)
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
         sensors = chosen([*channels.values()], names, str(folder.settings.path))
         design = designed(folder, tell)
         tell("writing the observer")
-        looks = code_writer().outputs(model_of(folder)[0], folder, limits)
         filters = [design.as_learned(c) for c in sensors]
         of = observer_model(
             design.process,
@@ -48,7 +55,10 @@ def export_observer(
         "sensors": [c.name for c in sensors],
         "missing_heat": of.process.bodies,
         "outputs": [o.name for o in looks],
+        "small_network_K": gap,
     }
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
+    if gap:
+        sentence += f" Its small network is within {max(gap.values()):.2g} K (rms) of the large one in the calibration."
     give(document, target, lambda: Summary(sentence, [str(p) for p in paths], "--json FILE"))
     return 0

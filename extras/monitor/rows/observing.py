@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,24 +14,28 @@ from extras.monitor.observer.learning import Design, Lesson, design_of, narrowed
 from extras.monitor.observer.process import bodies_of
 from extras.monitor.observer.process_noise import most_doubtful, of_doubt
 from extras.monitor.rows.live_rows import Rows
-from thermoscope import InputError, Record
+from thermoscope import InputError, Network, Record, simulate
 from thermoscope.plugin import (
     CLOCK,
     Array,
     Channel,
     Folder,
+    Row,
+    Test,
     cache_folder,
     case_key,
     model_of,
     one_blas_thread,
     recalled,
+    record,
     store,
     suggestion,
 )
 from thermoscope.plugin import LAW_RUNNING as RUNNING
 from thermoscope.plugin import CaseProgress as Progress
 
-LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
+LAYOUT = 3  # of a kept file: a change here makes old ones be left alone
+Model = tuple[Network, Mapping[str, float]]  # and the values of its parameters
 
 
 @one_blas_thread
@@ -38,8 +43,8 @@ def designed(folder: Folder, progress: Progress) -> Design:
     """What the calibration tests taught; from the cache where this very case was looked at before."""
     network, values = model_of(folder)
     network = narrowed(network, values, folder.case)
-    tests = [t for t in folder.case.fitted if t.role == "calibrate"]
-    file = cache_folder() / f"observer-{LAYOUT}-{case_key(folder)}.npz"
+    tests = taught_tests(folder)
+    file = cache_folder() / f"observer-{LAYOUT}-{len(network.states)}-{case_key(folder)}.npz"  # large or small
     cached = recalled(file, _from_cache)
     if cached is not None:
         return design_of(network, values, cached, tests, folder.case.doubt)
@@ -50,6 +55,38 @@ def designed(folder: Folder, progress: Progress) -> Design:
     np.savez_compressed(out, bodies=np.array(bodies), table=table, constants=lesson.constants)
     store(file, out.getvalue())
     return design_of(network, values, lesson, tests, folder.case.doubt)
+
+
+def taught_tests(folder: Folder) -> list[Test]:
+    """What an observer learns from."""
+    return [t for t in folder.case.fitted if t.role == "calibrate"]
+
+
+def model_gap(models: Sequence[Model], tests: Iterable[Test], rows: Sequence[Mapping[str, Row]]) -> dict[str, float]:
+    """Temperature -> root mean square (K) along some tests of what two models of one machine predict apart.
+
+    rows : of each of the two models, temperature -> its row
+    """
+    names = [name for name in rows[0] if name in rows[1]]
+    apart = [np.zeros((0, len(names)))]
+    for test in tests:
+        a, b = (
+            simulate(network, record(test, {}), values, [looks[n] for n in names]).y
+            for (network, values), looks in zip(models, rows, strict=True)
+        )
+        apart.append(a - b)
+    every = np.concatenate(apart)
+    return dict(zip(names, np.sqrt(np.mean(every**2, axis=0)).tolist(), strict=True)) if every.size else {}
+
+
+def less_sure(folder: Folder, gap: Mapping[str, float]) -> Folder:
+    """The folder whose sensors are off by a gap (K rms) as well: what the filter is told of a reading's error."""
+
+    def one(c: Channel) -> Channel:
+        return replace(c, sigma_K=float(np.hypot(c.sigma_K, gap.get(f"sensor {c.name}", 0.0))))
+
+    tests = tuple(replace(t, channels=tuple(map(one, t.channels))) for t in folder.case.tests)
+    return replace(folder, case=replace(folder.case, tests=tests))
 
 
 def _from_cache(file: Path) -> Lesson:

@@ -1,9 +1,12 @@
 """The observer in C: the estimates of Python, few bytes, no allocation."""
 
+import json
+import re
 import shutil
 import subprocess
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,16 +15,21 @@ from small_case import small_case
 from watched import run
 
 from extras.export.model import Output
+from extras.monitor.commands import observer as command
 from extras.monitor.observer import ProcessNoise, observer
 from extras.monitor.observer.process import Process, bodies_of
 from extras.monitor.observer.process_noise import of_doubt
 from extras.monitor.observer_code import MOST_BYTES, observer_files, observer_model
 from geom.errors import InputError
-from measured.case import Reference
+from lumped.integration.simulate import simulate
+from lumped.model.network import Network
+from lumped.transfer.laws import Fixed
+from measured.case import LowFidelity, Reference
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import mean_rows
 from validation.bands import parameter_posterior
 from validation.comparison.error_budget import model_of
+from validation.comparison.predict import record
 from validation.parameters.reference import reference_of
 
 pytestmark = pytest.mark.heavy
@@ -30,6 +38,7 @@ WITHIN_K = 0.05  # with the covariance in single precision
 SAME_K = 1e-6  # and in double: the same arithmetic
 DOUBLE = ("-DTHERMAL_COVARIANCE=double",)
 BIAS_K = (0.2, -0.1, 0.3)  # what the sensors were learned to read too much
+NONE = SimpleNamespace(sections=(), points=())  # of a machine and a mesh: the key of what is kept looks at them
 CODES = {"": 0, "lost": 1, "frozen": 2, "drifting": 3}
 
 
@@ -113,3 +122,38 @@ def test_the_code_is_clean_c99_without_allocation(made, tmp_path):
     assert done.returncode == 0, done.stderr
     used = subprocess.run(["nm", "-u", "thermal_observer.o"], cwd=tmp_path, capture_output=True, text=True).stdout
     assert not {"malloc", "calloc", "realloc", "free"} & set(used.split())
+
+
+@dataclass(frozen=True)
+class TwoNetworks:
+    """What a folder has where a machine file was built."""
+
+    network: Network
+    small: Network
+    machine: object
+    mesh: object
+
+
+def test_sensors_of_a_small_network_are_as_unsure_as_it_is_off_the_large_one(tmp_path, monkeypatch):
+    """Links that are half as good again stand for shapes that are left out; the C code is told, and the document."""
+    folder = load_case(small_case(tmp_path, strength=0.0))
+    large = folder.case.model.network
+    links = tuple(replace(x, law=Fixed(1.5 * x.law.value)) if x.name == "link:winding-yoke" else x for x in large.links)
+    small = replace(large, links=links)
+    rows = {(t.name, c.name): c.row for t in folder.case.tests for c in t.channels}
+    case = replace(folder.case, low=LowFidelity(large, small, rows))
+    both = replace(folder, case=case, built=TwoNetworks(large, small, NONE, NONE))
+    monkeypatch.setattr(command, "open_case", lambda name, tell: both)
+    assert command.export_observer("three", tmp_path, {}, (), str(tmp_path / "said.json")) == 0
+
+    one = next(t for t in case.tests if t.role == "calibrate")
+    looks = [c.row for c in one.channels]
+    apart = simulate(large, record(one, {}), {}, looks).y - simulate(small, record(one, {}), {}, looks).y
+    off = np.sqrt(np.mean(apart**2, axis=0))
+    assert off[0] > 1.0  # the winding's, else nothing is shown
+    told = re.search(r"SENSOR_SD\[\] = \{(.*?)\}", (tmp_path / "thermal_observer_data.h").read_text())[1]
+    sigma = np.array([float(x) for x in told.split(",")])
+    assert sigma == pytest.approx(np.hypot([c.sigma_K for c in one.channels], off), rel=1e-6)
+    gap = json.loads((tmp_path / "said.json").read_text())["small_network_K"]
+    assert [gap[f"sensor {c.name}"] for c in one.channels] == pytest.approx(off.tolist(), rel=1e-6)
+    assert gap["winding"] == pytest.approx(off[0], rel=1e-6)
