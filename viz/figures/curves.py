@@ -15,13 +15,16 @@ from validation.comparison.uncertainty import RULE
 from viz.colours import LIGHT, ORANGE, VERDICT
 from viz.data import Comparison, short
 from viz.figures import paper
-from viz.labels import end_labels
+from viz.labels import Dash, end_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from measured.case import Channel
+
+# With more lines than anyone follows in one colour each has dashes of its own, up to this many kinds.
+DASHES: tuple[Dash, ...] = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (6, 1, 1, 1, 1, 1)))
 
 
 @paper.styled
@@ -59,11 +62,18 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     (t, unit), thin = comparison.clock, comparison.thin
     shade(ax, comparison)
     curves = [comparison.residual_curve(channel) for channel in channels]
-    for c in curves:
-        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6)
+    dashes = [DASHES[i % len(DASHES)] if len(curves) > len(DASHES) else "-" for i in range(len(curves))]
+    for c, dash in zip(curves, dashes, strict=True):
+        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6, ls=dash)
         alone(ax, t, c.y, c.colour)
     ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
-    end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves])
+    end_labels(
+        ax,
+        ends,
+        [c.name for c in curves],
+        [c.colour for c in curves],
+        dashes=dashes if len(curves) > len(DASHES) else (),
+    )
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(
