@@ -56,7 +56,7 @@ class ProgressBar:
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
     loop : start of a loop in the stage (s), part of it that is done;  share : on the line;  share_s : when
-    cpu : s that this process has computed, rising;  begun : clock and cpu at the first stage
+    cpu : s that this process has computed, rising;  start : clock and cpu at the first stage
     """
 
     last: dict[str, float]
@@ -74,7 +74,7 @@ class ProgressBar:
     share_s: float = 0.0
     same_case: bool = True
     cpu: Callable[[], float] = time.process_time
-    begun: tuple[float, float] = (0.0, 0.0)
+    start: tuple[float, float] = (0.0, 0.0)
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage.
@@ -87,7 +87,7 @@ class ProgressBar:
             return False
         if not (self.now or self.took):
             self.share_s = self.clock()
-            self.begun = (self.share_s, self.cpu())
+            self.start = (self.share_s, self.cpu())
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -169,7 +169,7 @@ class ProgressBar:
 
     def _busy(self) -> float:
         """How much longer than its own work this run takes, because others compute too."""
-        passed, computed = self.clock() - self.begun[0], self.cpu() - self.begun[1]
+        passed, computed = self.clock() - self.start[0], self.cpu() - self.start[1]
         return max(passed / computed, 1.0) if computed > PACED_S else 1.0
 
     def _done(self, here: float) -> float:
