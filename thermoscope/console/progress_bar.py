@@ -40,6 +40,7 @@ PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 BUILDING = {"mesh", "conduction", "network", "field", "laws", "what", "error", "checking"}  # what is made once and kept
 PREPARING = BUILDING | {"reading", "preparing", "estimating"}
 RUNS = 0.7  # power: where a model runs in a fiftieth of the time, all that fits it takes a fifteenth (tclab, 200 tests)
+PATIENCE_S = 10.0  # shorter work may say nothing of its time
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -139,11 +140,17 @@ class ProgressBar:
         rest += self._pace(took) * later
         spent, instant = here + sum(self.took.values()), self.clock()
         worth = max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) >= self.shortest_s
-        if not (worth and (self.now or self.took)):  # a bar is drawn before its first stage
+        if not (worth and (self.now or self.took)) or self._unknown():  # a bar is drawn before its first stage
             return None
         passed, self.share_s = instant - self.share_s, instant
         self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
         return self.share, rest
+
+    def _unknown(self) -> bool:
+        """Nothing says yet how large a case is that this computer has not seen: for some seconds nothing is said."""
+        early = _word(self.now) in ("reading", "preparing", "estimating")
+        building = any(_word(s) in BUILDING for s in self.took)
+        return early and not building and not self.same_case and self.clock() - self.start[0] < PATIENCE_S
 
     def _pace(self, took: Mapping[str, float]) -> float:
         """What is still to come over what it took the last time, by the stages so far and what each took (s).
