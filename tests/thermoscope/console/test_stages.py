@@ -220,8 +220,8 @@ def test_a_busy_computer_slows_every_stage_of_a_first_run():
 
 
 def test_of_a_small_case_nothing_is_said_before_its_model_ran():
-    """A fiftieth of the usual for a run of the model: what follows takes a fifteenth, not what it usually takes."""
-    usual = {"reading": 0.6, "preparing": 10.0, "estimating": 6.0, "looking": 60.0}
+    """An eighth of the usual for a run of the model: what follows takes a twelfth, not what it usually takes."""
+    usual = {"reading": 0.6, "preparing": 10.0, "estimating": 1.0, "looking": 60.0}
     clock = Clock()
     stages = ProgressBar(usual, clock, same_case=False)
     for word, seconds in (("reading a", 0.1), ("preparing", 0.7), ("estimating", 0.12)):
