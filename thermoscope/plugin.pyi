@@ -167,7 +167,6 @@ from measured.importing.draft import (
 from measured.importing.case_files import imported_table as imported_table, read_timed as read_timed
 from measured.importing.guess import assigned as assigned, guesses as guesses
 from measured.importing.target import Target as Target, target_of as target_of
-from measured.recordings.csv_file import read_csv as read_csv
 from measured.recordings.data_table import (
     HEADER as HEADER,
     DataTable as DataTable,
@@ -178,6 +177,7 @@ from measured.recordings.data_table import (
 from measured.recordings.electrical import meter_of as meter_of, saturation_of as saturation_of
 from measured.recordings.formats import (
     SUFFIXES as SUFFIXES,
+    read_csv as read_csv,
     read_recording as read_recording,
     recording as recording,
     recording_pieces as recording_pieces,

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
+from measured.headers.layout import MISSING
 from measured.headers.words import VOCABULARY
-from measured.recordings.data_table import MISSING
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is no decimal sign.

@@ -4,45 +4,23 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
 
 from geom.errors import InputError
 from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit
+from measured.headers.layout import Layout, Row
 from measured.headers.words import is_time, quantities_of, roles_of
 
 SAMPLE = 2000  # rows that are enough to find the table
-FEW = 24  # rows that are enough where the header is nearly always the first
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
 TALLEST = 8  # rows of names, tags, kinds and units over the readings
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
-
-Row = Sequence[object]
-
-
-@dataclass(frozen=True)
-class Layout:
-    """names, units : one per column, "" where the file gives none;  first : row where the readings begin
-
-    width : columns;  preamble : rows before the names;  header : row of the names, -1 where the file gives none
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    first: int
-    width: int
-    preamble: int = 0
-    header: int = -1
-
-    @property
-    def units_by_name(self) -> dict[str, str]:
-        """Name -> unit, of the columns that have one in a row under their names."""
-        return {name.strip(): unit for name, unit in zip(self.names, self.units, strict=True) if unit}
 
 
 def layout(rows: Sequence[Row], where: str) -> Layout:
@@ -82,31 +60,32 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     width = len(names) if len(names) > width else width
     names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
-    if above and len(set(names)) < len(names):  # names of groups over those of columns
-        groups = accumulate(above[-1], lambda group, cell: cell or group)  # merged cells are of the first one's group
+    if above and any(above[-1][width // 2 :]) and len(set(names)) < len(names):  # names of groups over those of columns
+        # Merged cells are of the group of the first of them.
+        groups: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
         names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
     if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
         labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
         late = next((labels.index(c) - j for row in above for j, c in enumerate(row) if c and c in labels), 0)
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
-    written = _padded(rows[units] if units is not None else [], width)
-    return Layout(tuple(names), tuple(written), first, width, block[0], header)
+    unit_cells = _padded(rows[units] if units is not None else [], width)
+    return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
 
 
 def first_row_layout(rows: Sequence[Row], where: str) -> Layout:
     """The layout of a table that may be all words or a row or two: the first row is its header where it names every
     column, or where no readings are found. No row under the header and its units is left out."""
     try:
-        found = layout(rows[:FEW], where)
+        plan = layout(rows, where)
     except InputError:
-        found = Layout((), (), 1, 0)
-    under = found.header + 1
-    units = found.units if under < found.first and _all_units(rows[under]) else ()
-    if found.header > 0 and sum(bool(str(c or "").strip()) for c in rows[0]) < found.width:
-        return replace(found, units=units or ("",) * found.width, first=under + bool(units))
+        plan = Layout((), (), 1, 0)
+    under = plan.header + 1
+    units = plan.units if under < plan.first and _all_units(rows[under]) else ()
+    if plan.header > 0 and sum(bool(str(c or "").strip()) for c in rows[0]) < plan.width:
+        return replace(plan, units=units or ("",) * plan.width, first=under + bool(units))
     names = [str(c or "") for c in rows[0]]
-    units = units if found.header == 0 else ()
+    units = units if plan.header == 0 else ()
     return Layout(tuple(names), tuple(_padded(units, len(names))), 1 + bool(units), len(names), header=0)
 
 

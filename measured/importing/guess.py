@@ -33,8 +33,7 @@ from measured.importing.clock import is_second_clock
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
-from measured.recordings.tables import LARGEST, SWITCHED
-from measured.recordings.units import QUANTITIES, ROOM_F, ROOM_K, converted
+from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
 Array = NDArray[np.float64]
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
@@ -102,10 +101,10 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 def _read(source: Source, every: list[Guess]) -> list[Guess]:
     """Without the temperatures of parts that a model made, where others were read."""
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
-    made = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])} and roles_of(label)}
-    if len(made) == len(hot):
+    models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])} and roles_of(label)}
+    if len(models) == len(hot):
         return every
-    return [Guess(g.column, "", doubt="modelled, not read") if g.column in made else g for g in every]
+    return [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:

@@ -8,7 +8,7 @@ import io
 import re
 import zlib
 from codecs import getincrementaldecoder
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain, islice
@@ -21,32 +21,26 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from geom.limits import COLUMNS
 from geom.recording_bounds import CHUNK, check_text, timed
-from measured.headers.rows import FEW, Layout, first_row_layout
-from measured.recordings.data_table import Column, DataTable, as_number, is_missing
+from measured.headers.layout import Layout, Row
+from measured.recordings.data_table import Column, as_number, is_missing
 
 COMMA, QUOTE, LF, CR = b',"\n\r'
 NAN = np.frombuffer(b"nan", np.uint8)
 MANY = "as many as names: decimal commas become points"
+Finder = Callable[[Sequence[Row], str], Layout]
+HEAD = 24  # rows that are enough where the header is nearly always the first
 BLOCK = 2**20  # bytes that are read at once; csv takes ten times as long for one as NumPy
 
 
-def read_csv(file: Path) -> DataTable:
-    """The table of a CSV file under its own header."""
-    plan, line, parts = csv_pieces(file)
-    columns = [*parts]
-    pairs = ((name, _joined([part[j] for part in columns])) for j, name in enumerate(plan.names))
-    return DataTable.of(pairs, file, line=line, units=plan.units_by_name)
-
-
-def csv_pieces(file: Path, size: int = BLOCK) -> tuple[Layout, int, Iterator[Sequence[Any]]]:
+def csv_pieces(file: Path, find: Finder, size: int = BLOCK) -> tuple[Layout, int, Iterator[Sequence[Any]]]:
     """Where the table of a CSV file begins, the line of its first row, and its cells column by column, so many bytes at
-    once."""
+    once.  find : tells from the first rows and the name of the file where the table begins"""
     blocks = cut_blocks(_checked(file, size), size)
     first = next(blocks, b"").removeprefix(b"\xef\xbb\xbf")
     if not first.strip():
         raise InputError("the file is empty: it holds no row", str(file), "a header line and rows of numbers")
     with _readable(file):
-        plan, start, line = _layout(file, first)
+        plan, start, line = _layout(file, find, first)
     least = max((i for i, name in enumerate(plan.names, 1) if name.strip()), default=0)
 
     def pieces() -> Iterator[Sequence[Any]]:
@@ -83,7 +77,7 @@ class Body:
     def columns(self, content: bytes) -> list[Any]:
         """All cells, column by column: numbers, or every cell of a column that has a word in it."""
         parts = [*self.pieces(cut_blocks([content]), 1)]
-        return [_joined([part[j] for part in parts]) for j in range(self.width)]
+        return [joined_parts([part[j] for part in parts]) for j in range(self.width)]
 
     def pieces(self, blocks: Iterator[bytes], line: int) -> Iterator[Sequence[Any]]:
         """The cells of whole lines.  line : that of the first of them"""
@@ -191,7 +185,7 @@ def _numeric(cells: list[str]) -> list[str] | Column:
     return np.array([values[cell] for cell in cells], float)
 
 
-def _joined(parts: Sequence[Any]) -> Any:
+def joined_parts(parts: Sequence[Any]) -> Any:
     """One column of the parts of all blocks."""
     if any(isinstance(part, list) for part in parts):
         return [cell for part in parts for cell in part]
@@ -205,12 +199,12 @@ def in_rows(pieces: Iterator[Sequence[Any]], most: int) -> Iterator[Sequence[Any
         while len(rest[0]) >= most:
             yield [column[:most] for column in rest]
             rest = [column[most:] for column in rest]
-        rest = rest if part is None else [_joined(both) for both in zip(rest, part, strict=True)]
+        rest = rest if part is None else [joined_parts(both) for both in zip(rest, part, strict=True)]
     if len(rest[0]):
         yield rest
 
 
-def _layout(file: Path, content: bytes) -> tuple[Layout, int, int]:
+def _layout(file: Path, find: Finder, content: bytes) -> tuple[Layout, int, int]:
     """Where the table begins, by row, by byte, and by line.
 
     InputError where the first row has more values than there are names.
@@ -219,10 +213,10 @@ def _layout(file: Path, content: bytes) -> tuple[Layout, int, int]:
         raise InputError("its lines end with CR alone", str(file), "lines that end with LF or CR LF: save it again")
     with io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline="") as text:
         reader = csv.reader(text, skipinitialspace=True)
-        rows = [(row, reader.line_num) for row in islice(reader, FEW)]
+        rows = [(row, reader.line_num) for row in islice(reader, HEAD)]
         text.seek(0)
         COLUMNS.check(max(len(row) for row, _ in rows), f"{file} line 1", "holds")
-        plan = first_row_layout([row for row, _ in rows], str(file))
+        plan = find([row for row, _ in rows], str(file))
         lines = rows[plan.first - 1][1]
         start = sum(len(line.encode()) for line in islice(text, lines))
     for sign, name in ((";", "';'"), ("\t", "tabs")):

@@ -19,17 +19,13 @@ from numpy.typing import NDArray
 
 from geom.errors import InputError
 from lumped.schemas.reader import suggestion
+from measured.headers.layout import MISSING
 
 Array = NDArray[np.float64]
 Column = NDArray[Any]
 HEADER = 2  # line of the first row of numbers
 PIECE = 50_000  # rows that are turned into Python's numbers at once, which take ten times as much memory
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
-# As loggers, spreadsheets and statistics programs write that nothing was read.
-MISSING = frozenset(
-    {"", "na", "n/a", "#na", "#n/a", "#n/a n/a", "<na>", "null", "none"}
-    | {"nan", "-nan", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan"}
-)
 SWITCH = {"true": True, "false": False}
 
 

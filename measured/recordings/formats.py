@@ -25,7 +25,7 @@ from geom.plugins import plugins
 from geom.recording_bounds import CHUNK, check_archive, check_shape, check_size, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.headers.rows import first_row_layout
-from measured.recordings.csv_file import csv_pieces, in_rows, read_csv
+from measured.recordings.csv_file import HEAD, csv_pieces, in_rows, joined_parts
 from measured.recordings.data_table import DataTable
 
 Array = NDArray[np.float64]
@@ -116,12 +116,20 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
     return table
 
 
+def read_csv(file: Path) -> DataTable:
+    """The table of a CSV file under its own header."""
+    plan, line, parts = csv_pieces(file, first_row_layout)
+    columns = [*parts]
+    pairs = ((name, joined_parts([part[j] for part in columns])) for j, name in enumerate(plan.names))
+    return DataTable.of(pairs, file, line=line, units=plan.units_by_name)
+
+
 def recording_pieces(file: Path, most: int, worksheet: str = "") -> Iterator[DataTable]:
     """A recording, at most so many rows at once: of a CSV file no more is in memory. What has another ending is one."""
     if _suffix(file) not in ("", *PLAIN):
         yield from read_recording(file, worksheet, 0).cut(most)
         return
-    plan, line, pieces = csv_pieces(file, PIECE)
+    plan, line, pieces = csv_pieces(file, first_row_layout, PIECE)
     for i, columns in enumerate(in_rows(pieces, most)):
         yield DataTable.of(zip(plan.names, columns, strict=True), file, line=line + i * most)
 
@@ -153,7 +161,7 @@ def guarded(file: Path, kind: str, package: str, read: Callable[[], Any]) -> Any
 
 def _xlsx(file: Path, worksheet: str) -> Contents:
     rows = workbook_rows(file, worksheet) or [[]]
-    plan = first_row_layout(rows, str(file))
+    plan = first_row_layout(rows[:HEAD], str(file))
     names = [name or f"column {j + 1}" for j, name in enumerate(plan.names)]
     columns = zip(*rows[plan.first :], strict=True) if rows[plan.first :] else [()] * len(names)
     return zip(names, columns, strict=True), {"line": plan.first + 1, "units": plan.units_by_name}

@@ -19,16 +19,14 @@ from measured.recordings.data_table import HEADER, DataTable, cell, is_switch, n
 from measured.recordings.formats import EPOCH, TIME, read_recording, recording
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
 from measured.recordings.sheet import Column, Recorder, Sheet
-from measured.recordings.units import QUANTITIES, converted
+from measured.recordings.units import LARGEST, QUANTITIES, SWITCHED, converted
 from measured.sensors.faults import longest_run
 
 Array = NDArray[np.float64]
 GAP, USUAL = 3.5, 95  # times the usual step; percentile of all: rows of up to twenty signals may come in bursts
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
-SWITCHED = ("share", "fraction")  # what true and false can be
 LEAST = 3  # rows of a test
 IN_GAPS = "inputs are drawn straight across, nothing is compared there"
-LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 
 
 @dataclass(frozen=True)
@@ -196,9 +194,9 @@ def _window(time: Array, sheet: Sheet, file: Path) -> slice:
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
-def _other_unit(column: Column, written: str, file: Path) -> list[str]:
+def _other_unit(column: Column, text: str, file: Path) -> list[str]:
     """A note where the unit that the file gives, under its header or with its channels, is not that of the sheet."""
-    unit, of, both = unit_of(written), column.quantity, np.array([0.0, 1.0])
+    unit, of, both = unit_of(text), column.quantity, np.array([0.0, 1.0])
     if unit not in QUANTITIES[of].units or np.allclose(converted(both, of, unit), converted(both, of, column.unit)):
         return []
     what = f"its file says {unit}; {column.unit} is taken, as the sheet says"

@@ -48,6 +48,8 @@ MEMORY_UNIT = {
 
 ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 LONGEST = 40  # characters
+SWITCHED = ("share", "fraction")  # what true and false can be
+LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any
 

@@ -39,7 +39,8 @@ PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 # Stages whose cost is that of files and meshes: they say little of how long fits take, which say much of each other.
 BUILDING = {"mesh", "conduction", "network", "field", "laws", "what", "error", "checking"}  # what is made once and kept
 PREPARING = BUILDING | {"reading", "preparing", "estimating"}
-RUNS = 0.7  # power: where a model runs in a fiftieth of the time, all that fits it takes a fifteenth (tclab, 200 tests)
+RUNS = 1.2  # power: where a model runs in a sixth of the time, all that fits it takes a tenth (tclab beside hust-ipmsm)
+PATIENCE_S = 10.0  # shorter work may say nothing of its time
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
@@ -56,7 +57,7 @@ class ProgressBar:
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
     loop : start of a loop in the stage (s), part of it that is done;  share : on the line;  share_s : when
-    cpu : s that this process has computed, rising;  begun : clock and cpu at the first stage
+    cpu : s that this process has computed, rising;  start : clock and cpu at the first stage
     """
 
     last: dict[str, float]
@@ -74,7 +75,7 @@ class ProgressBar:
     share_s: float = 0.0
     same_case: bool = True
     cpu: Callable[[], float] = time.process_time
-    begun: tuple[float, float] = (0.0, 0.0)
+    start: tuple[float, float] = (0.0, 0.0)
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage.
@@ -87,7 +88,7 @@ class ProgressBar:
             return False
         if not (self.now or self.took):
             self.share_s = self.clock()
-            self.begun = (self.share_s, self.cpu())
+            self.start = (self.share_s, self.cpu())
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -139,11 +140,17 @@ class ProgressBar:
         rest += self._pace(took) * later
         spent, instant = here + sum(self.took.values()), self.clock()
         worth = max(sum(self.last.values()), (spent + rest) * (self.part > 0.0)) >= self.shortest_s
-        if not (worth and (self.now or self.took)):  # a bar is drawn before its first stage
+        if not (worth and (self.now or self.took)) or self._unknown():  # a bar is drawn before its first stage
             return None
         passed, self.share_s = instant - self.share_s, instant
         self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
         return self.share, rest
+
+    def _unknown(self) -> bool:
+        """Nothing says yet how large a case is that this computer has not seen: for some seconds nothing is said."""
+        early = _word(self.now) in ("reading", "preparing", "estimating")
+        building = any(_word(s) in BUILDING for s in self.took)
+        return early and not building and not self.same_case and self.clock() - self.start[0] < PATIENCE_S
 
     def _pace(self, took: Mapping[str, float]) -> float:
         """What is still to come over what it took the last time, by the stages so far and what each took (s).
@@ -169,7 +176,7 @@ class ProgressBar:
 
     def _busy(self) -> float:
         """How much longer than its own work this run takes, because others compute too."""
-        passed, computed = self.clock() - self.begun[0], self.cpu() - self.begun[1]
+        passed, computed = self.clock() - self.start[0], self.cpu() - self.start[1]
         return max(passed / computed, 1.0) if computed > PACED_S else 1.0
 
     def _done(self, here: float) -> float:

@@ -9,8 +9,9 @@ import pytest
 from geom.errors import InputError
 from measured.importing.clock import clock_of
 from measured.importing.source import read_source
-from measured.recordings.csv_file import BLOCK, read_csv
+from measured.recordings.csv_file import BLOCK
 from measured.recordings.data_table import csv_text, numbers
+from measured.recordings.formats import read_csv
 from measured.recordings.sheet import read_sheet
 from measured.recordings.tables import load_table
 

@@ -427,6 +427,14 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         {n: [*S[c]] for n, c in zip(("time_s", "winding_C", "frame_C", "room_C", "I_A"), "tWHAI")}
     ),
     "millivolts beside degrees": of((*PLAIN, "T_winding [mV]"), "tWHAIW"),
+    "a path above names that repeat": "File,C:/m.csv\nStep [ms],5000\n"
+    + table("Name,Twdg,Name,Thsg,Name,Tamb,Name,Irms", *(S[c] for c in "tWtHtAtI")),
+    "topics and payloads": "ts,topic,payload\n"
+    + "".join(
+        f"{5 * k},{topic},{S[c][k]:.2f}\n"
+        for k in range(len(S["t"]))
+        for c, topic in zip("WHAI", ("motor/winding", "motor/frame", "hall/ambient", "motor/current"))
+    ),
     "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
 }
 
