@@ -16,7 +16,6 @@ import datetime
 import json
 import os
 import platform
-import re
 import sys
 import tempfile
 import time
@@ -34,6 +33,7 @@ from lumped.build.network_size import NetworkSize, smallest_network
 from lumped.build.pipeline import Meshing
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
+from scripts.published import publish
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -181,13 +181,6 @@ def table(rows: list[Row]) -> str:
     return "\n".join(lines)
 
 
-def put(text: str, page: Path) -> None:
-    """Replace what stands between the page's markers."""
-    begin, end = "<!-- table:begin -->", "<!-- table:end -->"
-    whole = page.read_text()
-    page.write_text(re.sub(f"{begin}.*{end}", f"{begin}\n{text}\n{end}", whole, flags=re.DOTALL))
-
-
 def kept(file: str | None, machines: list[str]) -> list[Row]:
     """Rows of an earlier run that are not measured again."""
     if file in (None, "-") or not Path(str(file)).exists():
@@ -221,7 +214,7 @@ def main() -> None:
     elif given.json:
         Path(given.json).write_text(json.dumps(document, indent=1))
     if given.table:
-        put(table(rows), Path(given.table))
+        publish(Path(given.table), "accuracy", table(rows))
 
 
 if __name__ == "__main__":

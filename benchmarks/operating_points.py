@@ -4,8 +4,8 @@
 
 Every film of every library machine - gap, jackets, outer faces with fins and a cowl's air, end space, a fan's air - and
 of circuits of one and of several branches with every coolant, at random speeds (0 to 3 times the rated one), flows (0
-to 4 times), coolant from -40 to 130 degC where it is a liquid, air from -40 to 150 degC and, of declared films, up to
-4,000 m. The network's coefficient is held against the correlation at the true state; beside it the shares of branches
+to 4 times), coolant from -40 to 130 degC where it is a liquid, air from -40 to 150 degC and up to 4,000 m high. The
+network's coefficient is held against the correlation at the true state; beside it the shares of branches
 against equal pressure drop, and at rest the heat in against the heat out. Beyond its end every table has to warn.
 """
 
@@ -15,6 +15,7 @@ import argparse
 import json
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -42,7 +43,7 @@ from lumped.integration.steady import steady
 from lumped.machine.air import Ways, gap_film, stirred
 from lumped.machine.bases import on_every_base
 from lumped.machine.films import Surroundings, face_films, surroundings
-from lumped.machine.jackets import FLOW, channel_of, jacket_film, liquid, onto_outlet
+from lumped.machine.jackets import FLOW, LIQUIDS, channel_of, jacket_film, liquid, onto_outlet
 from lumped.machine.motor import rated_inputs
 from lumped.machine.outer import Outer, cowl_of, outer_films, outer_of
 from lumped.machine.shapes import extent, fins_of
@@ -53,6 +54,7 @@ from lumped.transfer.properties import Fluid, air
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.streamed import Streamed
 from lumped.transfer.terms_value import coefficient
+from lumped.transfer.thin_air import density, thin_film, thin_stream
 from scripts.published import publish
 
 MACHINES = Path("geom/machines")
@@ -80,6 +82,7 @@ MOVING: dict[str, dict[str, float]] = {
     "end space": {},
 }
 HIGHEST_M = 4000.0
+MOVERS = ("speed_rpm", "fan_flow_m3h")
 AT_REST = ("ipmsm-48s8p-jacket", "series-dc-100kw-air", "series-dc-100kw-jacket-two", "tefc-industrial")
 STEADY = 20  # points at rest: what leaves then is what comes in, of one network for all of them
 PAGE = Path("docs/benchmarks.md")
@@ -226,19 +229,21 @@ def outside_point(machine: Machine, part: str, outer: Outer, laws: dict[str, Law
     """Still and blown air and radiation of one face, together."""
     cowl, cold, rise = cowl_of(machine), rng.uniform(-40.0, 50.0), rng.uniform(0.5, 150.0)
     hot, rpm = cold + rise, rng.uniform(0.0, 3.0) * (cowl.at_rpm if cowl else 1500.0)
-    still = outer.factor * STILL[outer.surface](outer, hot, cold)
-    blown = blown_film(machine, part, rpm, air(0.5 * (hot + cold))) if "blown" in laws else 0.0
-    got = sum(coefficient(law, {"speed_rpm": np.array([rpm])}, hot, cold) for law in laws.values())
+    high = rng.uniform(0.0, HIGHEST_M)
+    still = outer.factor * STILL[outer.surface](outer, hot, cold, partial(air, altitude_m=high))
+    blown = blown_film(machine, part, rpm, air(0.5 * (hot + cold), high)) if "blown" in laws else 0.0
+    thin = [law if kind == "radiation" else thin_film(law, density(high), MOVERS) for kind, law in laws.items()]
+    got = sum(coefficient(law, {"speed_rpm": np.array([rpm])}, hot, cold) for law in thin)
     return got, float(np.cbrt(still**3 + blown**3)) + radiation_film(outer.emissivity * outer.view, hot, cold)[0]
 
 
-STILL: dict[str, Callable[[Outer, float, float], float]] = {
-    "horizontal cylinder": lambda o, hot, cold: churchill_chu_cylinder(o.size, hot, cold)[0],
-    "vertical plate": lambda o, hot, cold: churchill_chu_plate(o.size, hot, cold)[0],
-    "horizontal plate": lambda o, hot, cold: (
-        0.5 * sum(mcadams_plate(o.size, hot, cold, upward=up)[0] for up in (True, False))
+STILL: dict[str, Callable[[Outer, float, float, Callable[[float], Fluid]], float]] = {
+    "horizontal cylinder": lambda o, hot, cold, of: churchill_chu_cylinder(o.size, hot, cold, of)[0],
+    "vertical plate": lambda o, hot, cold, of: churchill_chu_plate(o.size, hot, cold, of)[0],
+    "horizontal plate": lambda o, hot, cold, of: (
+        0.5 * sum(mcadams_plate(o.size, hot, cold, up, of)[0] for up in (True, False))
     ),
-    "radial fins": lambda o, hot, cold: elenbaas(o.spacing, o.size, hot, cold)[0],
+    "radial fins": lambda o, hot, cold, of: elenbaas(o.spacing, o.size, hot, cold, of)[0],
 }
 
 
@@ -274,10 +279,10 @@ def fan_split(ways: Ways, flow: float, fluid: Fluid) -> dict[str, float]:
 
 
 def split_point(ways: Ways, way: str, rng: np.random.Generator) -> Pair:
-    flow, T = rng.uniform(0.01, 4.0) * ways.fan.flow_m3_h, rng.uniform(-40.0, 50.0)
-    whole = air(T).rho * air(T).cp * flow / 3600.0
-    got = coefficient(ways.rate(way), {"fan_flow_m3h": np.array([flow])}, T, 0.0)
-    return got / whole, fan_split(ways, flow, air(T + ways.fan.air_C - 20.0))[way]
+    flow, T, high = rng.uniform(0.01, 4.0) * ways.fan.flow_m3_h, rng.uniform(-40.0, 50.0), rng.uniform(0.0, HIGHEST_M)
+    whole = air(T, high).rho * air(T).cp * flow / 3600.0
+    got = coefficient(thin_stream(ways.rate(way), density(high)), {"fan_flow_m3h": np.array([flow])}, T, 0.0)
+    return got / whole, fan_split(ways, flow, air(T + ways.fan.air_C - 20.0, high))[way]
 
 
 def duct_point(around: Surroundings, way: str, rng: np.random.Generator) -> Pair:
@@ -285,25 +290,26 @@ def duct_point(around: Surroundings, way: str, rng: np.random.Generator) -> Pair
     ways = around.ways
     assert ways is not None
     flow, hot, cold = rng.uniform(0.01, 4.0) * ways.fan.flow_m3_h, rng.uniform(-40.0, 150.0), rng.uniform(-40.0, 80.0)
-    duct, fluid = ways.ducts[way], air(0.5 * (hot + cold))
+    high = rng.uniform(0.0, HIGHEST_M)
+    duct, fluid = ways.ducts[way], air(0.5 * (hot + cold), high)
     shares = fan_split(ways, flow, fluid)
     share = shares[way] if duct.turns else 1.0 - sum(s for n, s in shares.items() if ways.ducts[n].turns)
     exact = duct_film(share * flow / 3600.0 / duct.section, duct.diameter, duct.length, fluid)[0]
-    law = face_films("poles", way, around)["axial"]
+    law = thin_film(face_films("poles", way, around)["axial"], density(high), MOVERS)
     return coefficient(law, {"fan_flow_m3h": np.array([flow])}, hot, cold), exact
 
 
 def gap_point(around: Surroundings, rng: np.random.Generator) -> Pair:
     assert around.gap is not None
-    rpm, T = rng.uniform(0.0, 3.0) * around.usual_rpm, rng.uniform(-40.0, 150.0)
-    law = gap_film(around.gap, around.usual_rpm)
-    exact = taylor_film(rpm * np.pi / 30.0, around.gap.rotor_radius, around.gap.width, air(T))[0]
+    rpm, T, high = rng.uniform(0.0, 3.0) * around.usual_rpm, rng.uniform(-40.0, 150.0), rng.uniform(0.0, HIGHEST_M)
+    law = thin_film(gap_film(around.gap, around.usual_rpm), density(high), MOVERS)
+    exact = taylor_film(rpm * np.pi / 30.0, around.gap.rotor_radius, around.gap.width, air(T, high))[0]
     return coefficient(law, {"speed_rpm": np.array([rpm])}, T, T), exact
 
 
 def jacket_point(around: Surroundings, jacket: str, rng: np.random.Generator) -> Pair | None:
     assert around.cooling is not None
-    cooling, T = around.cooling, rng.uniform(-40.0, 130.0)
+    cooling, T = replace(around.cooling, coolant=str(rng.choice(LIQUIDS))), rng.uniform(-40.0, 130.0)
     flow, wet = rng.uniform(0.0, 4.0) * cooling.flow_l_min, rng.uniform(1e-4, 1e-2)
     try:
         fluid = liquid(cooling.coolant, T)

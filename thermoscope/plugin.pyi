@@ -130,6 +130,7 @@ from lumped.transfer.properties import air as air
 from lumped.transfer.ranges import RangeWarning as RangeWarning, within_silence as within_silence
 from lumped.transfer.reversal import Direction as Direction, OneWay as OneWay
 from lumped.transfer.streamed import Streamed as Streamed
+from lumped.transfer.thin_air import density as density, thin_film as thin_film, thin_stream as thin_stream
 from lumped.transfer.terms_value import (
     coefficient as coefficient,
     loss_slope as loss_slope,

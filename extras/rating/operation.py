@@ -6,10 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import AIR, CLOCK, LIQUID, LOADS, Array, Link, Radiation, Role, Scaled, suggestion
+from thermoscope.plugin import (
+    AIR,
+    CLOCK,
+    LIQUID,
+    LOADS,
+    Array,
+    Link,
+    Radiation,
+    Role,
+    density,
+    suggestion,
+    thin_film,
+    thin_stream,
+)
 
-ISA = 2.25577e-5, 4.2559  # density over that at sea level: (1 - a h)^b, international standard atmosphere
-STILL, BLOWN = 0.5, 0.8  # h ~ density^n: Nu ~ Ra^(1/4) and Nu ~ Re^0.8
+MOVING = ("speed", "vehicle_speed", AIR)  # what moves air
 
 
 @dataclass(frozen=True)
@@ -102,14 +114,8 @@ def flows(network: Network, inputs: Mapping[str, float]) -> tuple[str, ...]:
     return tuple(n for n in inputs if network.measures(n) in (AIR, LIQUID))
 
 
-def density(altitude_m: float) -> float:
-    """Of air over that at sea level."""
-    a, b = ISA
-    return float((1.0 - a * altitude_m) ** b)
-
-
 def at_altitude(network: Network, altitude_m: float) -> Network:
-    """The network in thinner air: still films ~ density^0.5, blown ones ~ density^0.8, air streams ~ density.
+    """The network in thinner air, at the same temperatures (lumped.transfer.thin_air).
 
     Conduction, radiation and liquids stay as they are.
     """
@@ -122,8 +128,9 @@ def _thinner(network: Network, link: Link, rho: float, wet: set[str]) -> Link:
     liquid = bool(fluids & wet) or any(network.measures(r) == LIQUID for r in link.law.reads)
     if not fluids or liquid or isinstance(link.law.temperature, Radiation):
         return link
-    exponent = 1.0 if link.kind == "stream" else BLOWN if link.law.reads else STILL
-    return replace(link, law=Scaled(link.law, rho**exponent))
+    moving = [name for name in link.law.reads if network.measures(name) in MOVING]
+    thin = thin_stream(link.law, rho) if link.kind == "stream" else thin_film(link.law, rho, moving)
+    return replace(link, law=thin)
 
 
 def _fluid(network: Network, name: str) -> bool:

@@ -30,7 +30,7 @@ from lumped.transfer.streamed import Streamed
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
 # A fifth apart: straight between them to 0.1 %; no frame is hotter.
-STILL_AIR_K = tuple(np.concatenate([[0.0], [0.5], np.geomspace(1.0, 200.0, 30)]))
+STILL_AIR_K = tuple(np.concatenate([[0.0], np.geomspace(0.15, 1.0, 11)[:-1], np.geomspace(1.0, 200.0, 30)]))
 BLOWN_C = 40.0  # film temperature at which ranges are checked
 CROWDED = 0.8  # still air along axial fins, over the bare cylinder's film (assumed)
 END_SHIELD = 0.35  # a turned body shorter than this share of its diameter is a vertical plate

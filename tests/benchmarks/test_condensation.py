@@ -6,7 +6,7 @@ from dataclasses import replace
 import condensation
 import numpy as np
 import pytest
-from condensation import after_step, energy, over_loads, put, unbalanced
+from condensation import after_step, energy, over_loads, unbalanced
 from condensed.points import Pair
 
 from geom import load_machine
@@ -69,16 +69,10 @@ def rows(machine, mean):
     return out
 
 
-def test_table_has_a_line_per_machine(tmp_path):
-    text = condensation.table([*rows("b", 0.2), *rows("a", 0.1)])
-    page = tmp_path / "page.md"
-    page.write_text("before\n<!-- table:begin -->\nold\n<!-- table:end -->\nafter\n")
-    put(text, page)
-    lines = page.read_text().splitlines()
-    assert lines[0] == "before"
-    assert lines[-1] == "after"
-    assert lines[4].startswith("| a | 50000 | 300 | 0.1 / 0.2 / 0.3 |")
-    assert lines[5].startswith("| b | 50000 | 300 | 0.2 / 0.4 / 0.6 |")
+def test_table_has_a_line_per_machine():
+    lines = condensation.table([*rows("b", 0.2), *rows("a", 0.1)]).splitlines()
+    assert lines[2].startswith("| a | 50000 | 300 | 0.1 / 0.2 / 0.3 |")
+    assert lines[3].startswith("| b | 50000 | 300 | 0.2 / 0.4 / 0.6 |")
 
 
 def test_rows_of_other_machines_stay(tmp_path):

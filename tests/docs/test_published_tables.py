@@ -4,9 +4,14 @@ import re
 
 import pytest
 
+from fem.matrices.winding import homogenised
+from geom import load_machine
+from geom.description.materials import winding_conductivity
+from lumped.build.pipeline import CASE, FEW, LITTLE
 from scripts.published import FRONT, HUST, ROOT, between, demo_table
 
 CONDENSATION = (ROOT / "docs" / "condensation.md").read_text(encoding="utf-8")
+RANDOM = 5  # column of the random points, after machine, unknowns and states
 
 
 def rows(text: str, first: str) -> list[list[str]]:
@@ -65,11 +70,52 @@ def test_the_demo_table_is_bold_where_it_was_never_used():
     assert demo_table([{"stage": "start", "tests": tests}]).splitlines()[-1] == "| start | 0.26 | **1.00** |"
 
 
-def cells(marker: str) -> dict[str, list[tuple[float, float]]]:
-    """Point -> (heated, other) of each machine, from the table between a marker's begin and end."""
+def table_of(marker: str) -> list[list[str]]:
+    """Rows of cells below the head of the table between a marker's begin and end."""
     table = CONDENSATION.partition(f"<!-- {marker}:begin -->\n")[2].partition(f"<!-- {marker}:end -->")[0]
-    rows = [[c.strip() for c in line.strip("|").split("|")] for line in table.splitlines()[3:]]
-    return {row[0]: [tuple(map(float, c.split(" / "))) for c in row[1:]] for row in rows}
+    return [[c.strip() for c in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+
+
+def cells(marker: str) -> dict[str, list[tuple[float, float]]]:
+    """Point -> (heated, other) of each machine."""
+    return {row[0]: [tuple(map(float, c.split(" / "))) for c in row[1:]] for row in table_of(marker)[1:]}
+
+
+def test_every_network_of_an_accuracy_is_as_wanted():
+    """Mean, hot spot and points within 1 / 2 / 2 %, at random points 1 / 3 / 2: the page's last word on its table."""
+    assert "Wanted: 1 / 2 / 2, at random points 1 / 3 / 2." in CONDENSATION
+    assert "All are as wanted." in CONDENSATION
+    rows = table_of("accuracy")
+    assert len(rows) >= 15
+    for machine, _, _, *groups in rows:
+        for k, group in enumerate(groups):
+            limits = (1.0, 3.0 if k == RANDOM else 2.0, 2.0)
+            assert all(float(x) <= most for x, most in zip(group.split(" / "), limits, strict=True)), (machine, group)
+
+
+def test_the_page_says_how_shapes_are_learned():
+    """The settings of the network that a case runs are those of the code."""
+    low, high = CASE.film_factors
+    words = " ".join(CONDENSATION.split())
+    assert f"films between x{low:g} and x{high:g}" in words
+    assert f"All contacts x{CASE.joined_contacts[0]:g} and x{CASE.joined_contacts[1]:g} are learned" in words
+    assert f"more than {CASE.tolerance:g} of a snapshot" in words
+    assert f"less than {100 * LITTLE:g} %" in words
+    assert (CASE.random_points, CASE.favour, CASE.thin) == (6, 3.0, 6.0), "six sets, three times, six times"
+    assert f"about {FEW} means and shapes" in words
+
+
+def test_the_page_says_what_a_flat_winding_conducts():
+    """By its unit cell and by the formula, of the field coils of the series-wound machines."""
+    mixture = load_machine("series-dc-100kw").material_of("winding.field").mixture
+    said = re.search(
+        r"flat copper of (\d+) %, come to\s+([\d.]+) W/m/K instead of the formula's (\d\.\d+)", CONDENSATION
+    )
+    fill, cell, formula = map(float, said.groups())
+    assert fill == pytest.approx(100 * mixture.fill)
+    assert cell == pytest.approx(homogenised(mixture).k_r, abs=5e-4)
+    by_formula = winding_conductivity(mixture.fill, mixture.k_conductor, mixture.k_between)[0]
+    assert formula == pytest.approx(by_formula, abs=5e-4)
 
 
 def test_a_cases_network_is_within_what_is_wanted():

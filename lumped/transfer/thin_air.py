@@ -1,0 +1,86 @@
+"""Films and streams in thinner air: Reynolds number falls with density, Rayleigh number with its square.
+
+Conductivity, heat capacity and Prandtl number do not depend on pressure. So a film of air that is blown past at v is in
+air of rho times the density what it was at rho v, one of still air at a rise of D what it was at rho^2 D.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lumped.transfer.laws import (
+    CONSTANT,
+    Array,
+    FilmTable,
+    Fixed,
+    Inputs,
+    Law,
+    Power,
+    Scaled,
+    StreamTable,
+    Table,
+    TemperatureLaw,
+    WithTemperature,
+    Wrapped,
+)
+from lumped.transfer.properties import air
+from lumped.transfer.streamed import Streamed
+
+STILL = 0.5  # h ~ density^n of a declared number: Nu ~ Ra^(1/4)
+
+
+def density(altitude_m: float) -> float:
+    """Of air over that at sea level, at one temperature."""
+    return air(20.0, altitude_m).rho / air(20.0).rho
+
+
+@dataclass(frozen=True)
+class Slowed(Wrapped):
+    """Another law that sees some inputs `by` times as large."""
+
+    by: float
+    inputs: tuple[str, ...]
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        slower = {n: self.by * np.asarray(inputs[n], float) for n in self.inputs}
+        return self.base.factor({**{n: inputs[n] for n in self.reads}, **slower})
+
+
+def thin_film(law: Law, rho: float, moving: Collection[str]) -> Law:
+    """A film in air of `rho` times its density.  moving : the inputs that move air"""
+    if isinstance(law, Streamed):
+        return replace(law, table=_thin_table(law.table, rho), top=law.top / rho)
+    if isinstance(law, Wrapped):
+        inner = replace(law, base=thin_film(law.base, rho, moving))
+        return replace(inner, temperature=_thin(law.temperature, rho)) if isinstance(inner, WithTemperature) else inner
+    if isinstance(law, Fixed) and law.temperature == CONSTANT:
+        return Scaled(law, rho**STILL)
+    thin: Law = law if law.temperature == CONSTANT else WithTemperature(law, _thin(law.temperature, rho))
+    if isinstance(law.temperature, Power):
+        thin = Scaled(thin, rho ** (2.0 * law.temperature.exponent))
+    moved = tuple(name for name in law.reads if name in moving)
+    return Slowed(thin, rho, moved) if moved else thin
+
+
+def thin_stream(law: Law, rho: float) -> Law:
+    """The heat capacity rate of a volume flow; where it divides anew at every flow, it does so by Reynolds number."""
+    return Scaled(WithTemperature(law, _thin(law.temperature, rho)), rho)
+
+
+def _thin(law: TemperatureLaw, rho: float) -> TemperatureLaw:
+    if isinstance(law, StreamTable):
+        return _thin_table(law, rho)
+    if isinstance(law, FilmTable) or (isinstance(law, Table) and law.difference[0] >= 0.0):
+        return replace(law, difference=tuple(d / rho**2 for d in law.difference))
+    return law
+
+
+def _thin_table(law: StreamTable, rho: float) -> StreamTable:
+    still = (
+        None if law.still is None else replace(law.still, difference=tuple(d / rho**2 for d in law.still.difference))
+    )
+    return replace(law, shift=tuple(s - math.log(rho) for s in law.shift), still=still)
