@@ -15,7 +15,7 @@ import json
 import platform
 from pathlib import Path
 
-from hidden import sizes, temper
+from hidden import sizes, sums, temper
 from hidden.cases import SHARES, plan
 from hidden.kinds import KINDS
 from hidden.odds import reliability
@@ -41,6 +41,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--after", action="store_true", help="also add what is claimed and carry out the proposed test")
     parser.add_argument("--out", type=Path, default=None, help="folder of answers and labels, to be resumed")
     parser.add_argument("--score", action="store_true", help="only score what OUT has")
+    parser.add_argument("--sums", action="store_true", help="only ask sound machines how much doubt in sum they need")
     parser.add_argument("--sizes", action="store_true", help="measure the units of size anew and stop")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="the tables of docs/hidden-effects.md, as Markdown")
@@ -51,6 +52,10 @@ def main() -> None:
     a = arguments()
     if a.sizes:
         return sizes.write(a.kinds)
+    if a.sums:
+        file = (a.out or Path("out/hidden-sums")) / "sums.jsonl"
+        sums.run(a.seeds, a.skip, a.count, a.kinds, file)
+        return print("\n".join(sums.markdown(sums.rows(file))))
     out = a.out or Path(f"out/hidden-{a.cases.resolve().name if a.cases else a.seeds}")
     if not a.score and a.cases:
         run_folders(a.cases, out, a.classes, a.count, a.jobs, a.words)

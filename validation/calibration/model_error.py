@@ -273,6 +273,11 @@ class ModelError:
     def size(self) -> int:
         return next(iter(self.columns.values())).shape[1]
 
+    def bounded(self, most: float) -> ModelError:
+        """With the columns of each record scaled down together to `most` (K, one sigma) in sum."""
+        scaled = {key: x * min(1.0, most / max(self.sums[key], 1e-12)) for key, x in self.columns.items()}
+        return replace(self, columns=scaled)
+
     def beside(self, segment: Segment, p: int) -> Segment:
         """The segment with the model error's columns behind its first p."""
         return replace(segment, J=np.column_stack([segment.J[:, :p], self.of(segment), segment.J[:, p:]]))
@@ -309,9 +314,12 @@ def model_error(
     names = named(network, each[-1][0], doubt, sensed or tests)
     columns = {key: x for _, of in each for key, x in of.items()}
     sums = {key: total_sd(x) for key, x in columns.items()}
-    most = doubt["total"] * max(largest_rise(c) for t in sensed or tests for c in t.channels if np.isfinite(c.y).any())
-    scaled = {key: x * min(1.0, most / max(sums[key], 1e-12)) for key, x in columns.items()}
-    return ModelError(scaled, names, doubt["law"], sums)
+    return ModelError(columns, names, doubt["law"], sums).bounded(doubt["total"] * machine_rise(sensed or tests))
+
+
+def machine_rise(tests: Sequence[Test]) -> float:
+    """The largest rise (K) of any reading."""
+    return max(largest_rise(c) for t in tests for c in t.channels if np.isfinite(c.y).any())
 
 
 def total_sd(columns: Array) -> float:

@@ -26,6 +26,7 @@ from validation.inference.result import Check, Verdict
 Array = NDArray[np.float64]
 Group = tuple[int, ...]
 SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
+EXPLAINS = 0.9  # of the evidence of heat of unknown cause: a law that is off by a third leaves it a tenth
 SAME = 0.5  # of the time in either of two events is in both: such are one
 SILENT = COSTS["miss"].share / (COSTS["wrong"].share + COSTS["miss"].share)  # P(nothing) from which silence costs less
 
@@ -74,7 +75,7 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     something = 1.0 - sum(p for h, p in rows if h.nothing)
     if 1.0 - something > SILENT:
         return Decision("adequate", (), something)
-    if sum(p for h, p in rows if h.heat) > 0.5 * something:
+    if sum(p for h, p in rows if h.heat) > 0.5 * something and not catalogue_explains(hypotheses):
         return Decision("outside", (), something)
     every = [(frozenset(h.members), p) for h, p in rows]
     groups = [smallest_cover(every)]
@@ -90,6 +91,13 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
         sure = share[groups[0][0]] >= SURE
         verdict = "named" if len(groups[0]) == 1 and sure else "group"
     return Decision(verdict, tuple(groups), something)
+
+
+def catalogue_explains(hypotheses: Sequence[Weighed]) -> bool:
+    """Does something with a name explain nearly all that heat of unknown cause does?"""
+    none = next(h.nats for h in hypotheses if h.nothing)
+    named, heat = (max(h.nats for h in hypotheses if bool(h.heat) is unknown) for unknown in (False, True))
+    return named - none > EXPLAINS * (heat - none)
 
 
 def precedence(probability: float, nats: float) -> tuple[float, float]:

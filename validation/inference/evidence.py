@@ -66,7 +66,7 @@ TWIN = 0.9995  # cosine from which a calibrated parameter does the same as an ef
 ENOUGH = 0.1  # nats: evidence is read to a few tenths
 ROUNDS = 12  # steps of a calibration gone on under the model error: what nothing gains too little, all gain too much
 FURTHER = 6  # steps of one gone on under another noise
-LEADING = 60  # effects whose pairs are compared: beyond them neither of two carries weight
+PAIRS = 2000  # of most weight are kept, of all: what is left out has less than each of them
 CONTENDERS = 8  # effects whose own noise is looked at: one of them leads under any
 ABSENT = 0.02  # of its usual size: an effect this small is not there
 POWER = 0.842  # normal quantile of 80 %
@@ -410,20 +410,19 @@ def single_evidence(evidence: Evidence) -> Array:
 
 
 def pairs(evidence: Evidence, ones: Sequence[Weighed]) -> list[Weighed]:
-    """Every two of the leading causes, in proportion to the prior of each."""
+    """Every two causes, in proportion to the prior of each; those of most weight."""
     e, prior, alone = evidence, evidence.prior, single_evidence(evidence)
     usable = [h for h in ones if h.members and not e.effects[h.members[0]].whole and e.score.visible[h.members[0]]]
     usable.sort(key=lambda h: -(h.log_prior + h.log_bayes))
-    few = np.array([h.members[0] for h in usable[:LEADING]], int)
-    if few.size < 2:
-        return []
+    few = np.array([h.members[0] for h in usable], int)
     i, j = np.triu_indices(few.size, 1)
     a, b = few[i], few[j]
     every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
     log_prior = np.log(PRIOR["two"].share * prior[a] * prior[b] / every)
     more = np.maximum(alone - e.score.log_bayes(e.scale), 0.0)  # what a large amplitude gains beyond its tangent
     bayes = pair_evidence(e, a, b) + np.maximum(more[a], more[b])
-    return [Weighed((int(k), int(m)), "", float(p), float(v)) for k, m, p, v in zip(a, b, log_prior, bayes)]
+    kept = np.sort(np.argsort(-(log_prior + bayes), kind="stable")[:PAIRS])
+    return [Weighed((int(a[n]), int(b[n])), "", float(log_prior[n]), float(bayes[n])) for n in kept]
 
 
 def pair_evidence(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array:

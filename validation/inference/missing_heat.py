@@ -21,7 +21,7 @@ from lumped.model.network import Network, Parameter
 from lumped.model.sites import solids
 from lumped.transfer.laws import Fixed, Inputs
 from measured.case import Test
-from measured.doubt import FORM, PRIOR
+from measured.doubt import FORM, PRIOR, SIZES
 from measured.sensors.blocks import INSTANTS
 from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import ModelError, nodes
@@ -138,10 +138,12 @@ class Scan:
             g, rows, block = grams[name], slice(i * size[d], (i + 1) * size[d]), slice(start[d], start[d + 1])
             A[block, block], u[block], JZ[:, block] = g.ZZ[rows, rows], g.Zr[rows], g.JZ[:, rows]
         A, u = A - JZ.T @ cov @ JZ, u - JZ.T @ cov @ Jr
-        sizes = self.hypotheses[i].scale_W * 10.0 ** np.arange(-3.0, 1.5, 0.5)
+        usual = np.array(SIZES) * FORM["heat size"]  # as of an effect; the curve has whatever size fits it best
+        sizes = self.hypotheses[i].scale_W * np.concatenate([usual, 10.0 ** np.arange(-3.0, 1.5, 0.5)])
         evidences = [_evidence(A, u, sizes, root) for root in (*self.roots, self.following(i))]
         nats, q, sd = max(evidences, key=lambda x: x[0].max())
-        best, mean = nats.max(), logsumexp([x[0] for x in evidences]) - np.log(len(evidences) * sizes.size)
+        as_usual = [x[0][: usual.size] for x in evidences]
+        best, mean = nats.max(), logsumexp(as_usual) - np.log(np.size(as_usual))
         cut = [slice(a, b) for a, b in pairwise(start)]
         heat_W = {name: (k, q[c], sd[c]) for (name, k), c in zip(self.knots.items(), cut, strict=True)}
         return MissingHeat(self.places[i], float(best), float(mean), heat_W, self._moves(i, heat_W, -cov @ JZ @ q))

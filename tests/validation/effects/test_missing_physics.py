@@ -32,6 +32,12 @@ def test_a_fan_blows_over_what_stands():
     assert kinds()["convection.fan"].places(Scene(motor("copper"), SPEED | {"fan_flow_m3h"})) == ()
 
 
+def test_an_inverter_heats_what_turns_as_well():
+    iron = '[losses.iron]\nat = "stator"\nkind = "iron"\nexcess_W = 50\nspeed_at = 3000\n'
+    scene = Scene(read_network(tomllib.loads(MOTOR + iron)), SPEED | {"switching_Hz"})
+    assert set(kinds()["iron.pwm"].places(scene)) == {"stator", "rotor"}
+
+
 @pytest.mark.parametrize(("loss", "missing"), [(name, k < 2) for k, name in enumerate(LOSS)])
 def test_a_winding_declared_without_coefficient_can_be_told_so(loss, missing):
     assert kinds()["copper.feedback"].places(Scene(motor(loss))) == (("heat",) if missing else ())

@@ -73,6 +73,14 @@ def test_a_column_is_the_change_of_the_readings_by_a_small_amplitude(i):
         np.testing.assert_allclose((a.r - b.r) / step, column[:, 0], rtol=0.02, atol=0.02 * np.abs(column).max() + 1e-6)
 
 
+def test_heat_of_unknown_cause_has_no_smaller_size_than_an_effect():
+    """Readings without a residual speak against it as they do against an effect of the least usual size."""
+    e, scan = evidence()
+    still = [replace(s, r=np.zeros_like(s.r)) for s in e.fit.parts]
+    for one in scan.read(still, e.fit.noise, np.zeros(e.p), e.fit.error):
+        assert one.log_bayes < -1.0
+
+
 def test_a_large_amplitude_is_weighed_whatever_its_tangent_says():
     """A joint at a fifth of its conductance bends the machine: its tangent may well point the other way."""
     case = bench((), 0.0)

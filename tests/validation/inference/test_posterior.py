@@ -155,6 +155,22 @@ def test_faults_alone_are_data_and_unknown_heat_is_outside():
     assert 0.5 < SURE < 1.0
 
 
+@pytest.mark.parametrize(("explained", "verdict"), [(0.95, "group"), (0.5, "outside")])
+def test_unknown_heat_is_outside_only_where_nothing_with_a_name_explains_nearly_as_much(explained, verdict):
+    nothing, named = Weighed(log_prior=np.log(0.5)), Weighed((0,), "", np.log(0.01), explained * 1000.0)
+    heat = Weighed((), "yoke", np.log(0.05), 1000.0)
+    assert probabilities([nothing, named, heat])[2] > 0.5
+    assert decide(evidence(), [nothing, named, heat]).verdict == verdict
+
+
+def test_every_two_effects_are_compared_and_those_of_most_weight_kept(monkeypatch):
+    e = evidence()
+    every = sorted(pairs(e, singles(e)), key=lambda h: -(h.log_prior + h.log_bayes))
+    assert len(every) == len(NAMES) * (len(NAMES) - 1) // 2
+    monkeypatch.setattr("validation.inference.evidence.PAIRS", 3)
+    assert {h.members for h in pairs(e, singles(e))} == {h.members for h in every[:3]}
+
+
 def test_an_effect_of_the_smallest_detectable_size_is_seen_four_times_in_five():
     """Scores drawn about that amplitude: 0.8 of 4000 pass the threshold, with a deviation of 0.006."""
     e, rng = evidence(), np.random.default_rng(0)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Network
-from lumped.model.sites import cores, heated
+from lumped.model.sites import cores, heated, turning
 from lumped.transfer.laws import Fixed, Inputs, Law
 from validation.effects.base import Scene
 from validation.effects.build import Shaped
@@ -34,7 +34,7 @@ class PwmIronLoss(AddedLoss):
 
     kind = "iron.pwm"
     title = "iron loss of the inverter's ripple"
-    sits = "a part with role iron or rotor, or one with iron loss"
+    sits = "a part with role iron or rotor, or one with iron loss; magnets and all else that turns"
     at = "8 kHz"
     source = "Boglietti et al. 1996, iron loss under PWM: falls with the switching frequency, hardly follows the load"
     isolating_test = "no load at two switching frequencies"
@@ -45,7 +45,8 @@ class PwmIronLoss(AddedLoss):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return heated(scene.network, "iron", cores(scene.network))
+        network = scene.network
+        return list(dict.fromkeys([*heated(network, "iron", cores(network)), *turning(network)]))
 
     def law(self, network: Network) -> Law:
         switching = network.signal("frequency")
