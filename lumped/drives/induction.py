@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 ALPHA_AL = 1.0 / 245.0  # 1/K at 20 degC, cast aluminium: 1 / (225 + 20), IEC 60034-2-1
 RATIOS = 1e-6, 1e3  # i_q / i_d: from no load to far beyond pull-out, which lies below 1 / leakage factor
 STEPS = 64  # of the ratio, a third of it each, and closer where the field stands still: in between is one maximum
-NEAR, APART = np.geomspace(1e-3, 1.0, 30), 0.7  # of a logarithm; maxima are further apart
+NEAR, SEPARATION = np.geomspace(1e-3, 1.0, 30), 0.7  # of a logarithm; maxima are further apart
 TINY = 1e-30  # V or N m, in place of none at all
 
 
@@ -140,12 +140,12 @@ class InductionMachine:
 
         reach = torques >= target
         one = np.argmax(torques, axis=0)
-        two = np.argmax(np.where(np.abs(steps - at(one)) > APART, torques, -np.inf), axis=0)
+        two = np.argmax(np.where(np.abs(steps - at(one)) > SEPARATION, torques, -np.inf), axis=0)
         (most_one, x_one), (most_two, x_two) = summit(one), summit(two)
         second = most_two > most_one
-        reached = np.where(reach.any(axis=0), np.argmax(reach, axis=0), np.where(second, two, one))
-        first = np.where(reach.any(axis=0), at(reached), np.where(second, x_two, x_one))
-        start = np.where(reached > 0, np.exp(at(reached - 1)), 0.0)
+        index = np.where(reach.any(axis=0), np.argmax(reach, axis=0), np.where(second, two, one))
+        first = np.where(reach.any(axis=0), at(index), np.where(second, x_two, x_one))
+        start = np.where(index > 0, np.exp(at(index - 1)), 0.0)
         ratio = bisected(lambda x: self.torque(most(x), x * most(x)) - target, start, np.exp(first))
         return most(ratio), sign * ratio * most(ratio)
 

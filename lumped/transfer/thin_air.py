@@ -62,8 +62,8 @@ def thin_film(law: Law, rho: float, moving: Collection[str]) -> Law:
     thin: Law = law if law.temperature == CONSTANT else WithTemperature(law, _thin(law.temperature, rho))
     if isinstance(law.temperature, Power):
         thin = Scaled(thin, rho ** (2.0 * law.temperature.exponent))
-    moved = tuple(name for name in law.reads if name in moving)
-    return Slowed(thin, rho, moved) if moved else thin
+    movers = tuple(name for name in law.reads if name in moving)
+    return Slowed(thin, rho, movers) if movers else thin
 
 
 def thin_stream(law: Law, rho: float) -> Law:

@@ -68,14 +68,14 @@ def model_gap(models: Sequence[Model], tests: Iterable[Test], rows: Sequence[Map
     rows : of each of the two models, temperature -> its row
     """
     names = [name for name in rows[0] if name in rows[1]]
-    apart = [np.zeros((0, len(names)))]
+    gaps = [np.zeros((0, len(names)))]
     for test in tests:
         a, b = (
             simulate(network, record(test, {}), values, [looks[n] for n in names]).y
             for (network, values), looks in zip(models, rows, strict=True)
         )
-        apart.append(a - b)
-    every = np.concatenate(apart)
+        gaps.append(a - b)
+    every = np.concatenate(gaps)
     return dict(zip(names, np.sqrt(np.mean(every**2, axis=0)).tolist(), strict=True)) if every.size else {}
 
 
