@@ -142,7 +142,7 @@ def _left_out(source: Source, column: str) -> str:
         return f"read {count} {'time' if count == 1 else 'times'} in all"
     unit_text, label = source.units[column], source.labels[column]
     if unit_of(unit_text) == "mV" and "voltage" not in quantities_of(label):
-        return "millivolts of a sensor"
+        return "in mV: of a sensor, no reading of a voltage"
     if not unit_text and (match := FOREIGN.search(label)) and match[1][0].isdigit():  # [0.1 °C]
         return f"its unit '{match[1]}' is of nothing a model reads"
     if unit_text and not unit_of(unit_text):

@@ -13,7 +13,7 @@ from input_cases import case_of, changed, edited
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare
 
-UNITS = ("A", "km/h", "degC", "degC", "degC", "degC")  # of its columns
+UNITS = ("A", "km/h", "degC", "degC", "K", "degC")  # of its columns
 STAND, START = "tests/stand.csv", pd.Timestamp("2024-03-31 00:30:00")
 
 
@@ -200,7 +200,7 @@ def test_read_as_its_plain_file_is(tmp_path, plain, change):
 
 def test_a_unit_that_the_file_says_and_the_sheet_does_not_is_said(tmp_path):
     case = case_of(tmp_path)
-    lines(lambda rows: [rows[0], "s,A,m/s,degC,degC,degC,degC", *rows[1:]])(case)
+    lines(lambda rows: [rows[0], "s,A,m/s,degC,degC,K,degC", *rows[1:]])(case)
     (note,) = [note for note in load_case(case).notes if "its file says" in note]
     assert note == "stand.csv column 'wind': its file says m/s; km/h is taken, as the sheet says"
 
