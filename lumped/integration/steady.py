@@ -85,4 +85,5 @@ def steady(
 def settling_time(network: Network, inputs: Mapping[str, float], boundaries: Mapping[str, float]) -> float:
     """Time constant (s) of the network's slowest mode where it rests. Raises NoSolution as `steady`."""
     K = steady(network, inputs, boundaries).K
+    assert K is not None
     return float(np.linalg.eigvals(np.linalg.solve(K, np.diag(network.C))).real.max())

@@ -96,8 +96,8 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
 def catalogue_explains(hypotheses: Sequence[Weighed]) -> bool:
     """Does something with a name explain nearly all that heat of unknown cause does?"""
     none = next(h.nats for h in hypotheses if h.nothing)
-    named, heat = (max(h.nats for h in hypotheses if bool(h.heat) is unknown) for unknown in (False, True))
-    return named - none > EXPLAINS * (heat - none)
+    effects, heat = (max(h.nats for h in hypotheses if bool(h.heat) is of_heat) for of_heat in (False, True))
+    return effects - none > EXPLAINS * (heat - none)
 
 
 def precedence(probability: float, nats: float) -> tuple[float, float]:

@@ -421,8 +421,8 @@ def pairs(evidence: Evidence, ones: Sequence[Weighed]) -> list[Weighed]:
     log_prior = np.log(PRIOR["two"].share * prior[a] * prior[b] / every)
     more = np.maximum(alone - e.score.log_bayes(e.scale), 0.0)  # what a large amplitude gains beyond its tangent
     bayes = pair_evidence(e, a, b) + np.maximum(more[a], more[b])
-    kept = np.sort(np.argsort(-(log_prior + bayes), kind="stable")[:PAIRS])
-    return [Weighed((int(a[n]), int(b[n])), "", float(log_prior[n]), float(bayes[n])) for n in kept]
+    likely = np.sort(np.argsort(-(log_prior + bayes), kind="stable")[:PAIRS])
+    return [Weighed((int(a[n]), int(b[n])), "", float(log_prior[n]), float(bayes[n])) for n in likely]
 
 
 def pair_evidence(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]) -> Array:

@@ -105,8 +105,9 @@ def sized(network: Network, reference: Reference) -> Network:
     What stays unknown, as where inputs are missing or the machine never rests, is left as it is.
     """
     usual = {name: one.level for name, one in reference.signals.items()}
-    known = [s.law for s in network.sources if set(s.law.reads) <= set(usual)]
-    network = replace(network, losses_W=fsum(abs(float(law.size(usual))) for law in known))
+    laws = [s.law for s in network.sources if set(s.law.reads) <= set(usual)]
+    levels = {name: np.array([level]) for name, level in usual.items()}
+    network = replace(network, losses_W=fsum(float(np.mean(np.abs(law.size(levels)))) for law in laws))
     if network.settles_s or not (network.inputs | set(network.boundaries)) <= set(usual):
         return network
     with suppress(NoSolution):
