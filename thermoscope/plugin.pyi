@@ -221,7 +221,7 @@ from validation.parameters.unknowns import (
 )
 from validation.revision import revise as revise
 from validation.tables import bases_table as bases_table, fall as fall, offers as offers
-from validation.threads import one_blas_thread as one_blas_thread
+from geom.one_thread import one_blas_thread as one_blas_thread
 from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as Theme, heat as heat_colours
 from viz.data import Comparison as Comparison, Sensor as Sensor, short as short
 from viz.figures import paper as paper

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from geom.errors import InputError
+from geom.one_thread import one_blas_thread
 from measured.case import Case
 from measured.sensors.faults import PlainFaults, broken_channels, without
 from validation.bases.which_base import BaseDeviance, base_hypotheses, wrong_bases
@@ -80,7 +81,6 @@ from validation.planning.experiments import next_tests
 from validation.planning.rivals import CompetingModels
 from validation.planning.sensors import next_sensors
 from validation.scope import Scope, odds_factor
-from validation.threads import one_blas_thread
 from validation.yardstick.network_terms import network_terms
 
 Progress = Callable[[str], None]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from geom.one_thread import one_blas_thread
 from measured.case import Case
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import physical
@@ -16,7 +17,6 @@ from validation.inference.low_fidelity import low_fidelity_case
 from validation.inference.missing_heat import MissingHeat, missing_heat
 from validation.inference.stretches import pulses
 from validation.parameters.unknowns import standing
-from validation.threads import one_blas_thread
 
 
 @dataclass(frozen=True)

@@ -1,36 +1,17 @@
-"""Work side by side: whole pieces of it in threads, and one thread of BLAS in each.
-
-The kernel and BLAS free Python's lock. Matrices of a diagnosis are small: threads of BLAS would mostly wait for each
-other, ten times as long as one.
-"""
+"""Work side by side: whole pieces of it in threads. The kernel and BLAS free Python's lock."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from functools import wraps
 from itertools import chain
-from typing import ParamSpec, TypeVar
-
-from threadpoolctl import threadpool_limits
+from typing import TypeVar
 
 from validation.counting import counted
 
-P = ParamSpec("P")
 R = TypeVar("R")
 T = TypeVar("T")
-
-
-def one_blas_thread(work: Callable[P, R]) -> Callable[P, R]:
-    """`work` with one thread of BLAS, whatever the environment allows; afterwards as before."""
-
-    @wraps(work)
-    def alone(*args: P.args, **kwargs: P.kwargs) -> R:
-        with threadpool_limits(limits=1, user_api="blas"):
-            return work(*args, **kwargs)
-
-    return alone
 
 
 def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[T], float] | None = None) -> list[R]:

@@ -13,10 +13,12 @@ from geom.description.part import Part
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Block, Column
 from geom.meshing.mesh import Contact, NamedMesh, Patch
+from geom.meshing.noding import GRID
 from geom.meshing.partition import AMBIENT, Partition
 from geom.meshing.triangulate import Triangulation
 
 FaceName = Callable[[str, str], str]
+THINNER = 0.25  # a layer over the next one inwards: what an end disturbs dies away within a few layers
 Walls = list[tuple[Ints, Ints]]  # triangles (n, 3) and the labels (n, 2) on their two sides
 
 
@@ -27,12 +29,16 @@ def extrude(
     flat: Triangulation,
     axial_size: float,
     face_name: FaceName,
+    ends: Sequence[str] = (),
 ) -> NamedMesh:
-    """The named tetrahedral mesh over a triangulation; layers are at most axial_size (m) thick."""
-    heights = [_heights(cut.levels[block.first], cut.levels[block.last + 1], axial_size) for block in blocks]
+    """The named tetrahedral mesh over a triangulation; layers are at most axial_size (m) thick.
+
+    ends : parts towards whose ends layers become thinner, a step for each time a part is named
+    """
+    bases = [_base(index, columns, flat) for index in range(len(blocks))]
+    heights = [_heights(cut, block, axial_size, np.unique(of), ends) for block, (_, of) in zip(blocks, bases)]
     z = np.unique(np.concatenate(heights))
     ranks = [np.searchsorted(z, height) * len(flat.points) for height in heights]
-    bases = [_base(index, columns, flat) for index in range(len(blocks))]
     points = sum(len(np.unique(base)) * len(rank) for (base, _), rank in zip(bases, ranks))
     MESH_POINTS.check(points, "mesh", "would have")
     tets = np.concatenate([_tets(base, rank) for (base, _), rank in zip(bases, ranks)])
@@ -44,9 +50,18 @@ def extrude(
     return _assembled(flat.points, z, tets, label, walls, cut.parts, face_name)
 
 
-def _heights(z0: float, z1: float, axial_size: float) -> Array:
+def _heights(cut: Partition, block: Block, axial_size: float, labels: Ints, ends: Sequence[str]) -> Array:
+    z0, z1 = cut.levels[block.first], cut.levels[block.last + 1]
     pieces = max(1, int(np.ceil((z1 - z0) / axial_size - 1e-6)))
-    return np.round(np.linspace(z0, z1, pieces + 1), 9)
+    z = np.linspace(z0, z1, pieces + 1)
+    parts = [cut.parts[label] for label in labels if cut.parts[label].name in ends]
+    low, high = (
+        max((ends.count(part.name) for part in parts if abs(part.span[side] - level) < GRID), default=0)
+        for side, level in enumerate((z0, z1))
+    )
+    steps = THINNER ** np.arange(1, max(low, high) + 1)
+    inner = np.concatenate([z0 + (z[1] - z0) * steps[:low], z1 - (z1 - z[-2]) * steps[:high]])
+    return np.unique(np.round(np.concatenate([z, inner]), 9))
 
 
 def _base(index: int, columns: Sequence[Column], flat: Triangulation) -> tuple[Ints, Ints]:

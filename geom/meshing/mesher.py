@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -31,6 +32,7 @@ def build_mesh(
     across: float = 2,
     axial_m: float | None = None,
     cache: Path | str | None = None,
+    ends: Sequence[str] = (),
 ) -> NamedMesh:
     """Conformal tetrahedra of the machine's solids, with named regions, faces and contacts.
 
@@ -39,17 +41,18 @@ def build_mesh(
     across : elements over the width of a compact face, such as the winding in a slot
     axial_m : largest element along the axis (m), 1.5 * size_m if None
     cache : folder of meshes by content; None for no cache
+    ends : parts towards whose ends layers become thinner, a step for each time a part is named
     `build_mesh(machine, **COARSE)` is quick, `**FINE` converged.
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
-    file = _cache_file(machine, (size_m, segments, across, axial), cache)
+    file = _cache_file(machine, (size_m, segments, across, axial, *sorted(ends)), cache)
     identities = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (cached := recalled(file, read_npz)) is not None:
         return replace(cached, identities=identities)
     plan = _planned((*machine.parts, *machine.fluids), segments)
     flat = triangulate(plan.columns, size_m, across)
-    mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name)
+    mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name, ends)
     if file is not None:
         with stored(file) as partial:
             write_npz(mesh, partial)
@@ -73,7 +76,7 @@ def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
     return _Plan(cut, blocks, find_columns(cut, blocks))
 
 
-def _cache_file(machine: Machine, settings: tuple[float, ...], cache: Path | str | None) -> Path | None:
+def _cache_file(machine: Machine, settings: tuple[float | str, ...], cache: Path | str | None) -> Path | None:
     """Named by what a mesh depends on: shapes and names, not materials."""
     if cache is None:
         return None

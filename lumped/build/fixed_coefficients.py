@@ -50,6 +50,14 @@ class FixedCoefficients:
         factor = Solver(field).factor(field.stiffness(self.films, self.contacts))
         return self._together(factor, self._load(field), *self._fluids(field))
 
+    def influence(self, field: FieldModel, rows: Callable[[Array], Array]) -> tuple[Array, Array]:
+        """Steady T (n,), and what 1 W anywhere adds to each of the readings rows(T) (n, k): (n, k) K/W."""
+        factor = Solver(field).factor(field.stiffness(self.films, self.contacts))
+        B, G = self._fluids(field)
+        T = self._together(factor, self._load(field), B, G)[: field.n]
+        readings = rows(T)
+        return T, coupled(factor, readings, B, G.T, np.zeros((len(self.fluids), readings.shape[1])))[0]
+
     def steps_of_field(self, field: FieldModel) -> Iterator[Array]:
         """(n + n_fluid,) after each of STEPS of backward Euler from rest."""
         solver, K, T = Solver(field), field.stiffness(self.films, self.contacts), np.zeros(field.n)

@@ -1,7 +1,8 @@
 """A mesh as fine as the wish asks for: its error at every hot spot, from meshes of half the element size each way.
 
-In the plane, across compact faces and along the axis elements are halved one at a time, since only some of it helps:
-the errors of the three ways add up, and a mesh that is finer every way has eight times the elements.
+In the plane, across compact faces, along the axis and towards the ends of laminated parts elements are made smaller one
+at a time, since only some of it helps: the errors of the ways add up, and a mesh that is finer every way has eight
+times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns.
 """
 
 from __future__ import annotations
@@ -10,11 +11,14 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from fem.matrices.assembly import FieldModel
 from fem.matrices.elements import Elements
+from fem.solvers.linear_losses import linear_losses
 from geom import Machine
 from geom.disk_cache import recalled, store
 from geom.meshing.mesh import NamedMesh
@@ -24,10 +28,12 @@ from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
-from lumped.machine.shapes import wound
+from lumped.machine.shapes import laminated, wound
+from lumped.model.network import Array
 
 SHARE = 0.5  # of the wish that the mesh may use up: the rest is left to the condensation
-LARGEST_SHARE = 0.75  # where nothing finer fits: the condensation can do with a quarter
+LARGEST_SHARE = 0.75  # of a mesh beyond CHEAP, or where nothing finer fits: the condensation can do with a quarter
+CHEAP = 110_000  # unknowns that are condensed within two minutes of a core
 ORDER = 2.0  # of the means and the hottest points of linear elements; windings, quadratic, converge faster
 SAFETY = 1.25  # Roache's factor where the order is known (1994, J. Fluids Eng. 116, 405)
 UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is assumed: left is what halving moved
@@ -35,8 +41,11 @@ SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothin
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 170_000  # of the mesh that is condensed: within 4 GB and 3 min on two cores
 MOST_SOLVED = 250_000  # of one that is solved once, for its hot spots
+MOST_QUADRATIC = 500_000  # of the one that has quadratic elements in every part: 3.5 GB and 40 s
+ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
+WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
-WAYS = ("size_m", "across", "axial_m")
+WAYS = ("size_m", "across", "axial_m")  # and, of every laminated part, towards its ends
 MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
 Kelvins = Mapping[str, float]  # heated part -> K
 
@@ -68,7 +77,8 @@ class MeshChoice:
 def chosen_mesh(
     machine: Machine, accuracy: float, first: Meshing, progress: Progress, most: int = MOST_UNKNOWNS
 ) -> MeshChoice:
-    """The first mesh, refined the way that leaves most until its error uses up no more than SHARE of the wish.
+    """The first mesh, refined the way that leaves most until its error uses up no more than SHARE of the wish,
+    LARGEST_SHARE on a mesh beyond CHEAP.
 
     accuracy : percent of a part's own rise, as the wish has it, of mesh and condensation together
     No mesh of more than `most` unknowns is chosen; `met` is False where its error is more than LARGEST_SHARE of the
@@ -77,7 +87,9 @@ def chosen_mesh(
     file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first, most)}.json"
     cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
     if cached is None:
-        cached = _looked_for(_Looks(machine, progress), accuracy, first, most)
+        looks = _Looks(machine, progress, first)
+        looks.first = _acting(looks, first, most)
+        cached = _looked_for(looks, accuracy, most)
         store(file, json.dumps(asdict(cached)))
     return cached
 
@@ -85,22 +97,29 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    content = repr((shapes, fluids, sorted(machine.sections.items()), first, accuracy, SHARE, SAFETY, most, WAYS))
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, WAYS)
+    content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
 
 def _read(text: str) -> MeshChoice:
     data = json.loads(text)
-    return MeshChoice(**{**data, "meshing": Meshing(**data["meshing"])})
+    how: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in data["meshing"].items()
+    }
+    return MeshChoice(**{**data, "meshing": Meshing(**how)})
 
 
 @dataclass
 class _Looks:
-    """Meshes of a machine that were looked at: how large they are, and how hot their parts."""
+    """Meshes of a machine that were looked at: how large they are, and how hot their parts.
+
+    point : the rated one, its coefficients the same on every mesh
+    """
 
     machine: Machine
     progress: Progress
-    point: FixedCoefficients | None = None
+    first: Meshing
     sizes: dict[Meshing, tuple[int, int]] = field(default_factory=dict)
     rises: dict[Meshing, Kelvins] = field(default_factory=dict)
 
@@ -110,15 +129,23 @@ class _Looks:
             self.sizes[how] = size_of(self.machine, how)
         return self.sizes[how]
 
+    @cached_property
+    def point(self) -> FixedCoefficients:
+        return _at_rated_point(self.ready(self.first))
+
+    def ready(self, how: Meshing) -> Prepared:
+        return meshed(self.machine, how, lambda message: self.progress(f"estimating the error of the mesh: {message}"))
+
     def hot(self, how: Meshing) -> Kelvins:
         """Heated part -> its largest rise (K) at the rated point."""
         if how not in self.rises:
-            ready = meshed(
-                self.machine, how, lambda message: self.progress(f"estimating the error of the mesh: {message}")
-            )
-            self.point = self.point or _at_rated_point(ready)
-            self.rises[how] = _hot_spots(self.point, ready)
+            self.rises[how] = _hot_spots(self.point, self.ready(how).field)
         return self.rises[how]
+
+    def losses(self, how: Meshing) -> Mapping[str, Kelvins]:
+        """Part -> what every hot spot would lose, in the first order, if its elements were linear ones."""
+        self.rises[how], losses = _linear_losses(self.point, self.ready(how).field)
+        return losses
 
     def moved(self, here: Meshing, there: Meshing) -> Kelvins:
         """How far the hot spots of two meshes are apart."""
@@ -153,25 +180,53 @@ def _ratio(before: float, after: float) -> float:
     return float(np.clip(after / max(before, 1e-12), 0.5**ORDER, SLOWEST))
 
 
-def _looked_for(looks: _Looks, accuracy: float, first: Meshing, most: int) -> MeshChoice:
-    how, ways = _acting(looks, first), dict.fromkeys(WAYS, _Way())
+def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
+    how, linear = _curved(looks, looks.first, most)
+    ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
+    ways = dict.fromkeys((*WAYS, *ends), _Way())
     while True:
         ways = {way: _looked_further(looks, how, way, halvings) for way, halvings in ways.items()}
-        percent = _percent(looks.hot(how), ways)
+        percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)
-        if way is None or percent[worst] <= SHARE * accuracy:
+        enough = SHARE if looks.size(how)[1] <= CHEAP else LARGEST_SHARE
+        if way is None or percent[worst] <= enough * accuracy:
             return MeshChoice(how, percent, *looks.size(how), percent[worst] <= LARGEST_SHARE * accuracy)
         there, halvings = how.along(way, 0.5), ways[way]
         moves = halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
         how, ways[way] = there, _Way(moves, halvings.level + 1)
 
 
-def _acting(looks: _Looks, how: Meshing) -> Meshing:
-    """The first mesh with the largest triangles that are there at all: small parts have smaller ones anyway."""
+def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
+    """The first mesh, coarser where it is too large, with the largest triangles that are there at all: small parts
+    have smaller ones anyway."""
+    while looks.size(how)[1] > most and looks.size(coarser := how.along("across", 2.0))[0] < looks.size(how)[0]:
+        how = coarser
     while looks.size(finer := how.along("size_m", 0.5))[0] < ACTS * looks.size(how)[0] and finer.size_m > SMALLEST_M:
         how = finer
     return how
+
+
+def _curved(looks: _Looks, how: Meshing, most: int) -> tuple[Meshing, Kelvins]:
+    """Quadratic elements in every part that is worth its unknowns; and how far the hot spots stay from those with
+    quadratic elements in all parts."""
+    bare = looks.size(how)[1]
+    added = {part: looks.size(replace(how, quadratic=(part,)))[1] - bare for part in _linear(looks.machine)}
+    while bare + sum(added.values()) > MOST_QUADRATIC and added:
+        del added[max(added, key=lambda p: added[p])]
+    every = replace(how, quadratic=tuple(added))
+    losses, hot = looks.losses(every), looks.hot(every)
+    floor = FLOOR * max(hot.values())
+    worth = {p: max(100.0 * abs(losses[p][q]) / max(hot[q], floor) for q in hot) * bare / added[p] for p in added}
+    for part in sorted(added, key=lambda p: -worth[p]):
+        there = replace(how, quadratic=(*how.quadratic, part))
+        if worth[part] >= WORTH and looks.size(there)[1] <= most:
+            how = there
+    return how, looks.moved(how, every)
+
+
+def _linear(machine: Machine) -> list[str]:
+    return [part.name for part in machine.parts if not wound(machine, part.name)]
 
 
 def _looked_further(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> _Way:
@@ -179,35 +234,38 @@ def _looked_further(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> _W
     if not halvings.unsure:
         return halvings
     there = how.along(way, 0.5)
-    if looks.size(there)[1] <= MOST_SOLVED:
+    if looks.size(there)[1] <= MOST_SOLVED or way not in WAYS:  # towards ends there is nothing coarser to look at
         return replace(halvings, moves=(*halvings.moves, looks.moved(how, there)))
     return halvings if halvings.moves else _Way((looks.moved(how.along(way, 2.0), how),), 1)
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:
-    """The way that leaves most, of those that may be halved."""
-    for way in sorted(WAYS, key=lambda way: -left[way]):
-        if left[way] > 0.0 and looks.size(how.along(way, 0.5))[1] <= most:
-            return way
-    return None
+    """Of the ways that may be halved and leave about as much as the worst of them, the one with the fewest unknowns."""
+    sizes = {way: looks.size(how.along(way, 0.5))[1] for way, kelvins in left.items() if kelvins > 0.0}
+    fits = {way: size for way, size in sizes.items() if size <= most}
+    worst = max((left[way] for way in fits), default=0.0)
+    return min(
+        (way for way in fits if left[way] >= ALIKE * worst), key=lambda way: (fits[way], -left[way]), default=None
+    )
 
 
-def _percent(hot: Kelvins, ways: Mapping[str, _Way]) -> dict[str, float]:
+def _percent(hot: Kelvins, linear: Kelvins, ways: Mapping[str, _Way]) -> dict[str, float]:
     """Of every part's own rise, of a share of the largest at least."""
     floor = FLOOR * max(hot.values())
-    return {p: 100.0 * sum(halvings.left(p) for halvings in ways.values()) / max(hot[p], floor) for p in hot}
+    left = {p: linear[p] + sum(halvings.left(p) for halvings in ways.values()) for p in hot}
+    return {p: 100.0 * left[p] / max(hot[p], floor) for p in hot}
 
 
 def size_of(machine: Machine, how: Meshing) -> tuple[int, int]:
     """Points and unknowns of a mesh, which stays on disk: parts have nodes of their own, windings middles of edges."""
     mesh = plain_mesh(machine, how)
-    return len(mesh.points), sum(_unknowns(machine, mesh, k) for k in range(len(mesh.parts)))
+    curved = {p for p in mesh.parts if wound(machine, p) or p in how.quadratic}
+    return len(mesh.points), sum(_unknowns(mesh, k, part in curved) for k, part in enumerate(mesh.parts))
 
 
-def _unknowns(machine: Machine, mesh: NamedMesh, part: int) -> int:
+def _unknowns(mesh: NamedMesh, part: int, quadratic: bool) -> int:
     tets = mesh.tets[mesh.region == part]
-    middles = len(Elements.on(tets, mesh.points, quadratic=True).edges) if wound(machine, mesh.parts[part]) else 0
-    return len(np.unique(tets)) + middles
+    return len(np.unique(tets)) + len(Elements.on(tets, mesh.points, quadratic).edges)
 
 
 def _at_rated_point(ready: Prepared) -> FixedCoefficients:
@@ -216,7 +274,26 @@ def _at_rated_point(ready: Prepared) -> FixedCoefficients:
     return rated(machine, network, ready.films, ready.contacts)
 
 
-def _hot_spots(point: FixedCoefficients, ready: Prepared) -> dict[str, float]:
+def _hot_spots(point: FixedCoefficients, field: FieldModel) -> dict[str, float]:
     """Heated part -> its largest rise (K)."""
-    T = point.of_field(ready.field)
-    return {part: float(np.max(T[ready.field.blocks[part].dofs])) for part in point.watts}
+    T = point.of_field(field)
+    return {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
+
+
+def _linear_losses(point: FixedCoefficients, field: FieldModel) -> tuple[dict[str, float], dict[str, Kelvins]]:
+    """Hot spots as above; and part -> what each of them would lose (K) if this part had linear elements."""
+
+    def readings(T: Array) -> Array:
+        unit = np.zeros((field.n, len(point.watts)))
+        unit[list(_hottest(point, field, T).values()), range(len(point.watts))] = 1.0
+        return unit
+
+    T, influence = point.influence(field, readings)
+    hot = {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
+    losses = linear_losses(field, field.stiffness(point.films, point.contacts), T, influence)
+    return hot, {part: dict(zip(hot, loss.tolist(), strict=True)) for part, loss in losses.items()}
+
+
+def _hottest(point: FixedCoefficients, field: FieldModel, T: Array) -> dict[str, int]:
+    dofs = {part: field.blocks[part].dofs for part in point.watts}
+    return {part: mine.start + int(np.argmax(T[mine])) for part, mine in dofs.items()}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from geom import Machine
+from geom.one_thread import one_blas_thread
 from lumped.build.load_cases import load_cases
 from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
 from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, meshed, reduced, silent
@@ -25,6 +26,7 @@ CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of 
 SEGMENTS = 48  # chords per turn
 BYTES = 18_500  # per unknown: snapshots, factor and the points that are learned from; 2.85 GB at 154,000
 SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
+FIRST_AXIAL = 1.5  # thickest layer over the size of a triangle: quadratic elements are as good as two linear ones each
 LEAST = 0.25  # of the wish, asked of the condensation even where the mesh has used it up
 
 
@@ -64,6 +66,7 @@ def accuracy_of(accuracy: float) -> Accuracy:
     return Accuracy(accuracy / 2, accuracy, accuracy)
 
 
+@one_blas_thread
 def accurate_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
 ) -> NetworkSize:
@@ -72,11 +75,14 @@ def accurate_network(
 
     say : how large the meshes are and what they need, before they are solved
     """
-    first = Meshing(size_m, SEGMENTS, ACROSS, AXIAL * size_m)
+    first = Meshing(size_m, SEGMENTS, ACROSS, FIRST_AXIAL * size_m)
     points, unknowns = size_of(on_all(machine), first)
     say(f"first mesh: {points:,} points, {needs(unknowns)}; the finest that is condensed: {needs(MOST_UNKNOWNS)}")
     mesh = chosen_mesh(on_all(machine), accuracy, first, progress)
-    say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}")
+    part = max(mesh.percent, key=lambda p: mesh.percent[p])
+    say(f"mesh: {mesh.points:,} points, {needs(mesh.unknowns)}; hot spots within {mesh.worst:.2g} % ({part})")
+    if not mesh.met:
+        say(f"no finer mesh is condensed: within {accuracy:g} % no network will be, and the exit code is 1")
     left = max(accuracy - mesh.worst, LEAST * accuracy)
     return replace(smallest_network(machine, left, progress=progress, how=mesh.meshing), mesh=mesh)
 
@@ -87,6 +93,7 @@ def needs(unknowns: int) -> str:
     return f"{unknowns:,} unknowns, about {gigabytes:.1f} GB and {max(minutes, 0.1):.1f} min of a core"
 
 
+@one_blas_thread
 def smallest_network(
     machine: Machine,
     accuracy: float,

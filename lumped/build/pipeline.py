@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 
 from fem.matrices.assembly import FieldModel, HasTensor, assemble
@@ -13,6 +13,7 @@ from fem.matrices.winding import homogenised
 from fem.solvers.streams import cut
 from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
+from geom.one_thread import one_blas_thread
 from geom.storage import cache_folder
 from lumped.condensation.reduction import Recipe, Reduction, reduce
 from lumped.condensation.zone import Zone
@@ -38,20 +39,25 @@ def silent(message: str) -> None:
 
 @dataclass(frozen=True)
 class Meshing:
-    """How fine a mesh is, as for geom.build_mesh."""
+    """How fine a mesh is, as for geom.build_mesh.  quadratic : parts on quadratic elements besides those of wires"""
 
     size_m: float
     segments: int
     across: float
     axial_m: float
+    ends: tuple[str, ...] = ()
+    quadratic: tuple[str, ...] = ()
 
     @property
     def coarser(self) -> Meshing:
         """Elements twice as large every way; arcs keep their chords, so that both meshes have the same volume."""
-        return Meshing(2 * self.size_m, self.segments, self.across / 2, 2 * self.axial_m)
+        return replace(self, size_m=2 * self.size_m, across=self.across / 2, axial_m=2 * self.axial_m)
 
     def along(self, way: str, times: float) -> Meshing:
-        """Elements so many times as large one way, "size_m", "across" or "axial_m", with the same chords."""
+        """Elements so many times as large one way, "size_m", "across" or "axial_m", with the same chords; towards
+        the ends of a part, which has one way of its own, a step finer."""
+        if way not in ("size_m", "across", "axial_m"):
+            return replace(self, ends=(*self.ends, way))
         return replace(self, **{way: getattr(self, way) * (1.0 / times if way == "across" else times)})
 
 
@@ -73,11 +79,11 @@ class Built:
 
 @once
 def _field_of(model: Built) -> FieldModel:
-    return field_of(model.machine, model.mesh)
+    return field_of(model.machine, model.mesh, model.meshing.quadratic)
 
 
-def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
-    """Conduction of the machine on its mesh, with the materials of its file; windings on quadratic elements."""
+def field_of(machine: Machine, mesh: NamedMesh, quadratic: Collection[str] = ()) -> FieldModel:
+    """Conduction of the machine on its mesh, with the materials of its file; windings on quadratic elements, too."""
     materials = {part.name: machine.material_of(part.name) for part in machine.parts}
     conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in materials.items()}
     for name, coil in machine.features.coils.items():
@@ -85,8 +91,8 @@ def field_of(machine: Machine, mesh: NamedMesh) -> FieldModel:
         conductivity[name] = LoopWound(
             copper.k_z, copper.k_r, coil.axes, coil.half_length, coil.half_width, coil.z_centre
         )
-    wires = [name for name in materials if wound(machine, name)]
-    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, wires)
+    curved = [name for name in materials if wound(machine, name) or name in quadratic]
+    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, curved)
 
 
 def conductivity_of(material: Material) -> Conductivity:
@@ -126,12 +132,12 @@ def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepa
     progress("mesh")
     mesh = with_cells(machine, plain_mesh(machine, how))
     progress(f"conduction on {len(mesh.points)} points")
-    return Prepared(machine, mesh, field_of(machine, mesh), *coefficients_on(machine, mesh), how)
+    return Prepared(machine, mesh, field_of(machine, mesh, how.quadratic), *coefficients_on(machine, mesh), how)
 
 
 def plain_mesh(machine: Machine, how: Meshing) -> NamedMesh:
     """The mesh alone, from the cache where it was made before."""
-    return build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder())
+    return build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder(), how.ends)
 
 
 def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float], dict[str, float]]:
@@ -156,6 +162,7 @@ def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = 
     )
 
 
+@one_blas_thread
 def build(
     machine: Machine,
     size_m: float = 0.06,

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.one_thread import one_blas_thread
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter, Row
 from measured.case import Case, Test
@@ -31,7 +32,6 @@ from validation.calibration.model_error import with_cores, with_doubts
 from validation.comparison.linearisation import Segment, segments
 from validation.comparison.moved_inputs import FLOWS, moved_inputs
 from validation.parameters.unknowns import nuisances, working
-from validation.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]

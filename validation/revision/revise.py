@@ -9,6 +9,7 @@ from math import isfinite
 import numpy as np
 
 from geom.errors import InputError
+from geom.one_thread import one_blas_thread
 from geom.table import Table, TableResult
 from geom.text import table
 from lumped.model.multipliers import parameter_values
@@ -42,7 +43,6 @@ from validation.revision.acceptance import (
     telling_tests,
 )
 from validation.tables import revision_tables
-from validation.threads import one_blas_thread
 
 Progress = Callable[[str], None]
 GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests

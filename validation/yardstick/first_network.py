@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.one_thread import one_blas_thread
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
-from validation.threads import one_blas_thread
 from validation.yardstick.free_network import (
     Form,
     FreeNetwork,

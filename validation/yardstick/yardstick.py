@@ -15,10 +15,10 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.one_thread import one_blas_thread
 from lumped.model.network import Network
 from lumped.model.once import once
 from measured.case import Case
-from validation.threads import one_blas_thread
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
 from validation.yardstick.persistence import usual_rise

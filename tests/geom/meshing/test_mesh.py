@@ -178,3 +178,20 @@ def test_chords_leave_the_bridge_over_a_magnet_in_the_iron(segments):
         n = np.column_stack([(b - a)[:, 1], (a - b)[:, 0]])
         distance = np.abs(((corner - a) * n).sum(axis=1) / np.linalg.norm(n, axis=1)).min()
         assert distance > 0.1e-3
+
+
+def test_layers_become_thinner_towards_the_ends_of_a_part_that_is_named_alone():
+    """By four for each time it is named; levels beside another part stay as they are."""
+    machine = load_machine("pmsm-m1-no-base")
+    usual, thin = (build_mesh(machine, 0.2, 24, 0.25, 0.24, ends=ends) for ends in ((), ("stator.core",) * 2))
+    z0, z1 = machine.part("stator.core").span
+
+    def levels(mesh, part):
+        return np.unique(mesh.points[np.unique(mesh.tets[mesh.region == mesh.parts.index(part)]), 2])
+
+    height = np.diff(levels(usual, "stator.core"))[0]
+    inner = [z0 + height / 16, z0 + height / 4, z1 - height / 4, z1 - height / 16]
+    assert set(np.round(inner, 6)) <= set(np.round(levels(thin, "stator.core"), 6))
+    assert levels(thin, "rotor.core") == pytest.approx(levels(usual, "rotor.core"))
+    assert tet_volumes(thin).min() > 0
+    assert tet_volumes(thin).sum() == pytest.approx(tet_volumes(usual).sum(), rel=1e-9)

@@ -1,5 +1,6 @@
 """The mesh of a wish: what it says it leaves, which way it refines, and that it is looked for once."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -12,6 +13,7 @@ from lumped.build.pipeline import Meshing, silent
 MACHINE = load_machine("pmsm-m1-no-base")
 FIRST = Meshing(0.2, 24, 0.25, 0.24)
 EXACT = {"winding": 80.0, "bearing": 2.0}
+GAINS = {}  # part -> share of every rise that linear elements in it lose
 LOST = {"size_m": 0.002, "across": 0.01, "axial_m": 0.04}  # of the winding's rise, on the first mesh
 
 
@@ -40,18 +42,26 @@ def second_order(monkeypatch):
         points = 1000
         for way in LOST:
             points *= halved(how, way)
-        return int(points), int(2 * points)
+        return int(points), int(2 * points) + 100 * len(how.quadratic)
 
     def ready(machine, how, progress):
         solved.append(size(machine, how)[1])
-        return SimpleNamespace(meshing=how)
+        return SimpleNamespace(field=how)
+
+    def hot(point, how):
+        linear = sum(GAINS.get(part, 0.0) for part in set(every) - set(how.quadratic))
+        return {p: T * (1.0 - low(how) - linear) for p, T in EXACT.items()}
+
+    def losses(point, how):
+        return hot(point, how), {part: {p: GAINS.get(part, 0.0) * T for p, T in EXACT.items()} for part in every}
+
+    every = mesh_choice._linear(MACHINE)
 
     monkeypatch.setattr(mesh_choice, "meshed", ready)
     monkeypatch.setattr(mesh_choice, "size_of", size)
     monkeypatch.setattr(mesh_choice, "_at_rated_point", lambda ready: "rated")
-    monkeypatch.setattr(
-        mesh_choice, "_hot_spots", lambda point, r: {p: T * (1.0 - low(r.meshing)) for p, T in EXACT.items()}
-    )
+    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    monkeypatch.setattr(mesh_choice, "_linear_losses", losses)
     return solved
 
 
@@ -79,6 +89,7 @@ def test_a_mesh_that_grows_too_large_is_told(second_order):
 def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
     """Without a finer one three times what a coarser one moves is told, way by way."""
     monkeypatch.setattr(mesh_choice, "MOST_SOLVED", 2000)
+    monkeypatch.setattr(mesh_choice, "MOST_QUADRATIC", 2000)
     found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=2000)
     assert not found.met
     assert found.percent["winding"] == pytest.approx(900.0 * low(FIRST), rel=0.1)
@@ -88,11 +99,50 @@ def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
 def test_an_order_that_does_not_show_is_not_assumed(second_order, monkeypatch):
     """Where the next halving moves as much again, nothing says how far it goes on: four times that, with safety."""
     monkeypatch.setattr(
-        mesh_choice, "_hot_spots", lambda point, r: {p: T + halved(r.meshing, "axial_m") for p, T in EXACT.items()}
+        mesh_choice, "_hot_spots", lambda point, how: {p: T + halved(how, "axial_m") for p, T in EXACT.items()}
     )
     found = chosen_mesh(MACHINE, 1.0, FIRST, silent, most=4000)
     assert not found.met
     assert found.percent["winding"] > 100.0 * 4.0 * 2.0 / 82.0
+
+
+def test_parts_worth_their_unknowns_are_quadratic_and_the_rest_is_counted(second_order, monkeypatch):
+    """5 % of every rise for a twentieth of the unknowns, and 0.1 % of it."""
+    monkeypatch.setitem(GAINS, "stator.core", 0.05)
+    monkeypatch.setitem(GAINS, "slot.liner", 0.001)
+    found = chosen_mesh(MACHINE, 14.0, FIRST, silent)
+    assert found.meshing.quadratic == ("stator.core",)
+    assert found.percent["winding"] == pytest.approx(125.0 * low(found.meshing) + 0.1, rel=0.08)
+
+
+def test_layers_towards_the_ends_of_one_part_are_a_way(second_order, monkeypatch):
+    """Where nothing else moves the hot spots, only these are refined."""
+    monkeypatch.setattr(
+        mesh_choice,
+        "_hot_spots",
+        lambda point, how: {p: T * (1.0 - 0.04 * 0.2 ** len(how.ends)) for p, T in EXACT.items()},
+    )
+    found = chosen_mesh(MACHINE, 2.0, FIRST, silent)
+    assert found.met
+    assert found.meshing.ends
+    assert replace(found.meshing, ends=()) == FIRST
+
+
+def test_of_two_ways_that_leave_alike_the_cheaper_one_is_refined(second_order):
+    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
+    left = {"size_m": 0.1, "axial_m": 3.0, "stator.core": 2.0}
+    assert mesh_choice._refined(looks, FIRST, left, 170_000) == "stator.core"  # nothing is added by thinner ends here
+    assert mesh_choice._refined(looks, FIRST, {**left, "axial_m": 5.0}, 170_000) == "axial_m"
+
+
+def test_a_loss_foretold_is_about_the_one_that_comes(monkeypatch):
+    """The core of a stator on linear elements or not, in earnest."""
+    core, rest = "stator.core", [part for part in mesh_choice._linear(MACHINE) if part != "stator.core"]
+    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
+    every = replace(FIRST, quadratic=(core, *rest))
+    foretold = looks.losses(every)[core]["stator.core"]
+    true = looks.hot(every)["stator.core"] - looks.hot(replace(FIRST, quadratic=tuple(rest)))["stator.core"]
+    assert 0.5 * true < foretold < 4.0 * true
 
 
 def test_a_machine_is_looked_at_once(monkeypatch):

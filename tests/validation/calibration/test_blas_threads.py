@@ -3,7 +3,7 @@
 import numpy as np  # noqa: F401  (loads the BLAS that is asked about)
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from validation.threads import one_blas_thread
+from geom.one_thread import one_blas_thread
 
 
 def threads():
