@@ -94,4 +94,4 @@ def markdown(cases: Sequence[Mapping[str, Any]]) -> list[str]:
         asked = bound([c for c in cases if c["kind"] != kind])
         lines.append(f"| {kind} | {len(by_kind[kind])} | {100 * asked:g} % | {mean_cost(by_kind[kind], asked):.1f} |")
     costs = ", ".join(f"{mean_cost(cases, s):.1f} at {100 * s:g} %" for s in SHARES[1:])
-    return [*lines, "", f"Mean cost over all kinds in nats: {costs}. Used: {100 * USED:g} %."]
+    return [*lines, "", f"Mean cost over all kinds in nats: `{costs}`. Used: {100 * USED:g} %."]
