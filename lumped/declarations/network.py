@@ -60,7 +60,7 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     head, nodes = top.table("network"), top.tables("nodes")
     if not nodes:
         raise top.error("no nodes", "[nodes.NAME] with C_J_K = ...")
-    name, boundaries, settles = head.word("name"), head.members("boundaries"), head.number("settles_s", 0.0)
+    name, boundaries, settles = head.word("name"), head.members("boundaries"), head.number("settles_s", 3600.0)
     head.close()
     for key in SECTIONS:
         checked_names(top.tables(key), f"{where} [{key}]")

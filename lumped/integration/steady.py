@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +25,12 @@ ABOVE_K = 30.0  # still air takes nothing without a difference: a start without 
 
 @dataclass(frozen=True)
 class Steady(TableResult):
-    """z (n_states + n_boundaries) degC; y (n_rows,); dy (n_rows, n_tangents); K (n, n) what holds the n states, W/K."""
+    """z (n_states + n_boundaries) degC; y (n_rows,); dy (n_rows, n_tangents)."""
 
     names: tuple[str, ...]
     z: Array
     y: Array
     dy: Array | None
-    K: Array | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         if len(self.names) > SCREEN:
@@ -69,8 +68,7 @@ def steady(
     x0 = np.where(hidden, 0.0, ABOVE_K + (u.mean() if u.size else 20.0))
     both, scratch = stages(x0, u, core.terms), work(n, u.size, core.terms, p)
     rests = solve_steady_start(np.zeros(n), core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch)
-    G = scratch.G[:, :n]
-    if not rests or np.linalg.eigvals(G).real.min() <= 0:
+    if not rests or np.linalg.eigvals(scratch.G[:, :n]).real.min() <= 0:
         why = "a node nothing holds, or thermal runaway"
         raise NoSolution(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], scratch.D
@@ -78,12 +76,4 @@ def steady(
     reach.see(z[None, :])
     reach.tell(core.names)
     y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
-    names, slopes = (*network.states, *network.boundaries), np.reshape(dy, (len(rows), p)) if p else None
-    return Steady(names, z, np.array(y), slopes, G.copy())
-
-
-def settling_time(network: Network, inputs: Mapping[str, float], boundaries: Mapping[str, float]) -> float:
-    """Time constant (s) of the network's slowest mode where it rests. Raises NoSolution as `steady`."""
-    K = steady(network, inputs, boundaries).K
-    assert K is not None
-    return float(np.linalg.eigvals(np.linalg.solve(K, np.diag(network.C))).real.max())
+    return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

@@ -156,8 +156,7 @@ class Structure:
     capacity_group : for every state the name of its capacity group (a part and its shapes share one)
     boundaries : names of the temperatures given from outside ("ambient", "coolant.in", ...)
     parameters : what calibration may move
-    settles_s : time constant (s) of the whole, roughly, 0 where nothing says
-    losses_W : usual sum of its losses, 0 where nothing says; what is missing is usually a share of it
+    settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
     declared : what parts, nodes, fluids and boundaries are said to be, by name
     quantities : input -> what it measures ("speed");  signals : quantity -> the input of the machine's own
     file : where it was read from; "" of a network that no file declares
@@ -173,8 +172,7 @@ class Structure:
     capacity_group: tuple[str, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     recovery: Recovery | None = field(default=None, compare=False)
-    settles_s: float = 0.0
-    losses_W: float = 0.0
+    settles_s: float = 3600.0
     declared: Mapping[str, Identity] = field(default_factory=dict)
     quantities: Mapping[str, str] = field(default_factory=dict)
     signals: Mapping[str, str] = field(default_factory=dict)

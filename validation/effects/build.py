@@ -12,7 +12,6 @@ from lumped.model.sites import faces
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw, Wrapped
 
 HOUR = 3600.0
-SHARE = 0.2  # of all losses: IEC 60034-2-1 puts what no one computes at 2 % of the input, and a motor loses a tenth
 
 
 @dataclass(frozen=True)
@@ -33,12 +32,12 @@ class Shaped(Wrapped):
 
 def conductance_scale(network: Network) -> float:
     """A conductance (W/K) of this machine's size: what cools all of it with its time constant."""
-    return float(np.sum(network.C)) / (network.settles_s or HOUR)
+    return float(np.sum(network.C)) / network.settles_s
 
 
 def power_scale(network: Network) -> float:
-    """A power (W) of this machine's size: a share of its losses; without any, 10 K of rise through its conductance."""
-    return SHARE * network.losses_W or 10.0 * conductance_scale(network)
+    """A power (W) of this machine's size: 10 K of rise through `conductance_scale`."""
+    return 10.0 * conductance_scale(network)
 
 
 def row_of(network: Network, name: str) -> Row:

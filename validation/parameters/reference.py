@@ -7,15 +7,11 @@ another model wherever another test is recorded. So it is determined when the mo
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from math import fsum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.errors import NoSolution
-from lumped.integration.steady import settling_time
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
 from lumped.transfer.laws import CLOCK, Law
@@ -97,22 +93,6 @@ def effect_sizes(network: Network, effects: Collection[str], tests: Sequence[Tes
     watts = [p for p in network.parameters if p.name in effects and p.unit.split(" at ")[0] == "W"]
     size = {p.name: mean_factor([laws[t] for t, _ in p.targets if t in laws], tests) for p in watts}
     return {name: _rounded(f) for name, f in size.items() if f > 0}
-
-
-def sized(network: Network, reference: Reference) -> Network:
-    """The network with its losses and, where it declares none, its settling time at the usual inputs of a reference.
-
-    What stays unknown, as where inputs are missing or the machine never rests, is left as it is.
-    """
-    usual = {name: one.level for name, one in reference.signals.items()}
-    laws = [s.law for s in network.sources if set(s.law.reads) <= set(usual)]
-    levels = {name: np.array([level]) for name, level in usual.items()}
-    network = replace(network, losses_W=fsum(float(np.mean(np.abs(law.size(levels)))) for law in laws))
-    if network.settles_s or not (network.inputs | set(network.boundaries)) <= set(usual):
-        return network
-    with suppress(NoSolution):
-        return replace(network, settles_s=settling_time(network, usual, {b: usual[b] for b in network.boundaries}))
-    return network
 
 
 def mean_factor(laws: Sequence[Law], tests: Sequence[Test]) -> float:

@@ -20,7 +20,7 @@ from validation.effects.registry import effect, extended
 from validation.effects.sensors.input_offset import Shift
 from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
-from validation.parameters.reference import effect_sizes, reference_of, sized, value_counts
+from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
 Array = NDArray[np.float64]
 LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
@@ -256,7 +256,6 @@ def _to_fit_alone(case: Case) -> tuple[Network, Unknowns]:
 
 def _to_fit(case: Case, more: Sequence[Effect]) -> tuple[Network, Unknowns]:
     reference = case_reference(case)
-    case = replace(case, model=replace(case.model, network=sized(case.model.network, reference)))
     network, forms = _grown(case, reference, more, value_counts(case.usable))
     free = {p.name for p in (case.nuisances or case.model.network.parameters)} | set(forms)
     free |= {e.name for e in (*effects_of(case), *more)}

@@ -8,7 +8,7 @@ from small_networks import boundaries, every_law, inputs, two_masses
 from geom.errors import ThermoscopeError
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
-from lumped.integration.steady import settling_time, steady
+from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source, stream
 from lumped.transfer.laws import Fixed, Linear
 
@@ -29,16 +29,6 @@ def test_rest_is_where_a_long_run_ends():
     time = np.linspace(0.0, 2e5, 2001)
     run = simulate(NETWORK, Record(time, STILL, AROUND), rows=ROWS)
     assert_allclose(steady(NETWORK, STILL, AROUND, rows=ROWS).y, run.y[-1], atol=1e-8)
-
-
-@pytest.mark.parametrize("middle", [False, True])
-def test_a_run_dies_away_with_the_settling_time(middle):
-    """By e within it, once only the slowest mode is left; a node without capacity changes nothing."""
-    net, around = two_masses(middle=middle), {"ambient": 20.0}
-    tau = settling_time(net, {}, around)
-    run = simulate(net, Record(np.linspace(0.0, 8.0 * tau, 2001), {}, around), rows=[net.place("core").mean])
-    left = steady(net, {}, around)["core"] - run.y[:, 0]
-    assert left[500] / left[750] == pytest.approx(np.e, rel=5e-3)
 
 
 @pytest.mark.parametrize("parameter", NETWORK.parameters, ids=lambda p: p.name)
