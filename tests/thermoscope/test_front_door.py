@@ -229,7 +229,7 @@ def test_the_readme_runs(root, tmp_path, monkeypatch):
     left: dict = {}
     exec(block, left)
     assert left["d"].best == "convection@flange"
-    assert printed(left["d"]).startswith("named: missing: forced convection by vehicle wind at flange")
+    assert printed(left["d"]).startswith("Missing: forced convection by vehicle wind at flange")
     assert printed(left["d"]).splitlines()[2].startswith("forced convection by vehicle wind at flange ")
     assert ts.open("my-case").effects == ("convection@flange",)
     assert left["better"].compare().rmse_K < 0.5 * left["case"].compare().rmse_K

@@ -25,6 +25,7 @@ from lumped.transfer.exchanger import Exchanger, Flow, Rate
 from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water
 from lumped.transfer.reversal import Direction, OneWay
+from lumped.transfer.thin_air import Slowed
 from validation.effects.build import Shaped
 from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours
@@ -63,6 +64,7 @@ TABLES = [
     InverterLoss(("id_A", "iq_A"), 1.5, 0.8, 0.01, 8e3, 2e-3, 100.0, 600.0, 560.0, 20.0),
     COUNTER,
     AtUsualTemperature(STREAM),
+    Slowed(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), 0.6, ("speed_rpm",)),
     ExponentError(InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)), "speed_rpm", {"speed_rpm": 1500.0}),
     ExponentError(MAP, "iq_A", {"speed_rpm": 1500.0, "iq_A": 30.0}),
     Shaped(Fixed(2.0), Ripple("chopper_Hz"), CONSTANT, ("chopper_Hz",)),

@@ -40,6 +40,7 @@ from lumped.transfer.laws import (
 )
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
+from lumped.transfer.thin_air import Slowed
 from validation.effects.build import Shaped
 from validation.effects.sensors.input_factor import Slope
 from validation.effects.sensors.input_offset import Shift
@@ -92,6 +93,7 @@ LAWS = [
     Switched(FORCED, "switch", True),
     Switched(FORCED, "switch", False),
     Scaled(Fixed(0.4), -1.0),
+    Slowed(FORCED, 0.6, ("speed_rpm",)),
     MeasuredLoss(((1.0, ("electrical_W",)), (-np.pi / 30.0, ("torque_Nm", "speed_rpm")))),
     MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))),
     CopperLoss(0.02, ("current_A",)),
@@ -178,6 +180,7 @@ LIMITS = {
         (Switched(Fixed(2.0), "on", False), {"on": 1.0}, 0.0),
         (Switched(Fixed(2.0), "on", False), {"on": 0.0}, 2.0),
     ],
+    Slowed: [(Slowed(FORCED, 0.5, ("speed_rpm",)), {"speed_rpm": 2000.0}, 0.6)],
     Scaled: [(Scaled(Fixed(0.4), -1.0), {}, -0.4), (Scaled(Fixed(0.4), 0.0), {}, 0.0)],
     MeasuredLoss: [  # what goes in leaves at the shaft
         (MeasuredLoss(((1.0, ("P",)), (-np.pi / 30.0, ("M", "n")))), {"P": 100.0 * np.pi, "M": 2.0, "n": 1500.0}, 0.0)

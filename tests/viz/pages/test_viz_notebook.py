@@ -28,7 +28,7 @@ def test_errors_are_a_table_and_names_are_escaped():
 
 def test_a_diagnosis_says_its_verdict():
     d = Diagnosis("named", "missing: convection", ("convection@flange",), (), (FOUND,), (), (), (), 5.0, 0.5, 7.9)
-    assert "named: missing: convection" in d._repr_html_()
+    assert "Missing: convection" in d._repr_html_()
     assert "12.3 (10 ... 14)" in d._repr_html_()
 
 
