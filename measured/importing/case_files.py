@@ -92,8 +92,7 @@ def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Se
         f"sample_s = {sample_of(drafts):g}",
         "",
     ]
-    names = sensor_names(drafts)
-    for draft, role in zip(drafts, roles(len(drafts)), strict=True):
+    for draft, role, names in zip(drafts, roles(len(drafts)), sensor_names(drafts), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         for i, record in enumerate(draft.records):
             write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record.source, record.clock)))
@@ -144,23 +143,24 @@ def imported_table(file: Path) -> DataTable:
     return DataTable.of(readings(*read_timed(file)).items(), file)
 
 
-def sensor_names(drafts: Sequence[Draft]) -> dict[tuple[str, str], str]:
-    """(column, place) -> the name that it has in the first of the tests: "T1 (degC)" is "T1" of another file.
+def sensor_names(drafts: Sequence[Draft]) -> list[dict[str, str]]:
+    """Of every test, column -> the name that it has in the first of the tests: "T1 (degC)" is "T1" of another file.
 
     A sensor that a file writes otherwise is still the same, for its offset, its limit and the tests that are held out.
     """
-    out: dict[tuple[str, str], str] = {}
-    first: dict[tuple[str, str], str] = {}
+    out, first = [], dict[tuple[str, str], str]()
     for draft in drafts:
-        columns = {g.column for g in draft.guesses}
+        names = {g.column: g.column for g in draft.guesses}
         for record in draft.records:
             for g in (g for g in record.guesses if g.place):
                 name = first.setdefault((record.source.labels[g.column].strip().lower(), g.place), g.column)
-                out[g.column, g.place] = g.column if name in columns else name
+                if name not in (*names, *names.values()):  # two columns are never one sensor
+                    names[g.column] = name
+        out.append(names)
     return out
 
 
-def _sheet(draft: Draft, names: Mapping[tuple[str, str], str]) -> Iterator[str]:
+def _sheet(draft: Draft, names: Mapping[str, str]) -> Iterator[str]:
     first = draft.records[0]
     yield f"# Guessed by thermoscope test new from {', '.join(r.name for r in draft.records)}; all may be changed."
     yield from (f"# {note}" for note in draft.notes)
@@ -189,7 +189,7 @@ def _sheet(draft: Draft, names: Mapping[tuple[str, str], str]) -> Iterator[str]:
             f"shift_s = {record.shift_s:.6g}   # {record.how}",
         )
     for guess in draft.guesses:
-        yield from _column(guess, names.get((guess.column, guess.place), guess.column))
+        yield from _column(guess, names[guess.column])
 
 
 def _constants(table: str, values: object) -> Iterator[str]:

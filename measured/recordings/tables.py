@@ -60,7 +60,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     time = time[rows]
     start, time, line = float(time[0]), time - time[0], table.line + rows.start
     gaps = _gaps(time)
-    filled = recorder_rows(table, sheet)
+    filled = recorder_rows(table, sheet, file)
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = numbers(table, column.header, file)[rows]
@@ -203,11 +203,11 @@ def _other_unit(column: Column, text: str, file: Path) -> list[str]:
     return [f"{file.name} column '{column.header}': {what}"]
 
 
-def recorder_rows(table: DataTable, sheet: Sheet) -> dict[str, NDArray[np.bool_]]:
+def recorder_rows(table: DataTable, sheet: Sheet, file: Path) -> dict[str, NDArray[np.bool_]]:
     """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing."""
     if not sheet.recorders:
         return dict.fromkeys((c.name for c in sheet.columns), np.ones(table.rows, bool))
-    filled = {c.name: ~np.isnan(numbers(table, c.header, Path())) for c in sheet.columns}
+    filled = {c.name: ~np.isnan(numbers(table, c.header, file)) for c in sheet.columns}
     return {
         name: np.logical_or.reduce([other for other in filled.values() if (other & rows).any()] or [rows])
         for name, rows in filled.items()

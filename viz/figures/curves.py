@@ -62,18 +62,12 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     (t, unit), thin = comparison.clock, comparison.thin
     shade(ax, comparison)
     curves = [comparison.residual_curve(channel) for channel in channels]
-    dashes = [DASHES[i % len(DASHES)] if len(curves) > len(DASHES) else "-" for i in range(len(curves))]
-    for c, dash in zip(curves, dashes, strict=True):
+    dashes = [DASHES[i % len(DASHES)] for i in range(len(curves))] if len(curves) > len(DASHES) else []
+    for c, dash in zip(curves, dashes or ["-"] * len(curves), strict=True):
         ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6, ls=dash)
         alone(ax, t, c.y, c.colour)
     ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
-    end_labels(
-        ax,
-        ends,
-        [c.name for c in curves],
-        [c.colour for c in curves],
-        dashes=dashes if len(curves) > len(DASHES) else (),
-    )
+    end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves], dashes=dashes)
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     ax.set(

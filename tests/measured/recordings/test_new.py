@@ -471,3 +471,12 @@ def test_rows_of_another_recorder_are_no_missing_readings(tmp_path):
     case_files = text(tmp_path, record(100), "one.csv"), text(tmp_path, other, "two.csv")
     made(tmp_path, *case_files)
     assert not [note for note in load_case(tmp_path / "made").notes if "missing" in note]
+
+
+def test_two_columns_of_a_sensor_stay_two(tmp_path):
+    """Though both are called as one of another file is."""
+    first = text(tmp_path, record(100, "time_s,T_winding,I [A]"), "one.csv")
+    both = "time_s,T_winding (degC),T_winding (K),I [A]"
+    other = text(tmp_path, record(100, both, "{0},{1:.2f},{1:.2f},{2}"), "two.csv")
+    case = made(tmp_path, first, other)
+    assert [len({c.name for c in t.channels}) == len(t.channels) for t in case.tests] == [True, True]
