@@ -16,12 +16,20 @@ from fem.matrices.assembly import FieldModel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 def linear_losses(field: FieldModel, K: sp.csr_array, T: Floats, influence: Floats) -> dict[str, Floats]:
-    """Part -> (k,) K that each reading loses.  K (n, n) W/K;  T (n,) K;  influence (n, k) K/W of a watt anywhere"""
+    """Part -> (2, k) K that each reading loses: by edges in the plane, and by those along the axis.
+
+    K (n, n) W/K;  T (n,) K;  influence (n, k) K/W of a watt anywhere
+    """
     bend, pull = _bend(field, T[:, None])[:, 0], K @ _bend(field, influence)
-    return {part: bend[k] @ pull[k] for part, k in _bound(field).items()}
+    lost, level = bend[:, None] * pull, _level(field)
+    return {
+        part: np.stack([lost[k[level[k]]].sum(axis=0), lost[k[~level[k]]].sum(axis=0)])
+        for part, k in _bound(field).items()
+    }
 
 
 def _bound(field: FieldModel) -> dict[str, Ints]:
@@ -33,10 +41,21 @@ def _bound(field: FieldModel) -> dict[str, Ints]:
     return {part: np.unique(np.concatenate(unknowns)) for part, unknowns in out.items()}
 
 
+def _level(field: FieldModel) -> Bools:
+    """(n,) whether an unknown is the middle of an edge that lies in the plane."""
+    out = np.zeros(field.n, bool)
+    for block in field.blocks.values():
+        corners, edges, z = len(block.points), block.elements.kept, block.xyz[:, 2]
+        a, b = edges // corners, edges % corners
+        along = np.linalg.norm(block.xyz[a] - block.xyz[b], axis=1)
+        out[block.dofs][corners:] = np.abs(z[a] - z[b]) < 0.5 * along
+    return out
+
+
 def _bend(field: FieldModel, T: Floats) -> Floats:
     """(n, k) of T (n, k): at the middle of every edge above the mean of its ends, 0 at corners."""
     out = np.zeros_like(T)
     for block in field.blocks.values():
-        corners, edges, mine = len(block.points), block.elements.edges, T[block.dofs]
+        corners, edges, mine = len(block.points), block.elements.kept, T[block.dofs]
         out[block.dofs][corners:] = mine[corners:] - (mine[edges // corners] + mine[edges % corners]) / 2
     return out

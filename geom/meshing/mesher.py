@@ -33,6 +33,7 @@ def build_mesh(
     axial_m: float | None = None,
     cache: Path | str | None = None,
     ends: Sequence[str] = (),
+    finer: Sequence[str] = (),
 ) -> NamedMesh:
     """Conformal tetrahedra of the machine's solids, with named regions, faces and contacts.
 
@@ -42,16 +43,18 @@ def build_mesh(
     axial_m : largest element along the axis (m), 1.5 * size_m if None
     cache : folder of meshes by content; None for no cache
     ends : parts towards whose ends layers become thinner, a step for each time a part is named
+    finer : parts with smaller triangles, half as large for each time a part is named
     `build_mesh(machine, **COARSE)` is quick, `**FINE` converged.
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
-    file = _cache_file(machine, (size_m, segments, across, axial, *sorted(ends)), cache)
+    file = _cache_file(machine, (size_m, segments, across, axial, *sorted(ends), "/", *sorted(finer)), cache)
     identities = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (cached := recalled(file, read_npz)) is not None:
         return replace(cached, identities=identities)
     plan = _planned((*machine.parts, *machine.fluids), segments)
-    flat = triangulate(plan.columns, size_m, across)
+    times = {label: finer.count(part.name) for label, part in enumerate(plan.cut.parts)}
+    flat = triangulate(plan.columns, size_m, across, times)
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name, ends)
     if file is not None:
         with stored(file) as partial:

@@ -5,7 +5,7 @@ Netgen was measured first: it refines isotropically into 0.3 mm liners and needs
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -34,13 +34,17 @@ class Triangulation:
     triangles: tuple[Ints, ...]
 
 
-def triangulate(columns: Sequence[Column], size: float, across: float = 2) -> Triangulation:
+def triangulate(
+    columns: Sequence[Column], size: float, across: float = 2, finer: Mapping[int, int] | None = None
+) -> Triangulation:
     """Mesh the base of every column with triangles of about `size` (m) or smaller.
 
     across : wanted number of elements over the width of a compact face, such as the winding in a slot
+    finer : label of a part -> how often the size in its columns is halved
     """
     faces = np.array([column.face for column in columns], dtype=object)
-    sizes = _sizes(faces, size, across)
+    halved = [max((finer or {}).get(label, 0) for label in column.labels) for column in columns]
+    sizes = _sizes(faces, size, across) * 0.5 ** np.array(halved)
     least = np.sum(shapely.area(faces) / sizes**2 + 0.5 * shapely.length(faces) / sizes)  # points of its triangles
     MESH_POINTS.check(least, "mesh", "would have at least")
     corners, (start, end, owner) = half_edges(faces)

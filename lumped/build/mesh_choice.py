@@ -2,7 +2,8 @@
 
 In the plane, across compact faces, along the axis and towards the ends of laminated parts elements are made smaller one
 at a time, since only some of it helps: the errors of the ways add up, and a mesh that is finer every way has eight
-times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns.
+times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns. Where
+smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
+from fem.matrices.block import renumbered
 from fem.matrices.elements import Elements
 from fem.solvers.linear_losses import linear_losses
 from geom import Machine
 from geom.disk_cache import recalled, store
-from geom.meshing.mesh import NamedMesh
 from geom.storage import cache_folder
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
@@ -44,10 +45,14 @@ MOST_SOLVED = 250_000  # of one that is solved once, for its hot spots
 MOST_QUADRATIC = 500_000  # of the one that has quadratic elements in every part: 3.5 GB and 40 s
 ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
 WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
+NOTABLE = 0.3  # percent of a hot spot that linear triangles of a part would cost: below, it is not the cause of errors
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
-WAYS = ("size_m", "across", "axial_m")  # and, of every laminated part, towards its ends
+IN_PLANE = ("size_m", "across")
+WAYS = (*IN_PLANE, "axial_m")  # and, of every laminated part, towards its ends
 MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
 Kelvins = Mapping[str, float]  # heated part -> K
+Counts = tuple[int, Mapping[str, tuple[int, int]]]  # points of a mesh; part -> its corners and middles of edges
+Losses = Mapping[str, Array]  # part -> (2, n_heated) percent of each hot spot: by edges in the plane, along the axis
 
 
 @dataclass(frozen=True)
@@ -97,7 +102,7 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, NOTABLE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
@@ -120,14 +125,16 @@ class _Looks:
     machine: Machine
     progress: Progress
     first: Meshing
-    sizes: dict[Meshing, tuple[int, int]] = field(default_factory=dict)
+    counts: dict[Meshing, Counts] = field(default_factory=dict)
     rises: dict[Meshing, Kelvins] = field(default_factory=dict)
+    losses: Losses = field(default_factory=dict)
 
     def size(self, how: Meshing) -> tuple[int, int]:
         """Points and unknowns; nothing is assembled."""
-        if how not in self.sizes:
-            self.sizes[how] = size_of(self.machine, how)
-        return self.sizes[how]
+        plain = replace(how, quadratic=())
+        if plain not in self.counts:
+            self.counts[plain] = counts_of(self.machine, plain)
+        return _size(self.machine, how, *self.counts[plain])
 
     @cached_property
     def point(self) -> FixedCoefficients:
@@ -142,10 +149,12 @@ class _Looks:
             self.rises[how] = _hot_spots(self.point, self.ready(how).field)
         return self.rises[how]
 
-    def losses(self, how: Meshing) -> Mapping[str, Kelvins]:
-        """Part -> what every hot spot would lose, in the first order, if its elements were linear ones."""
-        self.rises[how], losses = _linear_losses(self.point, self.ready(how).field)
-        return losses
+    def lose(self, how: Meshing) -> None:
+        """Find out what every hot spot would lose, in the first order, if the elements of a part were linear ones."""
+        self.rises[how], lost = _linear_losses(self.point, self.ready(how).field)
+        floor = FLOOR * max(self.rises[how].values())
+        own = np.array([max(rise, floor) for rise in self.rises[how].values()])
+        self.losses = {part: 100.0 * np.abs(kelvins) / own for part, kelvins in lost.items()}
 
     def moved(self, here: Meshing, there: Meshing) -> Kelvins:
         """How far the hot spots of two meshes are apart."""
@@ -184,17 +193,47 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     how, linear = _curved(looks, looks.first, most)
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
+    in_vain: set[tuple[str, str]] = set()
     while True:
         ways = {way: _looked_further(looks, how, way, halvings) for way, halvings in ways.items()}
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)
         enough = SHARE if looks.size(how)[1] <= CHEAP else LARGEST_SHARE
-        if way is None or percent[worst] <= enough * accuracy:
+        if percent[worst] <= enough * accuracy:
+            return MeshChoice(how, percent, *looks.size(how), True)
+        plane = max(ways[w].left(worst) for w in IN_PLANE)
+        if (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
+            alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
+        ):
+            how, ways = alone, {**ways, **dict.fromkeys(IN_PLANE, _Way())}
+        elif way is None:
             return MeshChoice(how, percent, *looks.size(how), percent[worst] <= LARGEST_SHARE * accuracy)
-        there, halvings = how.along(way, 0.5), ways[way]
-        moves = halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
-        how, ways[way] = there, _Way(moves, halvings.level + 1)
+        else:
+            there, halvings = how.along(way, 0.5), ways[way]
+            moves = (
+                halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
+            )
+            how, ways[way] = there, _Way(moves, halvings.level + 1)
+
+
+def _one_part_finer(
+    looks: _Looks, how: Meshing, worst: str, plane: float, in_vain: set[tuple[str, str]], most: int
+) -> Meshing | None:
+    """Smaller triangles in the one part where they move the worst hot spot, None where no part alone does.
+
+    plane : K that halving all of them may leave of it;  in_vain : pairs of worst and finer part that were tried
+    """
+    column = list(looks.hot(how)).index(worst)
+    for part in sorted(looks.losses, key=lambda p: -looks.losses[p][0, column]):
+        there = replace(how, finer=(*how.finer, part))
+        if looks.losses[part][0, column] < NOTABLE:
+            return None
+        if (worst, part) not in in_vain and looks.size(there)[1] <= most:
+            if UNCONFIRMED * looks.moved(how, there)[worst] >= ALIKE * plane:
+                return there
+            in_vain.add((worst, part))
+    return None
 
 
 def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
@@ -215,9 +254,8 @@ def _curved(looks: _Looks, how: Meshing, most: int) -> tuple[Meshing, Kelvins]:
     while bare + sum(added.values()) > MOST_QUADRATIC and added:
         del added[max(added, key=lambda p: added[p])]
     every = replace(how, quadratic=tuple(added))
-    losses, hot = looks.losses(every), looks.hot(every)
-    floor = FLOOR * max(hot.values())
-    worth = {p: max(100.0 * abs(losses[p][q]) / max(hot[q], floor) for q in hot) * bare / added[p] for p in added}
+    looks.lose(every)
+    worth = {p: looks.losses[p].sum(axis=0).max() * bare / added[p] for p in added}
     for part in sorted(added, key=lambda p: -worth[p]):
         there = replace(how, quadratic=(*how.quadratic, part))
         if worth[part] >= WORTH and looks.size(there)[1] <= most:
@@ -258,14 +296,22 @@ def _percent(hot: Kelvins, linear: Kelvins, ways: Mapping[str, _Way]) -> dict[st
 
 def size_of(machine: Machine, how: Meshing) -> tuple[int, int]:
     """Points and unknowns of a mesh, which stays on disk: parts have nodes of their own, windings middles of edges."""
+    return _size(machine, how, *counts_of(machine, how))
+
+
+def _size(machine: Machine, how: Meshing, points: int, parts: Mapping[str, tuple[int, int]]) -> tuple[int, int]:
+    curved = {part for part in parts if wound(machine, part) or part in how.quadratic}
+    return points, sum(corners + (part in curved) * middles for part, (corners, middles) in parts.items())
+
+
+def counts_of(machine: Machine, how: Meshing) -> Counts:
+    """Of a mesh, which stays on disk."""
     mesh = plain_mesh(machine, how)
-    curved = {p for p in mesh.parts if wound(machine, p) or p in how.quadratic}
-    return len(mesh.points), sum(_unknowns(mesh, k, part in curved) for k, part in enumerate(mesh.parts))
-
-
-def _unknowns(mesh: NamedMesh, part: int, quadratic: bool) -> int:
-    tets = mesh.tets[mesh.region == part]
-    return len(np.unique(tets)) + len(Elements.on(tets, mesh.points, quadratic).edges)
+    parts = {}
+    for k, part in enumerate(mesh.parts):
+        points, tets = renumbered(mesh.tets[mesh.region == k], len(mesh.points))
+        parts[part] = len(points), len(Elements.on(tets, mesh.points[points], True).kept)
+    return len(mesh.points), parts
 
 
 def _at_rated_point(ready: Prepared) -> FixedCoefficients:
@@ -280,8 +326,8 @@ def _hot_spots(point: FixedCoefficients, field: FieldModel) -> dict[str, float]:
     return {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
 
 
-def _linear_losses(point: FixedCoefficients, field: FieldModel) -> tuple[dict[str, float], dict[str, Kelvins]]:
-    """Hot spots as above; and part -> what each of them would lose (K) if this part had linear elements."""
+def _linear_losses(point: FixedCoefficients, field: FieldModel) -> tuple[dict[str, float], dict[str, Array]]:
+    """Hot spots as above; and part -> (2, n_heated) K that each of them would lose if this part had linear elements."""
 
     def readings(T: Array) -> Array:
         unit = np.zeros((field.n, len(point.watts)))
@@ -290,8 +336,7 @@ def _linear_losses(point: FixedCoefficients, field: FieldModel) -> tuple[dict[st
 
     T, influence = point.influence(field, readings)
     hot = {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
-    losses = linear_losses(field, field.stiffness(point.films, point.contacts), T, influence)
-    return hot, {part: dict(zip(hot, loss.tolist(), strict=True)) for part, loss in losses.items()}
+    return hot, linear_losses(field, field.stiffness(point.films, point.contacts), T, influence)
 
 
 def _hottest(point: FixedCoefficients, field: FieldModel, T: Array) -> dict[str, int]:

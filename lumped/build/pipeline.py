@@ -47,6 +47,7 @@ class Meshing:
     axial_m: float
     ends: tuple[str, ...] = ()
     quadratic: tuple[str, ...] = ()
+    finer: tuple[str, ...] = ()
 
     @property
     def coarser(self) -> Meshing:
@@ -137,7 +138,7 @@ def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepa
 
 def plain_mesh(machine: Machine, how: Meshing) -> NamedMesh:
     """The mesh alone, from the cache where it was made before."""
-    return build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder(), how.ends)
+    return build_mesh(machine, how.size_m, how.segments, how.across, how.axial_m, cache_folder(), how.ends, how.finer)
 
 
 def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float], dict[str, float]]:

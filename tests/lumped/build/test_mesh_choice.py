@@ -3,6 +3,7 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from geom import load_machine
@@ -38,14 +39,14 @@ def second_order(monkeypatch):
     """Meshes whose hot spots are low by the square of their elements' size each way; a thousand points, then twice."""
     solved = []
 
-    def size(machine, how):
+    def counts(machine, how):
         points = 1000
         for way in LOST:
             points *= halved(how, way)
-        return int(points), int(2 * points) + 100 * len(how.quadratic)
+        return int(points), {part: (int(2 * points) if part == every[0] else 0, 100) for part in every}
 
     def ready(machine, how, progress):
-        solved.append(size(machine, how)[1])
+        solved.append(mesh_choice._size(machine, how, *counts(machine, how))[1])
         return SimpleNamespace(field=how)
 
     def hot(point, how):
@@ -53,12 +54,13 @@ def second_order(monkeypatch):
         return {p: T * (1.0 - low(how) - linear) for p, T in EXACT.items()}
 
     def losses(point, how):
-        return hot(point, how), {part: {p: GAINS.get(part, 0.0) * T for p, T in EXACT.items()} for part in every}
+        lost = np.array([[T / 2, T / 2] for T in EXACT.values()]).T
+        return hot(point, how), {part: GAINS.get(part, 0.0) * lost for part in every}
 
     every = mesh_choice._linear(MACHINE)
 
     monkeypatch.setattr(mesh_choice, "meshed", ready)
-    monkeypatch.setattr(mesh_choice, "size_of", size)
+    monkeypatch.setattr(mesh_choice, "counts_of", counts)
     monkeypatch.setattr(mesh_choice, "_at_rated_point", lambda ready: "rated")
     monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
     monkeypatch.setattr(mesh_choice, "_linear_losses", losses)
@@ -128,6 +130,22 @@ def test_layers_towards_the_ends_of_one_part_are_a_way(second_order, monkeypatch
     assert replace(found.meshing, ends=()) == FIRST
 
 
+def test_triangles_of_the_one_part_that_moves_the_hot_spot_are_smaller(second_order, monkeypatch):
+    """Where they alone do what smaller ones everywhere would, the others stay as they are."""
+
+    def hot(point, how):
+        low = 0.04 / (halved(how, "size_m") * 2.0 ** how.finer.count("stator.core")) ** 2
+        return {p: T * (1.0 - low) for p, T in EXACT.items()}
+
+    monkeypatch.setitem(GAINS, "shaft", 0.01)
+    monkeypatch.setitem(GAINS, "stator.core", 0.02)
+    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    found = chosen_mesh(MACHINE, 4.0, FIRST, silent)
+    assert found.met
+    assert set(found.meshing.finer) == {"stator.core"}
+    assert found.meshing.size_m == FIRST.size_m
+
+
 def test_of_two_ways_that_leave_alike_the_cheaper_one_is_refined(second_order):
     looks = mesh_choice._Looks(MACHINE, silent, FIRST)
     left = {"size_m": 0.1, "axial_m": 3.0, "stator.core": 2.0}
@@ -140,8 +158,10 @@ def test_a_loss_foretold_is_about_the_one_that_comes(monkeypatch):
     core, rest = "stator.core", [part for part in mesh_choice._linear(MACHINE) if part != "stator.core"]
     looks = mesh_choice._Looks(MACHINE, silent, FIRST)
     every = replace(FIRST, quadratic=(core, *rest))
-    foretold = looks.losses(every)[core]["stator.core"]
-    true = looks.hot(every)["stator.core"] - looks.hot(replace(FIRST, quadratic=tuple(rest)))["stator.core"]
+    looks.lose(every)
+    rise = looks.hot(every)["stator.core"]
+    foretold = 0.01 * rise * looks.losses[core][:, list(looks.hot(every)).index("stator.core")].sum()
+    true = rise - looks.hot(replace(FIRST, quadratic=tuple(rest)))["stator.core"]
     assert 0.5 * true < foretold < 4.0 * true
 
 
