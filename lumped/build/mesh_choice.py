@@ -2,8 +2,8 @@
 
 In the plane, across compact faces, along the axis and towards the ends of laminated parts elements are made smaller one
 at a time, since only some of it helps: the errors of the ways add up, and a mesh that is finer every way has eight
-times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns. Where
-smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
+times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns.
+Where smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
 """
 
 from __future__ import annotations
