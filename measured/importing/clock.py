@@ -482,5 +482,5 @@ def _scaled(source: Source, column: str) -> Clock:
         unit = "us" if MANY_MS <= step < MANY_US else "ms"
         doubt = f"no unit of '{column}': {unit} are assumed"
         return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
-    doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""
+    doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row"
     return Clock(values, None, (column,), "numbers, taken as seconds", doubt)

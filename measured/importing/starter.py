@@ -154,7 +154,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             out.setdefault("heat", f"the only heat was left out: '{warm[0]}'; --place {quote(f'{warm[0]}=INPUT')}")
         elif not heats and not draft.constants:
             out.setdefault("heat", "no column says what heats it")
-        doubts = [r.clock.doubt for r in draft.records if r.clock.invented]
+        doubts = [r.clock.doubt for r in draft.records if r.clock.doubt]
         if doubts:
             out.setdefault("clock", doubts[0])
     return list(out.values())

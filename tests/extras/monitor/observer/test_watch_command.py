@@ -188,3 +188,11 @@ def test_a_sensor_that_dies_is_not_called_lost_before(thermoscope, case, rows, t
     minutes = " ".join(done.out.partition("watched;")[0].split()).split(" min ")[1:]
     lost = ["T_winding lost" in line for line in minutes]
     assert lost == [60 * k > 200 * 2 + 30 for k in range(len(minutes))], "after half a minute without a reading"
+
+
+def test_a_recorders_own_file_without_a_clock_is_refused(thermoscope, case, rows, tmp_path):
+    """Its rows were taken as 1 s apart, in silence."""
+    lines = [line.replace(",", ";").partition(";")[2] for line in rows.read_text().splitlines()[:60]]
+    (tmp_path / "raw.csv").write_text("\n".join(lines))
+    done = thermoscope("use", "watch", case, "--follow", "raw.csv", cwd=tmp_path)
+    assert (done.code, done.err.count("error:")) == (2, 1)
