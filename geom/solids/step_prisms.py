@@ -56,10 +56,10 @@ def step_prisms(path: Path, options: Mapping[str, Any]) -> dict[str, tuple[Prism
     if process.returncode:
         last = (process.stderr.strip().splitlines() or [f"exit code {process.returncode}"])[-1]
         raise InputError(f"not readable: its reader ended ({last})", str(path), RIGHT)
-    found = json.loads(process.stdout.splitlines()[-1])  # OpenCASCADE may have spoken before
-    if isinstance(found, list):
-        raise InputError(*found)
-    return {name: tuple(_prism(*prism) for prism in prisms) for name, prisms in found.items()}
+    result = json.loads(process.stdout.splitlines()[-1])  # OpenCASCADE may have spoken before
+    if isinstance(result, list):
+        raise InputError(*result)
+    return {name: tuple(_prism(*prism) for prism in prisms) for name, prisms in result.items()}
 
 
 def _prism(loops: list[list[list[float]]], z0: float, z1: float) -> Prism:

@@ -146,7 +146,8 @@ def imported_table(file: Path) -> DataTable:
     source, clock = read_timed(file)
     if clock.invented:
         raise InputError(clock.doubt.partition(":")[0], str(file), f"a column {TIME}, or one of instants")
-    return DataTable.of(readings(source, clock).items(), file)
+    doubt = (f"{file.name}: {clock.doubt}",) if clock.doubt else ()
+    return DataTable.of(readings(source, clock).items(), file, notes=doubt)
 
 
 def sensor_names(drafts: Sequence[Draft]) -> list[dict[str, str]]:

@@ -103,9 +103,9 @@ def read_source(file: Path) -> Source:
         plan = layout(rows, str(file))
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        return _of_table(file, plan, columns, _formulas(file))
+        return source_of_table(file, plan, columns, _formulas(file))
     if suffix not in BINARY:
-        return _of_table(file, *text_table(file))
+        return source_of_table(file, *text_table(file))
     table = read_recording(file)
     names = _once(_plain(table.columns))
     units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
@@ -123,7 +123,7 @@ def _formulas(file: Path) -> list[str]:
     return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
 
 
-def _of_table(
+def source_of_table(
     file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
 ) -> Source:
     """Named columns of a table that was found in the file."""

@@ -55,9 +55,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes.append(f"{file.name}: a quotation mark in line {at} has no partner; such marks are left out")
         lines = [line.replace('"', "") for line in lines]
     sign = delimiter(lines)
-    head = _split(lines[: 2 * SAMPLE], sign)
+    head = split_cells(lines[: 2 * SAMPLE], sign)
     if keys := _keys(head):
-        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
+        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
@@ -66,7 +66,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if columns is None:
         rows = [
             r
-            for r in _split(lines, sign)[plan.first :]
+            for r in split_cells(lines, sign)[plan.first :]
             if r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")
         ]
         long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
@@ -178,14 +178,14 @@ def delimiter(lines: list[str]) -> str:
     sample = [line for line in lines[middle : middle + SAMPLE_LINES] if line.strip()]
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
-        cells = [cell for row in _split(sample, sign) if len(row) > 1 for cell in row]
+        cells = [cell for row in split_cells(sample, sign) if len(row) > 1 for cell in row]
         good = sum(is_reading(cell) or bool((m := KEYED.fullmatch(cell)) and is_reading(m[2])) for cell in cells)
         scores[sign], shares[sign] = (good * good / len(cells), good / len(cells)) if cells else (0.0, 0.0)
     sure = [sign for sign in DELIMITERS if shares[sign] >= 0.9] or [*scores]
     return max(sure, key=lambda sign: scores[sign])
 
 
-def _split(lines: list[str], sign: str) -> list[list[str]]:
+def split_cells(lines: list[str], sign: str) -> list[list[str]]:
     """Cells of lines."""
     if sign in BLANKS:
         return [re.split(BLANKS[sign], line.strip()) if line.strip() else [] for line in lines]
