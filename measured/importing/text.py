@@ -25,7 +25,9 @@ WORDS = {
     "cp1251": re.compile("[А-яё]{4,}"),
     "cp949": re.compile("온도|시간|전류|권선|주위|전압|속도|환경|하우징|베어링"),
 }
-LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
+LETTERS = re.compile(
+    r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
+)
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
