@@ -73,6 +73,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     unit_cells = _padded(rows[units] if units is not None else [], width)
+    unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
 
 

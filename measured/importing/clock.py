@@ -292,6 +292,7 @@ def _spelled_out(cell: Any) -> str:
         clock = ":".join(re.findall("..", re.split(r"\D", text[8:14])[0]))
         return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
     text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip().translate(IDEOGRAPHIC))
+    text = re.sub(r"(?<=\d{4}):(?=\d\d:\d\d)", " ", text)  # 28/Mar/2026:12:00:10 of a web server
     text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text))
     return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
 

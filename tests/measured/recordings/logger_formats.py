@@ -723,4 +723,12 @@ FORMATS: dict[str, Format] = {
         ",",
         stamp=at("%H:%M:%S"),
     ),
+    "statistics before the names": Format(
+        "tIWA", before="Statistics\n,I,W,A\nMean,4.5,50.0,22.0\nMax,9.0,84.0,22.1\nMin,0.0,24.0,21.9\n\n"
+    ),
+    "a web server's dates": Format("tIWA", ["Time", *IWA], stamp=at("%d/%b/%Y:%H:%M:%S")),
+    "greek": Format(
+        "tIWA", ["Χρόνος (s)", "Ρεύμα (A)", "Θερμοκρασία τυλίγματος (°C)", "Θερμοκρασία περιβάλλοντος (°C)"], ";", ","
+    ),
+    "danish": Format("tIWA", ["Tid", "Strøm", "Viklingstemperatur", "Rumtemperatur"], ";", ",", doubt="assumed"),
 }
