@@ -88,10 +88,10 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
     outer.inner."""
     try:
         every = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         try:
             every = [json.loads(t) for t in text.splitlines() if t.strip()]
-        except ValueError:
+        except (ValueError, RecursionError):
             return None
     if isinstance(every, dict):
         inside = {name: one for name, one in _flat(every).items() if isinstance(one, list)}
