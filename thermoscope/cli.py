@@ -118,6 +118,8 @@ def main() -> None:
     for name in BLAS_THREADS:
         os.environ.setdefault(name, "1")
     _open_streams()
+    if "--debug" not in sys.argv:
+        sys.unraisablehook = lambda _: None  # of half-made objects of a package whose message has been given
     stopped: list[int] = []
 
     def stop(*_: object) -> None:

@@ -101,7 +101,7 @@ class Dropped:
         part_names = [p["name"] for p in parts]
         others = [{"name": n, "kind": "input", "columns": c} for n, c in goes.items() if n and n not in part_names]
         return {
-            "files": ", ".join(r.name for r in self.records),
+            "files": ", ".join(f"{r.name}{r.clock.doubt and f' ({r.clock.doubt})'}" for r in self.records),
             "columns": self.rows,
             "parts": [*parts, *others],
             "missing": self.missing,

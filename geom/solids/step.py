@@ -25,24 +25,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geom.description.machine import SECTIONS, Machine, step_sidecar
 from geom.description.materials import material
-from geom.description.names import checked_name, plain_name
-from geom.description.part import Part, Prism
+from geom.description.names import checked_name
+from geom.description.part import Part
 from geom.description.roles import Identity, Role
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from geom.limits import STEP_BYTES
-from geom.solids.slicing import sliced
-
-if TYPE_CHECKING:
-    import cadquery as cq
+from geom.solids.step_prisms import no_solid, step_prisms
 
 INSIDE = "air.inside"
 NOTHING = Identity()
-_ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 0.0)}  # axis and angle (deg) onto z
 _KEYS = {"machine": ("name", "description"), "import": ("axis", "origin_mm", "leave_out")}
 
 
@@ -58,8 +53,7 @@ def machine_in_step(path: Path, usual_materials: Callable[[], Mapping[str, str]]
         raise InputError("no such file", str(path), "a STEP file with named solids")
     beside = step_sidecar(path)
     sidecar = _read_sidecar(beside)
-    solids = _without_excluded(_solids(path, sidecar.get("import", {}), str(beside)), sidecar, str(beside))
-    prisms = _all_sliced(solids, path)
+    prisms = step_prisms(path, sidecar.get("import", {}))
     fluids = sidecar.get("fluids", {})
     _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
@@ -132,74 +126,10 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
     return sidecar
 
 
-def _solids(path: Path, sidecar: Mapping[str, Any], where: str) -> dict[str, list[cq.Solid]]:
-    """Solids (mm) by name, turned and moved so that the machine's axis is z."""
-    import cadquery as cq
-
-    axis, origin = sidecar.get("axis", "z"), sidecar.get("origin_mm", [0.0, 0.0, 0.0])
-    if axis not in _ROTATIONS:
-        raise InputError(f"{axis!r} is no axis", f"{where} [import] axis", f"one of {', '.join(_ROTATIONS)}")
-    if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
-        raise InputError(f"{origin!r} is no point", f"{where} [import] origin_mm", "write [x, y, z]")
-    rotation = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
-    translation = cq.Location(cq.Vector(*(-float(x) for x in origin)))
-    by_name: dict[str, list[cq.Solid]] = {}
-    for shape, name, place, _ in _assembly(path):
-        body = shape.moved(rotation * translation * place)
-        if body.Solids():
-            by_name.setdefault(name.split("/")[-1].replace("|", "_"), []).extend(body.Solids())
-    if not by_name:
-        raise InputError("no solids", str(path), "a STEP assembly of named solids")
-    return by_name
-
-
-def _assembly(path: Path) -> Any:
-    import cadquery as cq
-
-    STEP_BYTES.check(path.stat().st_size, path, "holds")
-    with path.open("rb") as file:
-        if b"ISO-10303-21" not in file.read(200):  # OpenCASCADE would say so on stdout
-            raise InputError("not a STEP file", str(path), "a STEP assembly of named solids")
-    try:
-        return list(cq.Assembly.load(str(path)))
-    except Exception as error:  # OpenCASCADE's readers raise whatever comes to hand
-        raise InputError(f"not readable: {error}", str(path), "a STEP assembly of named solids") from error
-
-
-def _without_excluded(
-    solids: dict[str, list[cq.Solid]], sidecar: Mapping[str, Any], where: str
-) -> dict[str, list[cq.Solid]]:
-    patterns = sidecar.get("import", {}).get("leave_out", [])
-    for pattern in patterns:
-        if not any(fnmatchcase(name, pattern) for name in solids):
-            raise _no_solid(pattern, solids, f"{where} [import] leave_out")
-    return {name: pieces for name, pieces in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
-
-
-def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
-    """Prisms by name; one error that names every solid that cannot be sliced."""
-    prisms, faults = {}, []
-    for name, pieces in solids.items():
-        try:
-            prisms[plain_name(name, f"{path} solid")] = tuple(
-                prism for solid in pieces for prism in sliced(solid, name)
-            )
-        except InputError as fault:
-            faults.append(fault)
-    if faults:
-        what = "; ".join(f"{fault.where}: {fault.what}" for fault in faults)
-        raise InputError(what, str(path), f"{faults[0].right} ([import] leave_out in {step_sidecar(path).name})")
-    return prisms
-
-
 def _refuse_unused(patterns: Mapping[str, Any], prisms: Mapping[str, Any], where: str) -> None:
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in prisms):
-            raise _no_solid(pattern, prisms, where)
-
-
-def _no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
-    return InputError(f"no solid is called {pattern!r}", where, f"the file has: {', '.join(names)}")
+            raise no_solid(pattern, prisms, where)
 
 
 def _material(

@@ -29,8 +29,9 @@ SPAN = re.compile(
 _MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\\d_]{{0,7}}"
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
-    r"(\d{4}[-/.]\s?\d{1,2}[-/.]\s?\d{1,2}\.?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
-    rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)([T ,].*)?",
+    r"(\d{4}[-/.年]\s?\d{1,2}[-/.月]\s?\d{1,2}[.日]?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
+    rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)"
+    r"([T ,].*|:\d\d:.*)?",
     re.IGNORECASE,
 )
 COMPACT = re.compile(r"(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])(?:[01]\d|2[0-3])[0-5]\d[0-5]\d")
@@ -143,7 +144,7 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is no bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
-TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|,\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
+TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
 
 
 def split_unit(header: str) -> tuple[str, str]:
@@ -170,7 +171,7 @@ def split_unit(header: str) -> tuple[str, str]:
 
 def _surely(word: str) -> bool:
     """A word that is a unit and hardly the name of a phase, a winding or a sensor (A, C, K, V, W, 1)."""
-    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉")) or word in [
+    return (bool(unit_of(word)) and (len(word) > 1 or word in "%℃℉с秒초")) or word in [
         "s",
         "A",
         "V",

@@ -11,7 +11,7 @@ from itertools import accumulate
 import numpy as np
 
 from geom.errors import InputError
-from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit
+from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
 from measured.headers.words import is_time, quantities_of, roles_of
 
@@ -19,7 +19,9 @@ SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
+TIMES = {"s", "ms", "us", "min", "h"}
 TALLEST = 8  # rows of names, tags, kinds and units over the readings
+UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位")  # of a column of units
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
 
 
@@ -41,6 +43,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     candidates = [i for i in block if i != units]
     if not candidates:
         return Layout(("",) * width, ("",) * width, first, width)
+    candidates = [i for i in candidates if len(trimmed(rows[i])) >= width - 1] or candidates
     header = max(candidates, key=lambda i: (_informative(rows[i]), i))
     names = [str(c or "").strip() for c in trimmed(rows[header])]
     if names and names[0].strip("#%/ ") != names[0]:
@@ -70,6 +73,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     unit_cells = _padded(rows[units] if units is not None else [], width)
+    unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
 
 
@@ -124,7 +128,11 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
     ]
     column = max(range(1, len(scores)), key=lambda j: scores[j])
     called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and scores[column]}
-    return [f"{name} {called.get(label, '')}".strip() for name, label in zip(names, labels, strict=True)]
+    heads = [str(cell).strip().lower() for row in before if len(row) == len(scores) for cell in row]
+    at = next((heads.index(word) % len(scores) for word in UNIT_NAMES if word in heads), len(scores))
+    units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
+    parts = zip(names, labels, strict=True)
+    return [f"{name} {called.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
 
 
 def _informative(row: Row) -> int:
@@ -155,14 +163,14 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
     A few rows before a header of their own are settings of channels, whose ranges look like readings.
     """
     fits = [_readings(row) and width / 2 < len(row) and len(trimmed(row)) <= width for row in rows]
+    labels = [fit and not is_reading("" if row[0] is None else row[0]) for fit, row in zip(fits, rows, strict=True)]
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
             after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
             names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
             settings = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
-            labels = [not is_reading("" if row[0] is None else row[0]) for row in rows[i : i + FIRM]]
-            if (settings and after - i < SHORT * sum(fits)) or (labels[0] and not any(labels[1:])):
-                continue  # also a row of rates or factors behind its label: "Interval:", 0.5, 0.5
+            if (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
+                continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5
             while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 i -= 1  # a remark behind the readings of a first row
             return i
@@ -174,8 +182,10 @@ def _kinds(row: Row, width: int) -> list[bool]:
 
 
 def _all_units(row: Row) -> bool:
+    """A label may stand before them; units of times alone are those of the steps between rows."""
     cells = [str(c).strip() for c in row if c is not None and str(c).strip()]
-    return bool(cells) and sum(is_unit(c) for c in cells) >= 0.6 * len(cells)
+    steps = len(cells) > 2 and {unit_of(c) for c in cells[1:]} <= TIMES
+    return bool(cells) and not steps and sum(is_unit(c) for c in cells) >= 0.6 * len(cells)
 
 
 def _padded(row: Row, width: int) -> list[str]:

@@ -26,6 +26,8 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
     for name in ("setpoint", "read", "modelled", "inlet", "nothing", "difference", "clock", "loss", "outer")
 )
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
+CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
+LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
 SHORTEST = 4  # letters of a word that may be looked for inside another
 IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 LETTERED = re.compile(
@@ -58,6 +60,7 @@ def axis_of(name: str) -> str:
 
 def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
+    name = CHANNEL.sub("", name)
     paths = [tokens(part) for part in PATH.split(name)]
     words = [word for path in paths for word in path]
     spoken = {
@@ -106,4 +109,5 @@ def is_time(label: str) -> bool:
     if "temps" in words and roles_of(label):
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
-    return label.strip() == "t" or bool(CLOCKS & set(words[:2])) or starts
+    last = PATH.split(label)[-1].strip()
+    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts

@@ -139,8 +139,15 @@ def readings(source: Source, clock: Clock) -> dict[str, NDArray[np.float64]]:
 
 
 def imported_table(file: Path) -> DataTable:
-    """A recorder's own file as the tests of a case have it: time_s, and columns of numbers under their names."""
-    return DataTable.of(readings(*read_timed(file)).items(), file)
+    """A recorder's own file as the tests of a case have it: time_s, and columns of numbers under their names.
+
+    InputError where nothing in it says how far its rows are apart.
+    """
+    source, clock = read_timed(file)
+    if clock.invented:
+        raise InputError(clock.doubt.partition(":")[0], str(file), f"a column {TIME}, or one of instants")
+    doubt = (f"{file.name}: {clock.doubt}",) if clock.doubt else ()
+    return DataTable.of(readings(source, clock).items(), file, notes=doubt)
 
 
 def sensor_names(drafts: Sequence[Draft]) -> list[dict[str, str]]:

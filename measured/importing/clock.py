@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
 from measured.headers.words import CLOCKS, VOCABULARY, is_time, tokens
-from measured.importing.source import BINARY, Source
+from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME
 from measured.recordings.units import QUANTITIES
 
@@ -29,6 +29,7 @@ INSTANT = re.compile(
 )
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
+IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
 MILLISECONDS = ("ms", "msec", "millisecond", "milliseconds", "millisekunden")
@@ -290,7 +291,8 @@ def _spelled_out(cell: Any) -> str:
     if COMPACT.match(text) or re.match(r"(?:19|20)\d{10}(?!\d)", text):
         clock = ":".join(re.findall("..", re.split(r"\D", text[8:14])[0]))
         return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
-    text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip())
+    text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip().translate(IDEOGRAPHIC))
+    text = re.sub(r"(?<=\d{4}):(?=\d\d:\d\d)", " ", text)  # 28/Mar/2026:12:00:10 of a web server
     text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text))
     return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
 
@@ -418,6 +420,7 @@ def _numeric(source: Source) -> Clock | None:
         return _scaled(source, numeric[0])
     cells = {c: source.numbers(c).tobytes() for c in numeric if rises(source, c)}
     repeated = [c for c in cells if [*cells.values()].count(cells[c]) > 1]  # one clock beside every signal
+    repeated += [c for c in cells if UNNAMED.fullmatch(c)]  # an index
     return _scaled(source, repeated[0]) if repeated and source.period_s is None else None
 
 
@@ -482,5 +485,5 @@ def _scaled(source: Source, column: str) -> Clock:
         unit = "us" if MANY_MS <= step < MANY_US else "ms"
         doubt = f"no unit of '{column}': {unit} are assumed"
         return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
-    doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row" if step >= MANY else ""
+    doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row"
     return Clock(values, None, (column,), "numbers, taken as seconds", doubt)

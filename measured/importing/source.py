@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geom.description.names import plain_header
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
-from measured.headers.rows import Layout, layout
+from measured.headers.rows import UNIT_NAMES, Layout, layout
 from measured.headers.words import is_time, quantities_of, roles_of
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
@@ -30,7 +30,6 @@ Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")
-UNIT_NAMES = ("unit", "einheit", "unité", "unità")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
@@ -103,9 +102,9 @@ def read_source(file: Path) -> Source:
         plan = layout(rows, str(file))
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        return _of_table(file, plan, columns, _formulas(file))
+        return source_of_table(file, plan, columns, _formulas(file))
     if suffix not in BINARY:
-        return _of_table(file, *text_table(file))
+        return source_of_table(file, *text_table(file))
     table = read_recording(file)
     names = _once(_plain(table.columns))
     units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
@@ -123,7 +122,7 @@ def _formulas(file: Path) -> list[str]:
     return [f"{file.name}: {count} formulas have no value; open and save it in a spreadsheet program"] * bool(count)
 
 
-def _of_table(
+def source_of_table(
     file: Path, plan: Layout, columns: Sequence[Any], notes: Sequence[str], period_s: float | None = None
 ) -> Source:
     """Named columns of a table that was found in the file."""
@@ -162,8 +161,9 @@ def _source(
     for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
         is_unit_column = header.lower().startswith(UNIT_NAMES)
         beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
-        if len(beside) == 1 and is_unit(unit := beside.pop()) and not unit_texts[before]:
-            unit_texts[before] = unit
+        words = [word for text in beside for word in (text, text.rpartition(" ")[2]) if is_unit(word)]  # "TEMP C"
+        if len(beside) == 1 and words and not unit_texts[before]:
+            unit_texts[before] = words[0]
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
@@ -179,7 +179,13 @@ def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
     """Is the last letter of a name that of a phase or a sensor: one of several, or of a unit that does not fit?"""
     last = header[-1:]
-    if not letter or is_time(label) or last.lower() != letter[-1].lower() or header[-2:-1].isalpha():
+    if (
+        not letter
+        or is_time(label)
+        or header[len(label) : len(label) + 1] == ":"
+        or last.lower() != letter[-1].lower()
+        or header[-2:-1].isalpha()
+    ):
         return False
     quantities = quantities_of(label) or (["temperature"] if roles_of(label) else [])
     fits = any(unit_of(letter) in QUANTITIES[q].units for q in quantities)

@@ -29,6 +29,7 @@ POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows 
 MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
+STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
 SPREAD = 1.0  # prior of everything here, in powers of e
 
 
@@ -148,19 +149,23 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
         if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
             out.setdefault("bearing", "no winding is measured, a bearing alone")
+        warmed = {g.column: (rise(s, g), roles_of(s.labels[g.column])) for s, g in columns if g.place}
+        still = [c for c, (K, roles) in warmed.items() if not roles and STILL * max(K for K, _ in warmed.values()) > K]
+        if still and any(note.startswith("ambient was not recorded") for note in draft.notes):
+            out.setdefault("room", f"'{still[0]}' hardly warms: is it the room? --place {quote(f'{still[0]}=ambient')}")
         heats = [g for s, g in columns if g.feeds and g.quantity in (*HEATS, "torque", "voltage")]
         warm = [g.column for s, g in left if set(quantities_of(s.labels[g.column])) & set(HEATS)]
         if not heats and not draft.constants and warm:
             out.setdefault("heat", f"the only heat was left out: '{warm[0]}'; --place {quote(f'{warm[0]}=INPUT')}")
         elif not heats and not draft.constants:
             out.setdefault("heat", "no column says what heats it")
-        doubts = [r.clock.doubt for r in draft.records if r.clock.invented]
+        doubts = [r.clock.doubt for r in draft.records if r.clock.doubt]
         if doubts:
             out.setdefault("clock", doubts[0])
     return list(out.values())
 
 
-ALONE = ("a set point, not a reading", "left out by hand", "--set gives it")
+ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 

@@ -25,7 +25,9 @@ WORDS = {
     "cp1251": re.compile("[А-яё]{4,}"),
     "cp949": re.compile("온도|시간|전류|권선|주위|전압|속도|환경|하우징|베어링"),
 }
-LETTERS = re.compile(r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時]")
+LETTERS = re.compile(
+    r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
+)
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
@@ -55,9 +57,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes.append(f"{file.name}: a quotation mark in line {at} has no partner; such marks are left out")
         lines = [line.replace('"', "") for line in lines]
     sign = delimiter(lines)
-    head = _split(lines[: 2 * SAMPLE], sign)
+    head = split_cells(lines[: 2 * SAMPLE], sign)
     if keys := _keys(head):
-        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in _split(lines, sign)]
+        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
@@ -66,7 +68,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if columns is None:
         rows = [
             r
-            for r in _split(lines, sign)[plan.first :]
+            for r in split_cells(lines, sign)[plan.first :]
             if r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")
         ]
         long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
@@ -86,10 +88,10 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
     outer.inner."""
     try:
         every = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         try:
             every = [json.loads(t) for t in text.splitlines() if t.strip()]
-        except ValueError:
+        except (ValueError, RecursionError):
             return None
     if isinstance(every, dict):
         inside = {name: one for name, one in _flat(every).items() if isinstance(one, list)}
@@ -178,14 +180,14 @@ def delimiter(lines: list[str]) -> str:
     sample = [line for line in lines[middle : middle + SAMPLE_LINES] if line.strip()]
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
-        cells = [cell for row in _split(sample, sign) if len(row) > 1 for cell in row]
+        cells = [cell for row in split_cells(sample, sign) if len(row) > 1 for cell in row]
         good = sum(is_reading(cell) or bool((m := KEYED.fullmatch(cell)) and is_reading(m[2])) for cell in cells)
         scores[sign], shares[sign] = (good * good / len(cells), good / len(cells)) if cells else (0.0, 0.0)
     sure = [sign for sign in DELIMITERS if shares[sign] >= 0.9] or [*scores]
     return max(sure, key=lambda sign: scores[sign])
 
 
-def _split(lines: list[str], sign: str) -> list[list[str]]:
+def split_cells(lines: list[str], sign: str) -> list[list[str]]:
     """Cells of lines."""
     if sign in BLANKS:
         return [re.split(BLANKS[sign], line.strip()) if line.strip() else [] for line in lines]

@@ -118,16 +118,17 @@ class Body:
         first : line at which the block begins
         """
         for number, line in enumerate(io.BytesIO(block), first):
-            columns = line.count(b",") + 1
-            where = f"{self.file} line {number}"
-            if columns < self.least and line.strip():
-                raise InputError(
-                    f"{columns} values under {self.least} names: the row was cut off",
-                    where,
-                    "a whole row (commas where nothing was read), or none: delete it",
-                )
-            if columns > self.width and any(cell.strip() for cell in line.split(b",")[self.width :]):
-                raise InputError(f"{columns} values under {self.width} names", where, MANY)
+            if not self.least <= line.count(b",") + 1 <= self.width:
+                check_row(line.split(b","), self.least, self.width, f"{self.file} line {number}")
+
+
+def check_row(cells: Sequence[bytes] | Sequence[str], least: int, width: int, where: str) -> None:
+    """InputError for a row of fewer cells than `least`, or more readings than names; a blank one is none."""
+    if len(cells) < least and any(cell.strip() for cell in cells):
+        right = "a whole row (commas where nothing was read), or none: delete it"
+        raise InputError(f"{len(cells)} values under {least} names: the row was cut off", where, right)
+    if any(cell.strip() for cell in cells[width:]):
+        raise InputError(f"{len(cells)} values under {width} names", where, MANY)
 
 
 def cut_blocks(parts: Iterable[bytes], size: int = BLOCK) -> Iterator[bytes]:

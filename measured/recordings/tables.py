@@ -60,10 +60,11 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     time = time[rows]
     start, time, line = float(time[0]), time - time[0], table.line + rows.start
     gaps = _gaps(time)
-    filled = recorder_rows(table, sheet, file)
+    read = {c.name: numbers(table, c.header, file) for c in sheet.columns}
+    filled = recorder_rows(read, bool(sheet.recorders))
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
-        raw = numbers(table, column.header, file)[rows]
+        raw = read[column.name][rows]
         codes = coded(raw) & (column.is_temperature | (np.abs(raw) > LARGEST_THERMOCOUPLE))
         if not column.is_temperature and codes.any():
             what = f"{int(codes.sum())} readings of {raw[codes][0]:g} are kept: a logger's code, or a reading?"
@@ -203,11 +204,14 @@ def _other_unit(column: Column, text: str, file: Path) -> list[str]:
     return [f"{file.name} column '{column.header}': {what}"]
 
 
-def recorder_rows(table: DataTable, sheet: Sheet, file: Path) -> dict[str, NDArray[np.bool_]]:
-    """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing."""
-    if not sheet.recorders:
-        return dict.fromkeys((c.name for c in sheet.columns), np.ones(table.rows, bool))
-    filled = {c.name: ~np.isnan(numbers(table, c.header, file)) for c in sheet.columns}
+def recorder_rows(read: Mapping[str, Array], several: bool) -> dict[str, NDArray[np.bool_]]:
+    """Column -> rows in which its recorder read anything: those of another recorder's clock lack nothing.
+
+    read : column -> (rows,) readings;  several : are there other recorders?
+    """
+    if not several:
+        return {name: np.ones(values.size, bool) for name, values in read.items()}
+    filled = {name: ~np.isnan(values) for name, values in read.items()}
     return {
         name: np.logical_or.reduce([other for other in filled.values() if (other & rows).any()] or [rows])
         for name, rows in filled.items()

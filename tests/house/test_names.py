@@ -23,7 +23,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "thermoscope/commands/stored_diagnosis.py": "hidden files",
     "thermoscope/rooms.py": "names of modules",
     "geom/table.py": "columns as a table declares them, NAME=KEY",
-    "geom/solids/step.py": "labels of a STEP assembly",
+    "geom/solids/step_prisms.py": "labels of a STEP assembly",
     "validation/effects/time_window.py": "events that the tool names itself, TEST:BEGIN-END",
     "fem/solvers/streams.py": "cells that fem.solvers.streams names itself, FLUID@3",
     "lumped/machine/path.py": "cells that fem.solvers.streams names itself, FLUID@3",

@@ -246,3 +246,25 @@ def test_a_recording_with_hostile_headers_becomes_a_case(tmp_path, i):
     assert {p.relative_to(tmp_path).parts[0] for p in tmp_path.rglob("*")} == {"work"}
     for file in (work / "made").rglob("*.*"):
         checked(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("deep.json", b"[" * 100_000 + b"]" * 100_000),
+        ("odd.mf4", b"MDF     4.10" + b"\xff" * 200),
+        ("odd.tdms", b"TDSm" + b"\xff" * 200),
+    ],
+)
+def test_what_makes_a_package_stumble_is_one_message(tmp_path, name, content):
+    """No warning of the package's own, no trace of an object that was half made, no fault of the program."""
+    (tmp_path / name).write_bytes(content)
+    command = [sys.executable, "-c", RUN, "test", "new", name, "--yes"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    first, *lines = done.stderr.splitlines()
+    assert done.returncode == 2
+    assert first == f"reading {name}"
+    assert lines
+    assert lines[0].startswith(f"error: {name}")
+    assert not any("Traceback" in line or "WARNING" in line for line in lines)
+    assert "fault of the program" not in done.stderr

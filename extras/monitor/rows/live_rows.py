@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
 from pathlib import Path
 
@@ -13,12 +13,13 @@ import numpy as np
 
 from thermoscope import InputError, Network
 from thermoscope.plugin import (
-    HEADER,
     Array,
     Column,
     DataTable,
     Sheet,
+    Stream,
     imported_table,
+    notes,
     numbers,
     recording_pieces,
     seconds_of,
@@ -37,25 +38,6 @@ class Rows:
     inputs: dict[str, Array]
     boundaries: dict[str, Array]
     readings: dict[str, Array]
-
-
-def tables_in(name: str, most: int, worksheet: str = "") -> Iterator[DataTable]:
-    """Rows of a recording of any format, at most so many at once; of stdin ("-") every row as it comes."""
-    if name != PIPE:
-        if not Path(name).is_file():
-            raise InputError("no such file", name, "a recording, or - for rows from a pipe")
-        yield from recording_pieces(Path(name), most, worksheet)
-        return
-    lines = csv.reader(sys.stdin, skipinitialspace=True)
-    try:
-        header = next(lines, [])
-        yield DataTable.of(((cell, ()) for cell in header), Path(name))
-        for line, cells in enumerate(lines, HEADER):
-            if cells:
-                row = [*cells, *[""] * len(header)]
-                yield DataTable.of(((c, [row[j]]) for j, c in enumerate(header)), Path(name), line=line)
-    except (csv.Error, UnicodeError) as fault:
-        raise InputError(f"not readable as CSV: {fault}", name, "commas between columns, one header line") from None
 
 
 @dataclass
@@ -160,16 +142,25 @@ def table_of(
     if like is not None and like not in sheets:
         raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
     sheets = sheets if like is None else {like: sheets[like]}
-    name = next(iter(sheets))
+    plain, imported = _readers(follow, most, next(iter(sheets.values())).worksheet)
     try:
-        return _fitting(follow, tables_in(follow, most, sheets[name].worksheet), sheets, network)
+        return _fitting(follow, plain(), sheets, network)
     except InputError as fault:
-        if not Path(follow).is_file():
-            raise
         try:  # as a recorder writes it, which `new` has read too
-            return _fitting(follow, imported_table(Path(follow)).cut(most), sheets, network)
+            return _fitting(follow, imported(), sheets, network)
         except InputError:
             raise fault from None
+
+
+def _readers(follow: str, most: int, worksheet: str) -> tuple[Callable[[], Iterator[DataTable]], ...]:
+    """The rows of a recording under its own header, and as the tests of a case have them."""
+    if follow == PIPE:
+        stream = Stream(sys.stdin.buffer, PIPE)
+        return stream.tables, stream.imported
+    file = Path(follow)
+    if not file.is_file():
+        raise InputError("no such file", follow, "a recording, or - for rows from a pipe")
+    return partial(recording_pieces, file, most, worksheet), lambda: imported_table(file).cut(most)
 
 
 def _fitting(
@@ -182,6 +173,7 @@ def _fitting(
     tables = {n: LiveTable(s, network, first.columns, follow) for n, s in sheets.items()}
     for fitting, one in tables.items():
         if not one.missing():
+            notes(first.notes)
             return fitting, one, (part for part in chain([first], parts) if part.rows)
     name = next(iter(sheets))
     lacks = tables[name].missing()[0]

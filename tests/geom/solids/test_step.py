@@ -1,6 +1,7 @@
 """STEP assemblies from elsewhere: sliced into the prisms they were made of, or refused by name."""
 
 import math
+import time
 
 import cadquery as cq
 import pytest
@@ -167,6 +168,23 @@ def test_files_that_are_no_assemblies_are_refused(tmp_path, capfd):
         with pytest.raises(InputError, match=name):
             import_step(tmp_path / name)
     assert capfd.readouterr().out == ""
+
+
+def test_a_file_that_takes_too_long_is_left(exported, monkeypatch):
+    """Its reader takes longer than a second on any computer, and is ended."""
+    monkeypatch.setenv("THERMOSCOPE_MOST_SECONDS", "1")
+    began = time.monotonic()
+    with pytest.raises(InputError, match=r"was read for .* the limit 'seconds', raised by THERMOSCOPE_MOST_SECONDS=10"):
+        import_step(exported)
+    assert time.monotonic() - began < 2.0
+
+
+@pytest.mark.parametrize("breaks", [r"raise SystemExit(3)", r"import os; os.kill(os.getpid(), 11)"])
+def test_a_reader_that_dies_is_one_message(exported, monkeypatch, tmp_path, breaks):
+    (tmp_path / "cadquery.py").write_text(breaks)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(InputError, match="not readable: its reader ended"):
+        import_step(exported)
 
 
 def test_same_name_twice_is_one_part(tmp_path):

@@ -660,4 +660,75 @@ FORMATS: dict[str, Format] = {
             ",".join(c) + ("\n#note\nTime [s],Current [A],T_winding [°C],T_ambient [°C]" if c[0] == "445" else "")
         ),
     ),
+    "a japanese logger and its table of channels": Format(
+        "xtyIWA",
+        ["番号", "日時", "ms", "CH1", "CH2", "CH3"],
+        before="メーカー,Graphtec\n測定間隔,5s\nCH1,電流,DC,20A\nCH2,巻線,TEMP,TC_K\nCH3,室温,TEMP,TC_K\n",
+        units=["NO.", "時刻", "ms", "A", "degC", "degC"],
+        cells={"x": lambda k: k + 1, "y": lambda k: 0},
+        stamp=at("%Y/%m/%d %H:%M:%S"),
+        encoding="cp932",
+    ),
+    "units in a table of channels": Format(
+        "xtWAI",
+        ["No.", "Time", "U1-1", "U1-2", "U2-1"],
+        before='"CH","Mode","Range","Comment","Unit"\n"U1-1","Tc","K","Winding","°C"\n"U1-2","Tc","K","Room","°C"\n'
+        '"U2-1","V","1V","Current","A"\n\n',
+        cells={"x": lambda k: k + 1},
+        stamp=at("%Y-%m-%d %H:%M:%S.0"),
+    ),
+    "rows of settings under a name each": Format(
+        "tIWA",
+        ["", "Current", "Twinding", "Troom"],
+        before='"BlockNumber",1\n"TraceName","Current","Twinding","Troom"\n"BlockSize",90,90,90\n"VUnit","A","C","C"\n'
+        '"SampleRate",0.2,0.2,0.2\n"HResolution",5.0,5.0,5.0\n"HOffset",0.0,0.0,0.0\n"HUnit","s","s","s"\n\n',
+        doubt="no unit of 'column 1': seconds are assumed",
+    ),
+    "a clock at the end of a path": Format(
+        "tIWA",
+        [
+            "Platform()://DS1202/Time",
+            *(f"Platform()://DS1202/Model Root/{n}" for n in ("i_s[A]", "T_wdg[°C]", "T_amb[°C]")),
+        ],
+        before='descriptions\ntype,"csv"\ndelimiter,","\ntrace_values\n',
+        doubt="seconds are assumed",
+    ),
+    "chinese dates": Format(
+        "xtIWA",
+        ["序号", "采样时间", "电机电流(A)", "绕组温度(℃)", "环境温度(℃)"],
+        stamp=at("%Y年%m月%d日 %H时%M分%S秒"),
+        cells={"x": lambda k: k + 1},
+        encoding="gb18030",
+    ),
+    "channels with colons before units": Format(
+        "xtWHI",
+        ["DATE:", "TIME:", "M00: °C", "M01: °C", "M10: A"],
+        ";",
+        ",",
+        cells={"x": at("%d.%m.%y")},
+        stamp=at("%H:%M:%S"),
+        before="ALMEMO 2890-9\n",
+    ),
+    "kinds in columns of units": Format(
+        "xytWzHz",
+        ["Place", "Date", "Time", "Value", "Unit", "Value 2", "Unit 2"],
+        "\t",
+        cells={"x": lambda k: k % 9, "y": at("%Y/%m/%d"), "z": lambda k: "TEMP C"},
+        stamp=at("%H:%M:%S"),
+    ),
+    "the air in french": Format(
+        "tIWHA",
+        ["Heure", "Intensité (A)", "T° bobinage (°C)", "T° carcasse (°C)", "T° ambiance (°C)"],
+        ";",
+        ",",
+        stamp=at("%H:%M:%S"),
+    ),
+    "statistics before the names": Format(
+        "tIWA", before="Statistics\n,I,W,A\nMean,4.5,50.0,22.0\nMax,9.0,84.0,22.1\nMin,0.0,24.0,21.9\n\n"
+    ),
+    "a web server's dates": Format("tIWA", ["Time", *IWA], stamp=at("%d/%b/%Y:%H:%M:%S")),
+    "greek": Format(
+        "tIWA", ["Χρόνος (s)", "Ρεύμα (A)", "Θερμοκρασία τυλίγματος (°C)", "Θερμοκρασία περιβάλλοντος (°C)"], ";", ","
+    ),
+    "danish": Format("tIWA", ["Tid", "Strøm", "Viklingstemperatur", "Rumtemperatur"], ";", ",", doubt="assumed"),
 }

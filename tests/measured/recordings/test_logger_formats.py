@@ -24,6 +24,8 @@ RENAMED = {
     "names for statistics programs",
     "a comment sign before the names",
     "what channels are in a row of remarks",
+    "a japanese logger and its table of channels",
+    "units in a table of channels",
 }
 
 

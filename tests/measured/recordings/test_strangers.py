@@ -78,6 +78,8 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         ("t [s],T_winding [°C],room [°C]", "tWA", "No column says what heats it."),
         ("t [s],Heat flow [kJ],T_winding [°C],room [°C]", "tPWA", "The only heat was left out: 'Heat flow"),
         ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
+        ("Time,T_winding [°C],I [A]", "tWI", "No unit of 'Time': seconds are assumed, 5 s from row to row."),
+        ("t [s],I [A],T_winding [°C],T_CELL [°C]", "tIWA", "'T_CELL [°C]' hardly warms: is it the room? --place"),
         ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone."),
     ],
 )

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
 
 from geom.errors import InputError
@@ -27,6 +28,7 @@ from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
+from measured.recordings.invalid_readings import coded
 from measured.recordings.sheet import MAX_GAP_S
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
@@ -340,10 +342,11 @@ def panels(draft: Draft) -> list[Panel]:
     from viz.figures.columns import Panel
 
     return [
-        Panel(g.column, r.clock.seconds + r.shift_s, r.source.numbers(g.column), meaning(g), bool(g.place))
+        Panel(g.column, r.clock.seconds + r.shift_s, np.where(coded(values), np.nan, values), meaning(g), bool(g.place))
         for r in draft.records
         for g in r.guesses
         if r.source.is_numeric(g.column)
+        for values in [r.source.numbers(g.column)]
     ]
 
 

@@ -188,3 +188,57 @@ def test_a_sensor_that_dies_is_not_called_lost_before(thermoscope, case, rows, t
     minutes = " ".join(done.out.partition("watched;")[0].split()).split(" min ")[1:]
     lost = ["T_winding lost" in line for line in minutes]
     assert lost == [60 * k > 200 * 2 + 30 for k in range(len(minutes))], "after half a minute without a reading"
+
+
+def as_recorded(header, lines):
+    """A preamble, semicolons, decimal commas, a row of units, a clock of its own with a unit."""
+    cells = [line.split(",") for line in lines]
+    minutes = [f"{float(row[0]) / 60:.6f}" for row in cells]
+    rows = [";".join([t, *row[1:]]).replace(".", ",") for t, row in zip(minutes, cells, strict=True)]
+    names = header.replace("time_s", "Zeit").replace(",", ";")
+    units = ";".join(["min", *[""] * header.count(",")])
+    return "\n".join(["Logger 7;serial 1234", "", names, units, *rows]) + "\n"
+
+
+def piped(case, text, tmp_path):
+    words = ["use", "watch", case, "--follow", "-", "--json", "pipe.json"]
+    command = [sys.executable, "-c", RUN, *map(str, words)]
+    done = subprocess.run(command, cwd=tmp_path, input=text, capture_output=True, timeout=120)
+    file = tmp_path / "pipe.json"
+    return done.returncode, done.stderr.decode(), json.loads(file.read_text()) if file.exists() else None
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+def test_a_pipe_is_read_as_a_file_of_the_same_recorder(thermoscope, case, rows, tmp_path, encoding):
+    header, *lines = rows.read_text().splitlines()[:60]
+    text = as_recorded(header, lines).replace("Logger 7", "Gerät 7 [°C]").encode(encoding)
+    (tmp_path / "raw.csv").write_bytes(text)
+    plain = thermoscope("use", "watch", case, "--follow", "raw.csv", "--json", "-", cwd=tmp_path)
+    code, said, document = piped(case, text, tmp_path)
+    assert plain.code == code == 0, said
+    assert document["samples"] == plain.document["samples"] == 59
+    for a, b in zip(document["places"], plain.document["places"], strict=True):
+        assert a["end_C"] == pytest.approx(b["end_C"], abs=1e-3)
+
+
+UNREADABLE = {
+    "decimal commas": ("0,1,0,20,20,293,20\n1,0,20,0,20,0,20,0,293,0\n", "10 values under 7 names"),
+    "a row cut off": ("0,1,0,20,20,293,20\n1,0,20\n", "the row was cut off"),
+    "zeros": ("0,1,0,20,20,293,20\n\0\n", "zero bytes"),
+}
+
+
+@pytest.mark.parametrize("kind", UNREADABLE)
+def test_a_pipe_that_would_be_misread_is_one_message(case, tmp_path, kind):
+    text, message = UNREADABLE[kind]
+    code, said, _ = piped(case, f"{HEADER}\n{text}".encode(), tmp_path)
+    assert (code, said.count("error:")) == (2, 1), said
+    assert message in " ".join(said.split())
+
+
+def test_a_recorders_own_file_without_a_clock_is_refused(thermoscope, case, rows, tmp_path):
+    """Its rows were taken as 1 s apart, in silence."""
+    lines = [line.replace(",", ";").partition(";")[2] for line in rows.read_text().splitlines()[:60]]
+    (tmp_path / "raw.csv").write_text("\n".join(lines))
+    done = thermoscope("use", "watch", case, "--follow", "raw.csv", cwd=tmp_path)
+    assert (done.code, done.err.count("error:")) == (2, 1)
