@@ -17,7 +17,7 @@ from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
-from lumped.model.soundness import checked_names, checked_network, checked_path
+from lumped.model.soundness import checked_names, checked_path, islands
 from lumped.schemas.reader import Table, suggestion
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
@@ -120,21 +120,18 @@ def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Ite
         places[name] = surface_place(name, node, network.column(node), table.number("area_m2"), fluid)
         table.close()
     for name, table in top.tables("means").items():
-        places[name] = _mean(network, name, table)
+        shares = table.shares("of")
+        if not shares:
+            raise table.error("of = {} averages nothing", "shares of nodes that sum to 1")
+        states = np.array([network.column(_end(network, table, node)) for node in shares])
+        weights = np.array(list(shares.values()))
+        if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
+            raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
+        table.close()
+        places[name] = Place(
+            name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights
+        )
     return places
-
-
-def _mean(network: Network, name: str, table: Table) -> Place:
-    """A sensor place that averages nodes, e.g. a winding's resistance."""
-    shares = table.shares("of")
-    if not shares:
-        raise table.error("of = {} averages nothing", "shares of nodes that sum to 1")
-    states = np.array([network.column(_end(network, table, node)) for node in shares])
-    weights = np.array(list(shares.values()))
-    if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
-        raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
-    table.close()
-    return Place(name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights)
 
 
 def _end(network: Network, table: Table, name: str) -> str:
@@ -234,4 +231,15 @@ def _checked(network: Network, where: str) -> Network:
                 raise InputError(
                     f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", suggestion(target, names)
                 )
-    return checked_network(network, where)
+    # The network; InputError names the nodes that no heat can leave, and a network that stores none
+    for island in islands(network):
+        nodes = ", ".join(f"'{name}'" for name in island)
+        raise InputError(
+            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
+            f"{' or '.join(network.boundaries) or 'a boundary'}",
+            where,
+            "a link, stream or surface to a boundary",
+        )
+    if not np.any(network.C > 0.0):
+        raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
+    return network

@@ -71,12 +71,6 @@ class Fan:
     air_C: float = 40.0
 
 
-def read_fan(machine: Machine) -> Fan | None:
-    """The through-flow of [fans], if the machine is open to it."""
-    table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
-    return read(Fan, table, f"{machine.name} [fans]") if table else None
-
-
 def read_films(machine: Machine) -> Films:
     table = {key: value for key, value in machine.sections.get("films", {}).items() if key != "outer"}
     return read(Films, table, f"{machine.name} [films]")

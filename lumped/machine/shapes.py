@@ -63,18 +63,6 @@ class Gap:
     width: float
 
 
-def gap_of(machine: Machine) -> Gap | None:
-    """From the fluid that is the gap; its width is the family's where the space reaches into the slots."""
-    if not any(part.role is Role.AIR_GAP for part in machine.fluids):
-        return None
-    (profile, _, _), *_ = machine.part(gap_fluid(machine)).prisms
-    if not profile.holes:
-        return None
-    outer, inner = radius(profile.outer), radius(profile.holes[0])
-    height = machine.features.air_gap
-    return Gap(inner, outer - inner if height is None else height)
-
-
 def gap_fluid(machine: Machine) -> str:
     """The fluid that is the air gap."""
     return next(part.name for part in machine.fluids if part.role is Role.AIR_GAP)
