@@ -60,11 +60,6 @@ NEEDS = {
 }
 
 
-def lacking(name: str) -> list[str]:
-    """The packages of an extra that are not installed."""
-    return [package for package in EXTRAS[name].packages if find_spec(package) is None]
-
-
 def message(fault: ModuleNotFoundError) -> str:
     """What to install where an extra's package is missing; "" where it belongs to none."""
     package = (fault.name or "").partition(".")[0]
