@@ -40,31 +40,23 @@ def packed_looks(
     """
     if cache is None:
         return _packed(machine, nodes, wedge)
-    looks = cached_looks(machine, nodes, cache, wedge)
+    # The same from the cache; None where this machine was not shaped before
+    looks = recalled(
+        _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
+    )
     if looks is None:
         looks = _packed(machine, nodes, wedge)
         store(_file(machine, nodes, wedge, cache), json.dumps(looks))
     return looks
 
 
-def cached_looks(machine: Machine, nodes: SplitMesh, cache: Path, wedge: Wedge = QUARTER) -> dict[str, Any] | None:
-    """The same from the cache; None where this machine was not shaped before."""
-    return recalled(
-        _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
-    )
-
-
 def _file(machine: Machine, nodes: SplitMesh, wedge: Wedge, cache: Path) -> Path:
-    return cache / f"looks-{_key(machine, nodes, wedge)}.json"
-
-
-def _key(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> str:
-    """Of all that decides: the machine, its nodes and parts, the cut, and the code that draws."""
+    # Of all that decides: the machine, its nodes and parts, the cut, and the code that draws
     content = hashlib.sha256(repr((machine, nodes.parts, wedge)).encode())
     for array in (nodes.points, nodes.owner):
         content.update(np.ascontiguousarray(array).tobytes())
     content.update(drawing_code())
-    return content.hexdigest()[:20]
+    return cache / f"looks-{content.hexdigest()[:20]}.json"
 
 
 def drawing_code() -> bytes:
