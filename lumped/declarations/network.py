@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.roles import Identity, Role, identity
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.declarations.identity_tables import read_identities, read_quantities
 from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
+from lumped.model.quantities import INPUTS
 from lumped.model.soundness import checked_names, checked_path, islands
 from lumped.schemas.reader import Table, suggestion
 from lumped.sources.loss_laws import EDDY
@@ -29,6 +30,39 @@ if TYPE_CHECKING:
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
+
+
+def read_identities(
+    top: Table, nodes: Mapping[str, Table], boundaries: Iterable[str], cells: Iterable[str]
+) -> dict[str, Identity]:
+    """`role` and `turns` of nodes, and of boundaries in [boundaries.NAME]; the cells of circuits carry coolant."""
+    around = top.tables("boundaries")
+    for name, table in around.items():
+        if name not in boundaries:
+            raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
+    out = {
+        name: statement
+        for name, table in {**nodes, **around}.items()
+        if (statement := _declared_identity(table)) is not None
+    }
+    for table in around.values():
+        table.close()
+    return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
+
+
+def _declared_identity(table: Table) -> Identity | None:
+    role = Role(table.word("role", None, list(Role))) if "role" in table else None
+    turns = table.flag("turns") if "turns" in table else None
+    return None if role is None and turns is None else identity(role, turns)
+
+
+def read_quantities(top: Table) -> dict[str, str]:
+    """[inputs.NAME] quantity = "speed": what an input measures."""
+    out = {}
+    for name, table in top.tables("inputs").items():
+        out[name] = table.word("quantity", None, INPUTS)
+        table.close()
+    return out
 
 
 def load_network(path: str | Path) -> Network:
