@@ -15,7 +15,7 @@ _HOME = {
     "library": "machine_file",
     "Machine": "description.machine",
     "import_step": "machine_file",
-    "import_draft": "importing.files",
+    "import_draft": "machine_file",
     "Part": "description.part",
     "Material": "description.materials",
     "material": "description.materials",

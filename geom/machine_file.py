@@ -67,7 +67,7 @@ def load_machine(source: str | Path) -> Machine:
     """
     path = library().get(str(source), Path(source))
     if path.suffix.lower() in (".step", ".stp"):
-        return machine_in_step(Path(path), _usual_materials)
+        return import_step(path)
     if path.suffix.lower() in IMPORTERS:
         return machine_from(import_draft(path).sections(), str(path))
     if path.suffix != ".toml" or not path.is_file():
@@ -77,6 +77,11 @@ def load_machine(source: str | Path) -> Machine:
             f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}",
         )
     return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
+
+
+def import_step(path: str | Path) -> Machine:
+    """The machine in a STEP file and the TOML file beside it, see geom.solids.step."""
+    return machine_in_step(Path(path), _usual_materials)
 
 
 @cache

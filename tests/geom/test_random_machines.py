@@ -27,14 +27,6 @@ FAMILIES = pytest.mark.parametrize("family", families().values(), ids=lambda fam
 quick = partial(settings, deadline=None, suppress_health_check=list(HealthCheck))
 
 
-def table_of(values):
-    table = {}
-    for key, value in values.items():
-        group, name = key.split(".")
-        table.setdefault(group, {})[name] = value
-    return table
-
-
 @st.composite
 def geometry(draw, family):
     """Up to eight values within 12 per cent of the defaults (counts within 2), inside their ranges."""
@@ -52,7 +44,11 @@ def geometry(draw, family):
 
 
 def build(family, values):
-    return machine_from({"machine": {"family": family.name}, "geometry": table_of(values)}, "random.toml")
+    table = {}
+    for key, value in values.items():
+        group, name = key.split(".")
+        table.setdefault(group, {})[name] = value
+    return machine_from({"machine": {"family": family.name}, "geometry": table}, "random.toml")
 
 
 def built_or_refused(family, values):
