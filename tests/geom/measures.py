@@ -15,9 +15,12 @@ def area(mesh, facets):
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
+def keys(mesh, facets):
+    """One whole number per triangle, whatever the order of its corners."""
+    return np.sort(facets, axis=1) @ np.array([len(mesh.points) ** 2, len(mesh.points), 1])
+
+
 def facets_of_tets(mesh):
     """Keys of all tetrahedra's facets and the region each belongs to."""
     corners = ([0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3])
-    return np.concatenate(
-        [np.sort(mesh.tets[:, c], axis=1) @ np.array([len(mesh.points) ** 2, len(mesh.points), 1]) for c in corners]
-    ), np.tile(mesh.region, 4)
+    return np.concatenate([keys(mesh, mesh.tets[:, c]) for c in corners]), np.tile(mesh.region, 4)

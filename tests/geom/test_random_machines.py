@@ -27,6 +27,14 @@ FAMILIES = pytest.mark.parametrize("family", families().values(), ids=lambda fam
 quick = partial(settings, deadline=None, suppress_health_check=list(HealthCheck))
 
 
+def table_of(values):
+    table = {}
+    for key, value in values.items():
+        group, name = key.split(".")
+        table.setdefault(group, {})[name] = value
+    return table
+
+
 @st.composite
 def geometry(draw, family):
     """Up to eight values within 12 per cent of the defaults (counts within 2), inside their ranges."""
@@ -44,11 +52,7 @@ def geometry(draw, family):
 
 
 def build(family, values):
-    table = {}
-    for key, value in values.items():
-        group, name = key.split(".")
-        table.setdefault(group, {})[name] = value
-    return machine_from({"machine": {"family": family.name}, "geometry": table}, "random.toml")
+    return machine_from({"machine": {"family": family.name}, "geometry": table_of(values)}, "random.toml")
 
 
 def built_or_refused(family, values):
