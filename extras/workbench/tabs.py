@@ -55,11 +55,6 @@ def report_policy() -> str:
     return _page_policy("img-src 'self' data:", "font-src data:", "frame-ancestors 'none'")
 
 
-def viewer_policy() -> str:
-    """Of the viewer, inside a page of ours."""
-    return _page_policy("frame-ancestors 'self'")
-
-
 def policy(page: Path, host: str) -> str:
     """Of a page of trame: its own scripts and socket. 'unsafe-eval': Vue compiles its templates in the browser."""
     return "; ".join(
@@ -167,7 +162,7 @@ class Tabs:
             return web.Response(
                 text=tab.session.viewer_page,
                 content_type="text/html",
-                headers={"Content-Security-Policy": viewer_policy()},
+                headers={"Content-Security-Policy": _page_policy("frame-ancestors 'self'")},
             )
         if name == "viewer-rest.json":
             return web.json_response(tab.session.viewer_rest)
