@@ -40,14 +40,18 @@ def packed_looks(
     """
     if cache is None:
         return _packed(machine, nodes, wedge)
-    # The same from the cache; None where this machine was not shaped before
-    looks = recalled(
-        _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
-    )
+    looks = cached_looks(machine, nodes, cache, wedge)
     if looks is None:
         looks = _packed(machine, nodes, wedge)
         store(_file(machine, nodes, wedge, cache), json.dumps(looks))
     return looks
+
+
+def cached_looks(machine: Machine, nodes: SplitMesh, cache: Path, wedge: Wedge = QUARTER) -> dict[str, Any] | None:
+    """The same from the cache; None where this machine was not shaped before."""
+    return recalled(
+        _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
+    )
 
 
 def _file(machine: Machine, nodes: SplitMesh, wedge: Wedge, cache: Path) -> Path:
