@@ -4,40 +4,29 @@ field = assemble(mesh, conductivity, capacity)
 found = steady(Solver(field), films, contacts, field.losses(watts), only_fixed(ambient=20.0))
 """
 
-from fem.matrices.assembly import FieldModel, assemble
-from fem.matrices.material import Conductivity, LoopWound, isotropic, laminated, wound
-from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
-from fem.matrices.winding import bundle, homogenised, unit_cell
-from fem.solvers.newton import NonlinearSolution, solve_nonlinear
-from fem.solvers.solve import Fluids, Iterative, Solver, Steady, only_fixed, steady
-from fem.solvers.streams import Stream, cut, flowing
-from fem.solvers.transient import transient
-
-__all__ = [
-    "Conductivity",
-    "CopperLoss",
-    "FieldModel",
-    "Fluids",
-    "Iterative",
-    "LoopWound",
-    "Radiation",
-    "NonlinearSolution",
-    "Solver",
-    "Steady",
-    "Stream",
-    "Term",
-    "VaryingConductivity",
-    "assemble",
-    "bundle",
-    "cut",
-    "flowing",
-    "homogenised",
-    "isotropic",
-    "laminated",
-    "only_fixed",
-    "solve_nonlinear",
-    "steady",
-    "transient",
-    "unit_cell",
-    "wound",
-]
+from fem.matrices.assembly import FieldModel as FieldModel, assemble as assemble
+from fem.matrices.material import (
+    Conductivity as Conductivity,
+    LoopWound as LoopWound,
+    isotropic as isotropic,
+    laminated as laminated,
+    wound as wound,
+)
+from fem.matrices.terms import (
+    CopperLoss as CopperLoss,
+    Radiation as Radiation,
+    Term as Term,
+    VaryingConductivity as VaryingConductivity,
+)
+from fem.matrices.winding import bundle as bundle, homogenised as homogenised, unit_cell as unit_cell
+from fem.solvers.newton import NonlinearSolution as NonlinearSolution, solve_nonlinear as solve_nonlinear
+from fem.solvers.solve import (
+    Fluids as Fluids,
+    Iterative as Iterative,
+    Solver as Solver,
+    Steady as Steady,
+    only_fixed as only_fixed,
+    steady as steady,
+)
+from fem.solvers.streams import Stream as Stream, cut as cut, flowing as flowing
+from fem.solvers.transient import transient as transient

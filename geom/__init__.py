@@ -6,8 +6,6 @@ check_cad(machine); export_cad(machine, "out")
 mesh = build_mesh(machine, **COARSE)
 """
 
-from __future__ import annotations
-
 from geom.lazy import loaded_when_used
 
 _HOME = {
@@ -15,7 +13,7 @@ _HOME = {
     "library": "machine_file",
     "Machine": "description.machine",
     "import_step": "machine_file",
-    "import_draft": "importing.files",
+    "import_draft": "machine_file",
     "Part": "description.part",
     "Material": "description.materials",
     "material": "description.materials",

@@ -1,7 +1,5 @@
 """Machine files: the library, the families, and from a file's tables, or a STEP file, to a machine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
@@ -21,7 +19,10 @@ from geom.families import radial_flux, series_dc
 from geom.families.cross_section import CROSS_SECTION
 from geom.families.family import Family
 from geom.families.proportions import remedy
-from geom.importing.files import IMPORTERS, import_draft
+from geom.importing.assumptions import USUAL_TEMPLATE
+from geom.importing.draft import Draft
+from geom.importing.motor_cad import read_motor_cad
+from geom.importing.pyleecan import read_pyleecan
 from geom.plugins import plugins
 from geom.solids.step import machine_in_step
 
@@ -29,6 +30,20 @@ LARGEST_MM = 1e6  # as all lengths of a machine file
 
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed")
+
+IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
+
+
+def import_draft(path: Path, family_template: str = USUAL_TEMPLATE) -> Draft:
+    """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them."""
+    reader = IMPORTERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(
+            f"{path.suffix or 'no ending'} is no machine file of another program",
+            str(path),
+            f"one of: {', '.join(IMPORTERS)}",
+        )
+    return reader(path, family_template)
 
 
 def library() -> dict[str, Path]:

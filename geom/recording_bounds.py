@@ -1,8 +1,5 @@
 """Recordings are counted before they are kept: bytes, rows and columns, in pieces that need no memory themselves."""
 
-from __future__ import annotations
-
-import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any, TypeVar
@@ -25,17 +22,6 @@ def check_text(source: IO[bytes], file: Path) -> None:
         ROWS.check(max(lines), file, "holds at least")
         CELLS.check(max(delimiters), file, "holds at least")
         clock.check()
-
-
-def check_size(file: Path) -> None:
-    """InputError where the file itself has more bytes than a recording may have."""
-    BYTES.check(file.stat().st_size, file, "holds")
-
-
-def check_archive(file: Path) -> None:
-    """InputError where a workbook, unpacked, has more bytes than a recording may have."""
-    with zipfile.ZipFile(file) as archive:
-        BYTES.check(sum(entry.file_size for entry in archive.infolist()), file, "holds")
 
 
 def check_shape(rows: int, columns: int, where: object) -> None:

@@ -16,7 +16,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "reference" / "keys.md"
 HEAD = f"""# Keys of all files
 
 Every key that a file may have, what it is, and what it may be. This page, the schemas, the readers and their messages
-have the bounds from one table, `lumped/schemas/bounds.py`. The bounds are far beyond any machine. What they refuse is
+have the bounds from one table, `lumped/schemas/bounds.csv`. The bounds are far beyond any machine. What they refuse is
 a slip: a sign, a decimal point, a unit. Temperatures lie between {COLDEST:g} and {HOTTEST:g} degC.
 A number has to be finite, and true is no number. Names that are yours are written as NAME.
 

@@ -41,13 +41,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--record", action="store_true", help=f"keep how long every file took in {DURATIONS.name}")
 
 
-def waiting(items: list[pytest.Item], turn: int) -> set[pytest.Item]:
-    """Nightly tests whose turn it is not: of their files, in the order of their names, every fifth has its turn."""
-    nightly = [item for item in items if item.get_closest_marker("nightly")]
-    files = sorted({item.path for item in nightly})
-    return {item for item in nightly if files.index(item.path) % PARTS != turn % PARTS}
-
-
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     spent[report.nodeid.split("::")[0]] += report.duration
 
@@ -68,7 +61,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """
     turn = config.getoption("--turn")
     if turn is not None:
-        later = waiting(items, turn)
+        # Nightly tests whose turn it is not: of their files, in the order of their names, every fifth has its turn
+        nightly = [item for item in items if item.get_closest_marker("nightly")]
+        files = sorted({item.path for item in nightly})
+        later = {item for item in nightly if files.index(item.path) % PARTS != turn % PARTS}
         config.hook.pytest_deselected(items=list(later))
         items[:] = [item for item in items if item not in later]
     heavy = {i.path for i in items if i.get_closest_marker("heavy") or i.get_closest_marker("nightly")}

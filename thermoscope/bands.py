@@ -1,7 +1,5 @@
 """Bands around what a case's model predicts; what the calibration left unsure is kept by the content of the case."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -82,8 +80,9 @@ def _test_of(name: str, record: Record) -> Test:
     inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
     air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
+    # The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them
     time, source = (
-        strictly_increasing(record.time),
+        record.time + JUMP_S * np.cumsum(np.diff(record.time, prepend=-np.inf) == 0.0),
         record.inputs.source if isinstance(record.inputs, Signals) else None,
     )
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
@@ -100,11 +99,6 @@ def field_half95(folder: Folder, test: Test, parts: Sequence[str], progress: Pro
     first, last, R = at_end(of, test)
     there, rise = (of.network.on_parts(parts, x) for x in (R, last - first))
     return NORMAL_95 * np.sqrt(np.sum(there**2, axis=1) + (of.doubt["slow"] * rise) ** 2)
-
-
-def strictly_increasing(time: Array) -> Array:
-    """The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them."""
-    return time + JUMP_S * np.cumsum(np.diff(time, prepend=-np.inf) == 0.0)
 
 
 def documents(bands: Bands) -> dict[str, dict[str, Any]]:

@@ -1,7 +1,5 @@
 """What this computer lacks, each with the command that fixes it."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -9,6 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.util import find_spec
 from typing import Annotated, Any
 
 import typer
@@ -18,7 +17,7 @@ from geom.storage import cache_folder
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
-from thermoscope.parts import EXTRAS, lacking
+from thermoscope.parts import EXTRAS
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
@@ -69,7 +68,8 @@ def as_root(command: str) -> str:
 
 
 def _installed(extra: str) -> bool:
-    return not lacking(extra)
+    # The packages of an extra that are not installed
+    return not [package for package in EXTRAS[extra].packages if find_spec(package) is None]
 
 
 def _gl() -> bool:

@@ -1,7 +1,5 @@
 """The parts of the tool that are installed on demand, and the one message of each where it is missing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -58,11 +56,6 @@ NEEDS = {
     "serve": ("aiohttp", "trame", "plotly"),
     "optimise": ("pymoo", "plotly"),
 }
-
-
-def lacking(name: str) -> list[str]:
-    """The packages of an extra that are not installed."""
-    return [package for package in EXTRAS[name].packages if find_spec(package) is None]
 
 
 def message(fault: ModuleNotFoundError) -> str:

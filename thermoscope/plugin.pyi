@@ -1,7 +1,6 @@
 # The face for extras and plugins: what each name is, room by room from below.
 from geom.arrays import Array as Array, Ints as Ints
 from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
-from geom.description.geometry import Group as Group
 from geom.description.roles import Identity as Identity
 from geom.description.machine import Machine as MachineDescription
 from geom.description.materials import winding_conductivity as winding_conductivity
@@ -284,7 +283,7 @@ from thermoscope.commands.stored_diagnosis import (
     save_diagnosis as save_diagnosis,
 )
 from thermoscope.commands.test.new import drafts_of as drafts_of, model_of_case as model_of_case, save_case as save_case
-from thermoscope.commands.use.simulate_readings import short_of as short_of
+from thermoscope.commands.use.simulate import short_of as short_of
 from thermoscope.console.summary import Summary as Summary
 from thermoscope.console.options import (
     Case as CaseArgument,

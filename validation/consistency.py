@@ -5,8 +5,6 @@ parameters, and by a guess of no change that predicts better. A name is contradi
 tests.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

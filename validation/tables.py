@@ -3,8 +3,6 @@
 A document that was read back from disk has the same tables as the result itself; every medium shows these.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -37,14 +35,10 @@ def comparison_tables(document: Document) -> tuple[Table, ...]:
 
 def tests_table(tests: Iterable[Document]) -> Table:
     """A row per test, those with most sensors over first."""
-    rows = [{**t, "n": len(t["channels"]), "over": _number_over(t)} for t in tests]
+    rows = [{**t, "n": len(t["channels"]), "over": sum(c["verdict"] == "over" for c in t["channels"])} for t in tests]
     rows.sort(key=lambda row: -int(row["over"]))
     columns = "test=name | role | sensors=n | *over | *rms (K)=rmse_K | *sensors as fitted (K)=fitted_rmse_K"
     return Table.of("", rows, columns)
-
-
-def _number_over(test: Document) -> int:
-    return sum(c["verdict"] == "over" for c in test["channels"])
 
 
 def sensors_table(title: str, tests: Iterable[Document], verdict: str = "") -> Table:

@@ -31,7 +31,12 @@ def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path 
     """
     rows = sorted(effects["effects"], key=lambda e: abs(e["value"]))
     figure, (left, right) = paper.subplots(9.6, 4.0, columns=2)
-    _half_normal(left, rows)
+    size = np.array([abs(e["value"]) for e in rows])
+    x = halfnorm.ppf((np.arange(len(rows)) + 0.5) / len(rows))
+    left.scatter(size, x, s=22, c=[BLUE if e["active"] else LIGHT.faint for e in rows], zorder=3)
+    for i in [i for i, e in enumerate(rows) if e["active"]][-TOP:]:
+        left.annotate(rows[i]["effect"], (size[i], x[i]), (6, 0), textcoords="offset points", va="center", fontsize=8)
+    left.set(ylabel="half-normal quantile", ylim=(0, None))
     _bars(
         right,
         [e["words"] for e in rows[-TOP:]],
@@ -45,15 +50,6 @@ def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path 
     left.legend(fontsize=8, frameon=False, loc="lower right")
     left.set_title(title)
     return paper.save(figure, png)
-
-
-def _half_normal(ax: Axes, rows: Sequence[Row]) -> None:
-    size = np.array([abs(e["value"]) for e in rows])
-    x = halfnorm.ppf((np.arange(len(rows)) + 0.5) / len(rows))
-    ax.scatter(size, x, s=22, c=[BLUE if e["active"] else LIGHT.faint for e in rows], zorder=3)
-    for i in [i for i, e in enumerate(rows) if e["active"]][-TOP:]:
-        ax.annotate(rows[i]["effect"], (size[i], x[i]), (6, 0), textcoords="offset points", va="center", fontsize=8)
-    ax.set(ylabel="half-normal quantile", ylim=(0, None))
 
 
 @paper.styled

@@ -1,7 +1,5 @@
 """Laws as sums of products (products.py), exactly."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import singledispatch

@@ -22,27 +22,21 @@ def cut_body(body: Body, wedge: Wedge | None) -> tuple[pyvista.PolyData, pyvista
     if wedge is None:
         return _smooth(mesh), None
     if body.whole:
-        return None if _inside(body.shape.points.mean(axis=0), wedge) else (_smooth(mesh), None)
+        # In the wedge, or a little beside it (2 degrees)
+        at = body.shape.points.mean(axis=0)
+        angle = (np.rad2deg(np.arctan2(at[1], at[0])) - wedge.start) % 360
+        return None if bool(angle < wedge.span + 2 or angle > 358) else (_smooth(mesh), None)
     first, last = wedge.edges()
     after, before = np.cross([0, 0, 1.0], first), np.cross([0, 0, 1.0], last)
-    if ((mesh.points @ after <= 0) | (mesh.points @ before >= 0)).all() and not _spans(mesh.points, after, before):
+    if ((mesh.points @ after <= 0) | (mesh.points @ before >= 0)).all() and not bool(
+        (mesh.points @ after > 0).any() and (mesh.points @ before < 0).any()
+    ):
         return _smooth(mesh), None
     sides: list[list[Plane]] = [[(np.zeros(3), -after)], [(np.zeros(3), after), (np.zeros(3), before)]]
     shells = [_clipped(_smooth(mesh), planes) for planes in sides]
     caps = [cap for planes in sides if (cap := _caps(mesh, planes)) is not None]
     shell = _merged([s for s in shells if s.n_cells])
     return None if shell is None else (shell, _merged(caps))
-
-
-def _inside(at: Array, wedge: Wedge) -> bool:
-    """In the wedge, or a little beside it (2 degrees)."""
-    angle = (np.rad2deg(np.arctan2(at[1], at[0])) - wedge.start) % 360
-    return bool(angle < wedge.span + 2 or angle > 358)
-
-
-def _spans(points: Array, after: Array, before: Array) -> bool:
-    """Does a body reach round the axis, though none of its corners is in the wedge?"""
-    return bool((points @ after > 0).any() and (points @ before < 0).any())
 
 
 def _mesh(body: Body) -> pyvista.PolyData:

@@ -1,7 +1,5 @@
 """What closes and carries a machine at its ends: end shields with ribs and bolts, bearings with balls, the shaft."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 
@@ -25,7 +23,12 @@ def shield(o: Outlines, part: Part) -> list[Body]:
     face = part.span[1] if side > 0 else part.span[0]
     thick = min(section.bounds[3] - section.bounds[1] for section in sections)
     thick = min(thick, 0.2 * rim)
-    hidden = _covered(o, part, side)
+    # Radius (m) of what stands in front of a shield: a fan's cowl
+    fronts = [p for p in o.machine.parts if p is not part and o.role(p) in (Role.HOUSING, Role.FAN) and o.section(p)]
+    outside = [
+        p for p in fronts if (p.span[0] >= part.span[1] - 1e-6 if side > 0 else p.span[1] <= part.span[0] + 1e-6)
+    ]
+    hidden = 1.03 * max((o.reach(p) for p in outside), default=0.0)
     cover = _cover(o, part, seat, thick, side).moved((0.0, 0.0, face))
     start = max(1.45 * seat, hidden)
     ribs = (
@@ -41,15 +44,6 @@ def shield(o: Outlines, part: Part) -> list[Body]:
         Body(part.name, Finish.PAINT, joined([cover, *ribs]), added=True),
         *(Body(part.name, Finish.STEEL, one, added=True, whole=True) for one in bolts),
     ]
-
-
-def _covered(o: Outlines, part: Part, side: int) -> float:
-    """Radius (m) of what stands in front of a shield: a fan's cowl."""
-    fronts = [p for p in o.machine.parts if p is not part and o.role(p) in (Role.HOUSING, Role.FAN) and o.section(p)]
-    outside = [
-        p for p in fronts if (p.span[0] >= part.span[1] - 1e-6 if side > 0 else p.span[1] <= part.span[0] + 1e-6)
-    ]
-    return 1.03 * max((o.reach(p) for p in outside), default=0.0)
 
 
 def _cover(o: Outlines, part: Part, seat: float, thick: float, side: int) -> Shape:
@@ -109,7 +103,7 @@ def shaft(o: Outlines, part: Part) -> list[Body]:
     shields = o.parts(Role.END_SHIELD, Role.BEARING)
     left = min((p.span[0] for p in shields), default=part.span[0]) - part.span[0]
     right = part.span[1] - max((p.span[1] for p in shields), default=part.span[1])
-    side = 1 if right >= left - 1e-6 or _covered_end(o, part) else -1
+    side = 1 if right >= left - 1e-6 or any(p.span[1] < o.middle for p in o.parts(Role.FAN)) else -1
     end = part.span[1] if side > 0 else part.span[0]
     radius = max(s.bounds[2] for s in sections if s.bounds[1] <= end <= s.bounds[3])
     there = right if side > 0 else left
@@ -119,11 +113,6 @@ def shaft(o: Outlines, part: Part) -> list[Body]:
     more = rod(0.86 * radius, length, 0.06 * radius, 96)
     more = (more if side > 0 else more.flipped()).moved((0.0, 0.0, end))
     return [body, Body(part.name, Finish.STEEL, joined([more, _key(0.86 * radius, end, length, side)]), added=True)]
-
-
-def _covered_end(o: Outlines, part: Part) -> bool:
-    """Is there a fan at the left?"""
-    return any(p.span[1] < o.middle for p in o.parts(Role.FAN))
 
 
 def _chamfered(section: shapely.Polygon) -> shapely.Polygon:

@@ -1,7 +1,5 @@
 """A soft shadow on the ground: the machine seen from above, blurred."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,7 +26,17 @@ def shadow(shapes: Sequence[Shape], theme: Theme) -> Any:
     span = float(max(high[0] - low[0], high[2] - low[2]))
     margin, y = MARGIN * span, low[1] - 0.001 * span
     start, end = low[[0, 2]] - margin, high[[0, 2]] + margin
-    share = _density(points, start, end, span)
+    # (rows along z, columns along x) 0 to 1: what stands above, the nearer the ground the darker and sharper
+    cell = float((end - start).max()) / PIXELS
+    columns, rows = np.ceil((end - start) / cell).astype(int)
+    place = ((points[:, [0, 2]] - start) / cell).astype(int)
+    height = (points[:, 1] - points[:, 1].min()) / span
+    share = np.zeros((rows, columns))
+    for above, dark, blur in ((0.03, 1.0, 0.25), (0.2, 0.6, 0.8), (np.inf, 0.45, 1.4)):
+        there = np.zeros((rows, columns))
+        column, row = place[height < above].T
+        there[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)] = dark
+        share = np.maximum(share, gaussian_filter(maximum_filter(there, 5), blur * SOFT * span / cell))
     corners = [[start[0], y, start[1]], [end[0], y, start[1]], [end[0], y, end[1]], [start[0], y, end[1]]]
     plane = pyvista.PolyData(np.array(corners), faces=[4, 0, 1, 2, 3])
     plane.active_texture_coordinates = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
@@ -58,18 +66,3 @@ def _scattered(shapes: Sequence[Shape]) -> Array:
     u, v = np.sqrt(rng.random(SAMPLES)), rng.random(SAMPLES)
     share = np.stack([1 - u, u * (1 - v), u * v], axis=1)
     return np.asarray((share[:, :, None] * triangles).sum(axis=1))
-
-
-def _density(points: Array, start: Array, end: Array, span: float) -> Array:
-    """(rows along z, columns along x) 0 to 1: what stands above, the nearer the ground the darker and sharper."""
-    cell = float((end - start).max()) / PIXELS
-    columns, rows = np.ceil((end - start) / cell).astype(int)
-    place = ((points[:, [0, 2]] - start) / cell).astype(int)
-    height = (points[:, 1] - points[:, 1].min()) / span
-    out = np.zeros((rows, columns))
-    for above, dark, blur in ((0.03, 1.0, 0.25), (0.2, 0.6, 0.8), (np.inf, 0.45, 1.4)):
-        there = np.zeros((rows, columns))
-        column, row = place[height < above].T
-        there[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)] = dark
-        out = np.maximum(out, gaussian_filter(maximum_filter(there, 5), blur * SOFT * span / cell))
-    return out

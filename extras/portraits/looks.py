@@ -3,8 +3,6 @@
 Every corner shows a mix of the two nodes of its meshed part that lie nearest.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import replace
@@ -55,16 +53,12 @@ def cached_looks(machine: Machine, nodes: SplitMesh, cache: Path, wedge: Wedge =
 
 
 def _file(machine: Machine, nodes: SplitMesh, wedge: Wedge, cache: Path) -> Path:
-    return cache / f"looks-{_key(machine, nodes, wedge)}.json"
-
-
-def _key(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> str:
-    """Of all that decides: the machine, its nodes and parts, the cut, and the code that draws."""
+    # Of all that decides: the machine, its nodes and parts, the cut, and the code that draws
     content = hashlib.sha256(repr((machine, nodes.parts, wedge)).encode())
     for array in (nodes.points, nodes.owner):
         content.update(np.ascontiguousarray(array).tobytes())
     content.update(drawing_code())
-    return content.hexdigest()[:20]
+    return cache / f"looks-{content.hexdigest()[:20]}.json"
 
 
 def drawing_code() -> bytes:

@@ -1,7 +1,5 @@
 """What stands around the active parts: housing, feet, base, terminal box, lifting eye, jacket ports."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 
@@ -90,7 +88,9 @@ def fittings(o: Outlines) -> list[Body]:
     if carrier is None:
         return []
     reach = o.reach(carrier)
-    inner = min(_body_radius(o, carrier), reach)
+    # Of the wall from which fins rise: what half of all rays are inside (m)
+    outline = np.asarray(o.of(carrier.prisms[0]).exterior.coords)
+    inner = min(float(np.hypot(*outline.T[:2]).min()), reach)
     z0, z1 = carrier.span
     return [*_terminal_box(carrier, reach, inner, (z0, z1)), *_eye(carrier, reach, inner, (z0 + z1) / 2)]
 
@@ -98,12 +98,6 @@ def fittings(o: Outlines) -> list[Body]:
 def _length(o: Outlines) -> float:
     spans = [p.span for p in o.parts(Role.END_SHIELD)] or [p.span for p in o.machine.parts]
     return max(b for _, b in spans) - min(a for a, _ in spans)
-
-
-def _body_radius(o: Outlines, part: Part) -> float:
-    """Of the wall from which fins rise: what half of all rays are inside (m)."""
-    outline = np.asarray(o.of(part.prisms[0]).exterior.coords)
-    return float(np.hypot(*outline.T[:2]).min())
 
 
 def _terminal_box(part: Part, reach: float, inner: float, span: tuple[float, float]) -> list[Body]:

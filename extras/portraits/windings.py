@@ -22,34 +22,24 @@ LAYERS = 5  # of a coil around a pole that are drawn
 
 def wound(o: Outlines, part: Part) -> list[Body]:
     """A winding: overhang or pole coils where it has them, else its prisms as they are."""
-    if _leaves_the_slots(o, part):
-        return [Body(part.name, Finish.COPPER, _overhang(o, part))]
+    stacks = [p for p in o.parts(Role.IRON, Role.ROTOR) if o.section(p) is None]
+    low, high = part.span
+    if bool(stacks) and all(high <= s.span[0] + 1e-6 or low >= s.span[1] - 1e-6 for s in stacks):
+        side = o.side(part)
+        near = part.span[0] if side > 0 else part.span[1]
+        straight = [p for p in part.prisms if abs((p[1] if side > 0 else p[2]) - near) < 1e-6]
+        outlines = sorted((o.of(p) for p in straight), key=angle_of)
+        reach, r = part.span[1] - part.span[0], radii_of(outlines[0])
+        angles = np.array([angle_of(outline) for outline in outlines])
+        area = outlines[0].area / (r[1] - r[0])  # mean width of a slot
+        arches = len(part.prisms) >= 2 * len(straight)
+        one = _round_a_tooth(r, area, angles, reach) if arches else _slot_to_slot(r, area, angles, reach)
+        whole = joined(one)
+        return [Body(part.name, Finish.COPPER, (whole if side > 0 else whole.flipped()).moved((0.0, 0.0, near)))]
     poles = _poles(o, part)
     if poles:
         return [Body(part.name, Finish.COPPER, coil) for coil in poles]
     return [Body(part.name, Finish.COPPER, joined([extruded(o.of(p), *p[1:]) for p in part.prisms]))]
-
-
-def _leaves_the_slots(o: Outlines, part: Part) -> bool:
-    """Does it lie before or behind all the laminations around or inside it?"""
-    stacks = [p for p in o.parts(Role.IRON, Role.ROTOR) if o.section(p) is None]
-    low, high = part.span
-    return bool(stacks) and all(high <= s.span[0] + 1e-6 or low >= s.span[1] - 1e-6 for s in stacks)
-
-
-def _overhang(o: Outlines, part: Part) -> Shape:
-    """Coils from slot to slot; a ring in the mesh. Round one tooth where the mesh has arches."""
-    side = o.side(part)
-    near = part.span[0] if side > 0 else part.span[1]
-    straight = [p for p in part.prisms if abs((p[1] if side > 0 else p[2]) - near) < 1e-6]
-    outlines = sorted((o.of(p) for p in straight), key=angle_of)
-    reach, r = part.span[1] - part.span[0], radii_of(outlines[0])
-    angles = np.array([angle_of(outline) for outline in outlines])
-    area = outlines[0].area / (r[1] - r[0])  # mean width of a slot
-    arches = len(part.prisms) >= 2 * len(straight)
-    one = _round_a_tooth(r, area, angles, reach) if arches else _slot_to_slot(r, area, angles, reach)
-    whole = joined(one)
-    return (whole if side > 0 else whole.flipped()).moved((0.0, 0.0, near))
 
 
 def _slot_to_slot(r: tuple[float, float], wide: float, angles: Array, reach: float) -> list[Shape]:

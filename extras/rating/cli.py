@@ -1,7 +1,5 @@
 """The commands of this extra; nothing heavy is loaded until one runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

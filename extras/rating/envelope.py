@@ -3,8 +3,6 @@
 T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -105,7 +103,9 @@ def until(
 ) -> float:
     """Seconds until a limit is reached under a load, from cold or from rest under the load `warm`; inf if never."""
     begin, most = model.start(op, warm, speed), np.asarray(limits)
-    if np.any(begin_at(model, op, begin, speed) >= most):
+    x = begin.x  # type: ignore[attr-defined]
+    z = np.concatenate([x, [op.boundaries[b] for b in model.network.boundaries]])
+    if np.any(model.place_temperatures(z[None])[0] >= most):
         return 0.0
 
     def left(seconds: float) -> float:
@@ -118,10 +118,3 @@ def until(
         low, high = high, min(4.0 * high, longest)
     low = max(low, 1e-3)
     return float(brentq(left, low, high, rtol=1e-3)) if over > 0.0 > left(low) else low
-
-
-def begin_at(model: Model, op: Operation, begin: object, speed: float | None) -> Array:
-    """(n_rows,) degC at a start."""
-    x = begin.x  # type: ignore[attr-defined]
-    z = np.concatenate([x, [op.boundaries[b] for b in model.network.boundaries]])
-    return model.place_temperatures(z[None])[0]

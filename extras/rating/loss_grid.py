@@ -4,8 +4,6 @@ Heat follows the map at its temperature and grows with the place's temperature a
 network's own law does where there is one slice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
@@ -126,7 +124,18 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
     for s in (s for s in network.sources if not s.name.endswith(EDDY)):  # a map says the whole of a copper loss
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
             alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind) and not x.name.endswith(EDDY)]
-            sources.append(replace(s, law=_law(grid, grid.watts[name] / len(alike), s)))
+            # Of one slice with the network's own temperature law, else linear between first and last slice
+            watts = grid.watts[name] / len(alike)
+            law = s.law.temperature
+            first, T = watts[0], float(grid.temperatures[0])
+            if grid.temperatures.size > 1:
+                rise = float(grid.temperatures[-1]) - T
+                alpha = float(np.sum(watts[-1] - first) / max(float(np.sum(first)), 1e-300) / rise)
+                law = Linear(alpha, T)
+            elif isinstance(law, Linear):
+                law = Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
+            rows = tuple(tuple(float(v) for v in row) for row in first)
+            sources.append(replace(s, law=MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)))
     gone = {s.name for s in network.sources} - {s.name for s in sources}
     parameters = tuple(replace(p, targets=tuple(t for t in p.targets if t[0] not in gone)) for p in network.parameters)
     return replace(network, sources=tuple(sources), parameters=parameters)
@@ -134,17 +143,3 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
 
 def _bare(s: Source) -> str:
     return s.name.rpartition(":")[2]
-
-
-def _law(grid: LossGrid, watts: Array, source: Source) -> MapLoss:
-    """Of one slice with the network's own temperature law, else linear between first and last slice."""
-    law = source.law.temperature
-    first, T = watts[0], float(grid.temperatures[0])
-    if grid.temperatures.size > 1:
-        rise = float(grid.temperatures[-1]) - T
-        alpha = float(np.sum(watts[-1] - first) / max(float(np.sum(first)), 1e-300) / rise)
-        law = Linear(alpha, T)
-    elif isinstance(law, Linear):
-        law = Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
-    rows = tuple(tuple(float(v) for v in row) for row in first)
-    return MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)

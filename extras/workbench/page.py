@@ -1,7 +1,5 @@
 """The page of a tab: page.html is its template (Vue and Vuetify). All of it works by keyboard."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from html import escape
 from importlib.resources import files
@@ -25,7 +23,12 @@ def draw(session: Session) -> None:
         files("extras.workbench").joinpath(f"page.{end}").read_text(encoding="utf-8") for end in ("html", "css")
     )
     server, acts = session.shown.server, actions(session)
-    _browser_code(session)
+    # What the page runs besides its template, from this package and nowhere else
+    code = str(files("extras.workbench").joinpath("browser"))
+    session.shown.server.enable_module(
+        {"serve": {"__thermoscope": code, **plotly.serve}, "scripts": [f"__thermoscope/{name}.js" for name in BROWSER]}
+    )
+    session.state.plotly = plotly.scripts[0]  # plots.js loads it
     session.state.trame__title = f"thermoscope: {session.state.case_name}"
     for name, act in acts.items():
         server.controller.trigger(name)(act)
@@ -57,12 +60,3 @@ def actions(session: Session) -> dict[str, Callable[..., Any]]:
         "paper": session.paper,
         "stop": session.stop,
     }
-
-
-def _browser_code(session: Session) -> None:
-    """What the page runs besides its template, from this package and nowhere else."""
-    code = str(files("extras.workbench").joinpath("browser"))
-    session.shown.server.enable_module(
-        {"serve": {"__thermoscope": code, **plotly.serve}, "scripts": [f"__thermoscope/{name}.js" for name in BROWSER]}
-    )
-    session.state.plotly = plotly.scripts[0]  # plots.js loads it

@@ -1,7 +1,5 @@
 """The server of the workbench: one port, one process, a session per tab."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import secrets
@@ -38,7 +36,9 @@ def application(folder: Folder, access: AccessControl, largest_drop: int = DROP_
     """
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
     prepare()
-    opened = _bench(folder)
+    parts = stored_documents(folder)
+    documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
+    opened = Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))
     tabs = Tabs(opened, largest_drop)
     app = web.Application(middlewares=[access.middleware])
     app.router.add_get("/", tabs.new)
@@ -105,10 +105,3 @@ async def _listening(runner: web.AppRunner, host: str, port: int) -> None:
 def _address(access: AccessControl, port: int) -> str:
     name = f"[{access.host}]" if ":" in access.host else access.host
     return f"http://{name}:{port}/" + (f"?token={access.token}" if access.token else "")
-
-
-def _bench(folder: Folder) -> Bench:
-    """With what earlier commands have made of this very model; the rest is made when a tab asks for it."""
-    parts = stored_documents(folder)
-    documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
-    return Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))

@@ -1,14 +1,16 @@
 """One session per tab: made when a browser comes without one, ended when none has been connected for a while."""
 
-from __future__ import annotations
-
 import asyncio
+import base64
+import hashlib
+import re
 import secrets
 import shutil
 import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +20,58 @@ from aiohttp.http_exceptions import HttpProcessingError
 from extras.workbench.access_control import served
 from extras.workbench.dropped import stored
 from extras.workbench.machines import Bench
-from extras.workbench.policy import policy, report_policy, viewer_policy
 from extras.workbench.session import Session
 
 MOST = 8  # tabs, each with a server of its own
 IDLE_S = 900.0  # a tab that is left alone so long is closed
+
+INLINE = re.compile(rb"<script>(.*?)</script>", re.S)
+
+
+def _named(script: bytes) -> str:
+    """A script as a policy names it."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode()}'"
+
+
+@cache
+def hashes(page: Path) -> str:
+    """The scripts inside a page."""
+    return " ".join(_named(script) for script in INLINE.findall(page.read_bytes()))
+
+
+@cache
+def _page_policy(*further: str) -> str:
+    """Of a page that runs no script but the viewer's."""
+    from thermoscope.plugin import script
+
+    first = ["default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'"]
+    return "; ".join([*first, "base-uri 'none'", "form-action 'none'", *further])
+
+
+def report_policy() -> str:
+    """Of the report, which runs the viewer in a frame of its own."""
+    return _page_policy("img-src 'self' data:", "font-src data:", "frame-ancestors 'none'")
+
+
+def policy(page: Path, host: str) -> str:
+    """Of a page of trame: its own scripts and socket. 'unsafe-eval': Vue compiles its templates in the browser."""
+    return "; ".join(
+        [
+            "default-src 'none'",
+            f"script-src 'self' 'unsafe-eval' {hashes(page)}",
+            "style-src 'self' 'unsafe-inline'",
+            "img-src 'self' data: blob:",
+            "font-src 'self' data:",
+            f"connect-src 'self' blob: ws://{host} wss://{host}",
+            "worker-src 'self' blob:",
+            "manifest-src 'self'",
+            "base-uri 'self'",
+            "form-action 'none'",
+            "object-src 'none'",
+            "frame-src 'self'",
+            "frame-ancestors 'none'",
+        ]
+    )
 
 
 class Tab:
@@ -111,7 +160,7 @@ class Tabs:
             return web.Response(
                 text=tab.session.viewer_page,
                 content_type="text/html",
-                headers={"Content-Security-Policy": viewer_policy()},
+                headers={"Content-Security-Policy": _page_policy("frame-ancestors 'self'")},
             )
         if name == "viewer-rest.json":
             return web.json_response(tab.session.viewer_rest)

@@ -194,22 +194,18 @@ def hats(corner: Floats, degree: int = 2) -> Floats:
     return np.concatenate([corner * (2 * corner - 1), 4 * corner[a] * corner[b]])
 
 
-def _slopes(corner: Floats, degree: int) -> Floats:
-    """(4 or 10, 4, q) derivatives of the functions by the barycentric coordinates (4, q)."""
+@cache
+def _reference(degree: int) -> tuple[Floats, Floats]:
+    """Of a volume of 1: (16, k * k) conduction from grad_a . k grad_b of the four corners, (k, k) mass."""
+    points, weight = get_quadrature(RefTet, 2 * degree)
+    corner, w = np.vstack([1 - points.sum(0), points]), weight / weight.sum()
+    # (4 or 10, 4, q) derivatives of the functions by the barycentric coordinates (4, q)
     corners = np.arange(4)
     out = np.zeros((4 if degree == 1 else 10, 4, corner.shape[1]))
     out[corners, corners] = 1.0 if degree == 1 else 4 * corner - 1
     if degree == 2:
         (a, b), middle = EDGES.T, 4 + np.arange(6)
         out[middle, a], out[middle, b] = 4 * corner[b], 4 * corner[a]
-    return out
-
-
-@cache
-def _reference(degree: int) -> tuple[Floats, Floats]:
-    """Of a volume of 1: (16, k * k) conduction from grad_a . k grad_b of the four corners, (k, k) mass."""
-    points, weight = get_quadrature(RefTet, 2 * degree)
-    corner, w = np.vstack([1 - points.sum(0), points]), weight / weight.sum()
-    N, dN = hats(corner, degree), _slopes(corner, degree)
+    N, dN = hats(corner, degree), out
     conduction = np.einsum("iaq,jbq,q->abij", dN, dN, w).reshape(16, -1)
     return conduction, np.einsum("iq,jq,q->ij", N, N, w)

@@ -1,7 +1,5 @@
 """Thermal conductivity, direction by direction."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ touch (hexagonal packing; a square one, which leaves less room between neighbour
 cell of their own (`flat_cell`), for any fill.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -153,17 +151,13 @@ def _mesh(radii: Floats, sides: int, around: int, out: int) -> tuple[MeshTri2, N
         a, b = 1 + k * n, 1 + (k + 1) * n
         cells += [np.stack([a + j, b + j, b + nxt]), np.stack([a + j, b + nxt, a + nxt])]
     ring = np.repeat([0, 0, 0, *range(1, len(radii)), *[len(radii)] * out], [n] + [2 * n] * (len(levels) - 1))
-    return _rounded(MeshTri(points, np.column_stack(cells)), radii[-1]), ring
-
-
-def _rounded(mesh: MeshTri, radius: float) -> MeshTri2:
-    """The mesh with edges that follow a circle of at most `radius` about the origin bent to it."""
+    mesh = MeshTri(points, np.column_stack(cells))
     curved = MeshTri2.from_mesh(mesh)
     ends = np.hypot(*mesh.p[:, mesh.facets])
-    follow = (np.abs(ends[0] - ends[1]) < 1e-12) & (ends[0] < radius + 1e-12)
+    follow = (np.abs(ends[0] - ends[1]) < 1e-12) & (ends[0] < radii[-1] + 1e-12)
     middle = curved.doflocs[:, mesh.nvertices :]
     middle[:, follow] *= (ends[0] / np.hypot(*middle))[follow]
-    return curved
+    return curved, ring
 
 
 def _periodic(x: Floats, sides: int) -> sp.csr_array:

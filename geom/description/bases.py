@@ -8,8 +8,6 @@ The other base's parts are called "foot.plate" and "base.plate" and sit on the f
 own one; conduction knows no gravity. Its materials, contacts and films are those of its own file.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -44,7 +42,12 @@ def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machi
     renamed = {piece: f"{piece}.{name}" for piece in PIECES}
     more = tuple(_turned(other.part(piece), renamed[piece]) for piece in PIECES)
     sections = {**machine.sections}
-    sections["contacts"] = {**_contacts(other, renamed), **sections.get("contacts", {})}
+    out = {}
+    for key, value in other.sections.get("contacts", {}).items():
+        ends = [renamed.get(end, end) for end in key.split("|")]
+        if ends != key.split("|"):
+            out["|".join(sorted(ends))] = value
+    sections["contacts"] = {**out, **sections.get("contacts", {})}
     films, theirs = sections.get("films", {}), other.sections.get("films", {}).get("outer", {})
     outer = {renamed[piece]: theirs[piece] for piece in PIECES if piece in theirs}
     mine = films.get("outer", {})
@@ -62,13 +65,3 @@ def _body(geometry: Geometry) -> dict[str, Any]:
 def _turned(part: Part, name: str) -> Part:
     """Half a turn about the axis."""
     return replace(part, name=name, prisms=tuple((p.rotated(math.pi), z0, z1) for p, z0, z1 in part.prisms))
-
-
-def _contacts(other: Machine, renamed: Mapping[str, str]) -> dict[str, Any]:
-    """Contacts of foot and base under their new names, both ends in alphabetical order."""
-    out = {}
-    for key, value in other.sections.get("contacts", {}).items():
-        ends = [renamed.get(end, end) for end in key.split("|")]
-        if ends != key.split("|"):
-            out["|".join(sorted(ends))] = value
-    return out

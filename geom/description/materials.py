@@ -1,7 +1,5 @@
 """What things are made of: one table, every value with its source and spread."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -127,7 +125,8 @@ def _mixed(
     shape: str = "round",
 ) -> dict[str, Any]:
     """Copper wires in resin, with air where the resin is missing."""
-    k_between = k_resin if impregnation >= 1.0 else _with_air(k_resin, impregnation)
+    # Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound
+    k_between = k_resin if impregnation >= 1.0 else winding_conductivity(impregnation, k_resin, K_AIR)[0]
     across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
     copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
     return {
@@ -137,8 +136,3 @@ def _mixed(
         "cp": (copper * 390.0 + resin * 1500.0) / (copper + resin),
         "mixture": Mixture(fill, k_conductor, k_between, along, shape),
     }
-
-
-def _with_air(k_resin: float, impregnation: float) -> float:
-    """Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound."""
-    return winding_conductivity(impregnation, k_resin, K_AIR)[0]

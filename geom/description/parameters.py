@@ -6,9 +6,11 @@ Most lengths are measured in others (`Scale`): a file gives the length itself (t
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from geom.description.geometry import Geometry
@@ -147,3 +149,27 @@ def length(
 def choice(key: str, words: tuple[str, ...], doc: str) -> Parameter:
     """A choice among words, of which the first is the default."""
     return Parameter(key, words[0], doc=doc, choices=words)
+
+
+def parameter_sets(
+    table: Path, measures: Mapping[str, Measure], usual: str = "usual"
+) -> dict[str, tuple[Parameter, ...]]:
+    """The parameters that a table (CSV) declares, by their set.
+
+    measures : of lengths, by the name that the table has for them;  usual : column of the defaults; where it is empty,
+    those of all machines hold. Words with | between them are a choice, of which the first is the default.
+    """
+    sets: dict[str, tuple[Parameter, ...]] = {}
+    with table.open(encoding="utf-8", newline="") as rows:
+        for row in csv.DictReader(rows):
+            key, words = row["key"], row["usual"].split("|")
+            if len(words) > 1:
+                first = words[0] if usual == "usual" else row[usual] or words[0]
+                one = Parameter(key, first, doc=row["meaning"], choices=tuple(words))
+            else:
+                number = float if key.endswith("_mm") or "." in row["usual"] else int
+                default, low, high = (number(row[name]) for name in (usual if row[usual] else "usual", "low", "high"))
+                scale = measures[row["measure"]](float(row["least"]), float(row["most"])) if row["measure"] else None
+                one = Parameter(key, default, low, high, row["meaning"], (), bool(row["or_none"]), scale, row["like"])
+            sets[row["set"]] = (*sets.get(row["set"], ()), one)
+    return sets

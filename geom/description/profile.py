@@ -110,7 +110,9 @@ class ArcGrid:
             for radius, angles in arcs.items():
                 ends[radius] |= angles
                 if any(len(loop) > 2 for loop in profile.loops):  # a plain ring is cut alike anyway
-                    steps[radius] = min(steps.get(radius, self.step), _step_over(radius, profile))
+                    corners = [max(math.hypot(x, y) for x, y, _ in hole) / _RADIUS_GRID for hole in profile.holes]
+                    under = max((r for r in corners if r < radius - 1), default=0.0)
+                    steps[radius] = min(steps.get(radius, self.step), _fine_step(radius, under, 0.25))
                     partners[radius] |= {other for other in arcs if other != radius and abs(other / radius - 1) < _THIN}
         breaks = {radius: _distinct(angles) for radius, angles in ends.items()}
         self._cuts: dict[int, list[float]] = {}
@@ -212,13 +214,6 @@ def _divided(breaks: list[float], step: float) -> list[float]:
 def _fine_step(radius: float, other: float, share: float = 0.1) -> float:
     """Step (rad) at which a chord's height over its arc is a share of the layer between two radii."""
     return 2 * math.sqrt(2 * share * abs(other - radius) / radius)
-
-
-def _step_over(radius: int, profile: Profile) -> float:
-    """Step (rad) that leaves three quarters of the bridges between a circle and the corners of the holes under it."""
-    corners = [max(math.hypot(x, y) for x, y, _ in hole) / _RADIUS_GRID for hole in profile.holes]
-    under = max((r for r in corners if r < radius - 1), default=0.0)
-    return _fine_step(radius, under, 0.25)
 
 
 def _turned(loop: Loop, angle: float) -> Loop:

@@ -1,7 +1,5 @@
 """The library at a glance: what every shipped machine is, weighs and measures, how it is cooled, where it is from."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from html import escape
@@ -66,7 +64,11 @@ def write_library(folder: Path | str) -> Path:
     rows = []
     for entry in catalogue():
         (folder / "thumbnails" / f"{entry.name}.svg").write_text(thumbnail_of(load_machine(entry.name)))
-        rows.append(_row(entry))
+        size = " x ".join(f"{1e3 * length:.0f}" for length in entry.envelope)
+        numbers = f"{entry.source}; assumed: {entry.assumed}"
+        name = f"`{entry.name}` ([{entry.family}]({entry.family}.md)): {entry.description}"
+        picture = f"![Sections across and along the axis of {entry.name}](thumbnails/{entry.name}.svg)"
+        rows.append(f"| {picture} | {name} | {entry.parts} | {entry.mass:.1f} | {size} | {entry.cooling} | {numbers} |")
     page = folder / "library.md"
     page.write_text("\n".join([*_HEAD, *rows, ""]))
     return page
@@ -80,14 +82,6 @@ _HEAD = [
     "| | machine | parts | mass (kg) | length x width x height (mm) | cooling | numbers |",
     "|---|---|---|---|---|---|---|",
 ]
-
-
-def _row(entry: Entry) -> str:
-    size = " x ".join(f"{1e3 * length:.0f}" for length in entry.envelope)
-    numbers = f"{entry.source}; assumed: {entry.assumed}"
-    name = f"`{entry.name}` ([{entry.family}]({entry.family}.md)): {entry.description}"
-    picture = f"![Sections across and along the axis of {entry.name}](thumbnails/{entry.name}.svg)"
-    return f"| {picture} | {name} | {entry.parts} | {entry.mass:.1f} | {size} | {entry.cooling} | {numbers} |"
 
 
 def thumbnail_of(machine: Machine) -> str:

@@ -1,7 +1,5 @@
 """Liquid jackets of every family: channels around the axis, as rings and as helices, and ports with their bores."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -201,12 +199,8 @@ class Turns:
     def places(self, bore: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Angle (rad) and z (m) of inlet and outlet: near the helix' ends, symmetric about the top."""
         (low, _), (_, high) = self.rings[0], self.rings[-1]
-        spacing = math.pi * self._short(bore)
+        spacing = math.pi * (2 * self._inward(bore) - (self.width - self.blunt) ** 2 / (self.width * self.pitch))
         return (math.pi / 2 + spacing, low + CLEAR * bore), (math.pi / 2 - spacing, high - CLEAR * bore)
-
-    def _short(self, bore: float) -> float:
-        """What the way from inlet to outlet lacks of the rings' turns."""
-        return 2 * self._inward(bore) - (self.width - self.blunt) ** 2 / (self.width * self.pitch)
 
     def _inward(self, bore: float) -> float:
         """Turns from the blunt end to where the first ring's first edge has room for the bore."""

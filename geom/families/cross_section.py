@@ -4,8 +4,6 @@ Frame, housing, bearings and base are those of the other machines with a round h
 has tapered slots and the rotor is plain iron.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -167,20 +165,17 @@ def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
     gap = [(shapes.ring(at.rotor, at.mouth), low, high)]
     if at.valley < at.rotor:
         gap.append((shapes.ring(at.valley, at.rotor), at.iron0, at.iron1))
+    # Is there a hole through the iron that no magnet fills?
+    outlines = at.outlines
+    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
+    buried = max(radii(outlines["magnets"]), default=0.0) < at.surface
     return (
         fluid("airgap", *gap, role=Role.AIR_GAP),
         fluid("air.left", (whole, at.cap0, max(at.core0, at.iron0))),
         fluid("air.right", (whole, min(at.core1, at.iron1), at.cap1)),
         *coolant(g, at),
-        *([fluid("air.inside")] if _hollow(at.outlines, at.surface) else []),
+        *([fluid("air.inside")] if (bool(outlines["vents"]) or holes > magnets * buried + 1e-7) else []),
     )
-
-
-def _hollow(outlines: Outlines, surface: float) -> bool:
-    """Is there a hole through the iron that no magnet fills?"""
-    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
-    buried = max(radii(outlines["magnets"]), default=0.0) < surface
-    return bool(outlines["vents"]) or holes > magnets * buried + 1e-7
 
 
 _DOC = "Radial-flux machine with a drawn cross-section: any slots, magnets, barriers, cage or wound rotor, as outlines"

@@ -1,13 +1,10 @@
 """An axial fan in a cowl on the left end of a machine, its wheel on the shaft; meshed where the file asks for it."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Mapping
 
 from geom.description import shapes
 from geom.description.geometry import Group
-from geom.description.parameters import Length, Measure, Parameter, length
+from geom.description.parameters import Length, Measure
 from geom.description.part import Part
 from geom.description.roles import Role
 from geom.families.fit import Fit, mm
@@ -30,24 +27,6 @@ def fan_measures(shield: str, radius: Length, shaft: Length) -> tuple[Measure, M
         lambda g: 1.05 * shaft(g),
     )
     return cowl, hub
-
-
-def fan_parameters(
-    plate: str, of: Mapping[str, Measure], diameter: float, cowl: float, hub: float, within: float
-) -> tuple[Parameter, ...]:
-    """[geometry.fan] of a family whose fan stands before the left `plate`.
-
-    diameter, cowl, hub : their usual lengths (mm);  within : largest share of what the family measures the cowl in
-    of : what depth, wall, cowl and hub are measured in
-    """
-    words = f"cowl with a fan on the shaft, in front of the left {plate}; 0 is none"
-    return (
-        length("fan.depth", 0, 0, 500, of["depth"](0.1, 0.5), words, off=True),
-        length("fan.cowl", cowl, 0.5, 20, of["wall"](0.003, 0.02), "wall of the cowl"),
-        length("fan.diameter", diameter, 20, 2500, of["cowl"](0.3, within), "inside of the cowl"),
-        length("fan.hub_diameter", hub, 6, 800, of["hub"](0.05, 0.6), "hub of the fan on the shaft"),
-        Parameter("fan.blades", 7, 2, 24, "blades of the fan"),
-    )
 
 
 def shaft_fan(fan: Group, shaft: float, z0: float, z1: float) -> tuple[Part, ...]:

@@ -1,7 +1,5 @@
 """Motor-CAD files (.mot, sections of key=value): machines with permanent magnets and a rotor inside the stator."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable
@@ -112,7 +110,17 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     _rotor(draft, file)
     _frame(draft, file, family_template)
     _cooling(draft, file)
-    _contacts(draft, file)
+    parts = assumptions.parts_of(draft)
+    for key, pair in GAPS.items():
+        gap = file.number(key, 0.0, 10.0, usual=0.0)
+        if gap and set(pair.split("|")) <= parts:
+            draft.take("contacts", f"{key}, mm of air", **{pair: {"gap_mm": gap}})
+    liner, k = (
+        file.number("Liner_Thickness", usual=0.0),
+        file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21),
+    )
+    h = round(k / (METRES * liner), 2) if liner else None
+    assumptions.contacts(draft, h, "Liner_Thickness, Thermal_Conductivity_Slot_Liner")
     _losses(draft, file, copper)
     assumptions.copper_sensor(draft)
     _left(draft, file)
@@ -328,20 +336,6 @@ def _cooling(draft: Draft, file: File) -> None:
         "cooling", "HousingWJ_Inlet_Temperature", inlet_C=file.number("HousingWJ_Inlet_Temperature", -60, 130, 20)
     )
     draft.assume("cooling", "one way through", jacket={"inlet": "jacket.inlet", "outlet": "jacket.outlet"})
-
-
-def _contacts(draft: Draft, file: File) -> None:
-    parts = assumptions.parts_of(draft)
-    for key, pair in GAPS.items():
-        gap = file.number(key, 0.0, 10.0, usual=0.0)
-        if gap and set(pair.split("|")) <= parts:
-            draft.take("contacts", f"{key}, mm of air", **{pair: {"gap_mm": gap}})
-    liner, k = (
-        file.number("Liner_Thickness", usual=0.0),
-        file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21),
-    )
-    h = round(k / (METRES * liner), 2) if liner else None
-    assumptions.contacts(draft, h, "Liner_Thickness, Thermal_Conductivity_Slot_Liner")
 
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:

@@ -1,7 +1,5 @@
 """Machines of pyleecan (JSON): laminations, slots, holes, magnets, cage, windings; a class is a name in a table."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -92,7 +90,17 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     _shaft(draft, document, pair)
     _frame(draft, document, pair[0], family_template)
     assumptions.contacts(draft)
-    _losses(draft, pair[0], family_template)
+    stator = pair[0]
+    winding = stator.node["winding"]
+    slots, where = draft.value("geometry.stator", "slots"), f"{stator.where}.winding"
+    section, count = _section(winding["conductor"], where), _conductors(winding, slots, where)
+    ring = math.pi * (stator.outer**2 - stator.inner**2)
+    iron = 7600.0 * stator.length * ring * 0.7  # kg; slots leave some 0.7 of the ring
+    length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
+    density = assumptions.CURRENT_DENSITY.get(family_template, assumptions.USUAL_DENSITY)
+    parallel = winding.get("Npcp")
+    parallel = float(parallel) if isinstance(parallel, int) and 0 < parallel < 1000 else 1.0
+    assumptions.losses(draft, section * 1e6, length, parallel, iron, density)
     assumptions.copper_sensor(draft)
     for name, lamination in zip(("stator", "rotor"), pair):
         for key, why in LOST.items():
@@ -476,19 +484,6 @@ def _frame(draft: Draft, document: Node, stator: Lamination, family_template: st
     ends = max(ends, draft.value("geometry.rotor", "end_mm") or 0.0) * 1e-3
     stack = max(stator.length, (draft.value("geometry.rotor", "stack_length_mm") or 0.0) * 1e-3)
     assumptions.frame(draft, stack, ends, 2 * stator.outer, 1e-3 * draft.value("geometry.shaft", "diameter_mm"))
-
-
-def _losses(draft: Draft, stator: Lamination, family_template: str) -> None:
-    winding = stator.node["winding"]
-    slots, where = draft.value("geometry.stator", "slots"), f"{stator.where}.winding"
-    section, count = _section(winding["conductor"], where), _conductors(winding, slots, where)
-    ring = math.pi * (stator.outer**2 - stator.inner**2)
-    iron = 7600.0 * stator.length * ring * 0.7  # kg; slots leave some 0.7 of the ring
-    length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
-    density = assumptions.CURRENT_DENSITY.get(family_template, assumptions.USUAL_DENSITY)
-    parallel = winding.get("Npcp")
-    parallel = float(parallel) if isinstance(parallel, int) and 0 < parallel < 1000 else 1.0
-    assumptions.losses(draft, section * 1e6, length, parallel, iron, density)
 
 
 def _mm(length: float) -> float:

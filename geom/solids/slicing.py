@@ -114,14 +114,11 @@ def _arc(edge: cq.Edge, a: float, b: float) -> Piece:
     start, middle, end = _xy(edge, a), _xy(edge, (a + b) / 2), _xy(edge, b)
     centre, radius = np.array(edge.arcCenter().toTuple()[:2]) * 1e-3, edge.radius() * 1e-3
     if np.hypot(*centre) < _ON_AXIS:
-        start, middle, end = (_on_circle(point, radius) for point in (start, middle, end))
+        start, middle, end = (
+            np.asarray(point * (round(radius, 9) / math.hypot(*point))) for point in (start, middle, end)
+        )
     along, off = end - start, middle - (start + end) / 2
     return start, end, float(2 * (along[1] * off[0] - along[0] * off[1]) / (along @ along))
-
-
-def _on_circle(point: np.ndarray, radius: float) -> np.ndarray:
-    """The point moved to the circle about the axis, whose radius is rounded to a nanometre."""
-    return np.asarray(point * (round(radius, 9) / math.hypot(*point)))
 
 
 def _chained(pieces: list[Piece]) -> list[Loop] | None:

@@ -4,8 +4,6 @@ Every cell is a node whose temperature is what leaves it: it receives m cp (T_be
 What a circuit carries from its inlet to its outlet is m cp (T_out - T_in) at every instant, exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -140,7 +138,17 @@ class Circuit:
         out = self._streams(network)
         for branch, passes in self.branches.items():
             for number, part in enumerate(passes):
-                out += self._films(network, branch, number, part)
+                usual = self.share(branch, self.flow, self.liquid(self.at_degC))
+                whole = part.duct.wall / self.cells * sum(part.walls.values())
+                one = self._streamed(part, branch, whole / (self.heat * self._unit * usual))
+                nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
+                before = self.cell(branch, number * self.cells - 1) if number else self.inlet
+                middle, laws = _mean(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
+                for wall, of in part.walls.items():
+                    law = replace(one, value=part.duct.wall / self.cells * of)
+                    laws[wall] = law if self.follows else AtUsualTemperature(law)
+                name = f"film:{self.name}.{branch}.{number + 1}"
+                out += [_comb(network, f"{name}:{wall}", wall, nodes, middle, law) for wall, law in laws.items()]
         return [*out, *self._exchanger(network)]
 
     def _streams(self, network: Network) -> list[Link]:
@@ -221,19 +229,6 @@ class Circuit:
         start, out = node_row(network.column(edges[0][0])), node_row(network.column(end))
         places = edges[0][0], end
         return Link(f"stream:{self.name}{suffix}", "stream", places, rows, cols, vals, law, out, start)
-
-    def _films(self, network: Network, branch: str, number: int, part: Pass) -> list[Link]:
-        usual = self.share(branch, self.flow, self.liquid(self.at_degC))
-        whole = part.duct.wall / self.cells * sum(part.walls.values())
-        one = self._streamed(part, branch, whole / (self.heat * self._unit * usual))
-        nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
-        before = self.cell(branch, number * self.cells - 1) if number else self.inlet
-        middle, laws = _mean(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
-        for wall, of in part.walls.items():
-            law = replace(one, value=part.duct.wall / self.cells * of)
-            laws[wall] = law if self.follows else AtUsualTemperature(law)
-        name = f"film:{self.name}.{branch}.{number + 1}"
-        return [_comb(network, f"{name}:{wall}", wall, nodes, middle, law) for wall, law in laws.items()]
 
     def _exchanger(self, network: Network) -> list[Link]:
         if self.cooler is None:

@@ -1,7 +1,5 @@
 """The annular gap between rotor and stator."""
 
-from __future__ import annotations
-
 import math
 
 from lumped.correlations.info import Info, checked
@@ -28,13 +26,6 @@ def taylor_film(omega: float, rotor_radius: float, gap: float, fluid: Fluid | No
     return Nu * fluid.k / gap, info
 
 
-def _geometric_factor(gap: float, mean_radius: float) -> float:
-    """F_g of Becker and Kaye: 1 for a thin gap."""
-    x = (gap / mean_radius) / (1.0 - gap / (2.0 * mean_radius))
-    S = 0.0571 * (1.0 - 0.652 * x) + 0.00056 / (1.0 - 0.652 * x)
-    return math.pi**2 / (41.19 * math.sqrt(S)) / (1.0 - gap / (2.0 * mean_radius))
-
-
 def becker_kaye(omega: float, rotor_radius: float, gap: float, fluid: Fluid | None = None) -> tuple[float, Info]:
     """The whole smooth gap from rotor to stator, h (W/m2/K).
 
@@ -47,7 +38,10 @@ def becker_kaye(omega: float, rotor_radius: float, gap: float, fluid: Fluid | No
     fluid = fluid or air(80.0)
     mean = rotor_radius + 0.5 * gap
     Ta = abs(omega) * math.sqrt(mean) * gap**1.5 / fluid.nu
-    X = (Ta / _geometric_factor(gap, mean)) ** 2
+    # F_g of Becker and Kaye: 1 for a thin gap
+    x = (gap / mean) / (1.0 - gap / (2.0 * mean))
+    S = 0.0571 * (1.0 - 0.652 * x) + 0.00056 / (1.0 - 0.652 * x)
+    X = (Ta / (math.pi**2 / (41.19 * math.sqrt(S)) / (1.0 - gap / (2.0 * mean)))) ** 2
     Nu = max(2.0, min(0.128 * X**0.367, 0.409 * X**0.241))
     numbers = {"Nu": Nu, "Ta": Ta, "X": X, "gap/radius": gap / mean}
     info = checked("becker_kaye", "Becker & Kaye 1962", numbers, {"X": (0, 1e7), "gap/radius": (0, 0.25)})

@@ -1,7 +1,5 @@
 """Films of moving fluids over an input and a temperature together: by Reynolds number, so that no regime is cut."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
@@ -41,7 +39,11 @@ def streamed(
     liquid : whether the fluid's own temperature counts, else that of the film;  stretch : see StreamTable
     """
     with within_silence():
-        temperatures = _temperatures(film, fluid, usual, liquid, degC)
+        wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
+        span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
+        ends = [_limit(fluid, span[0], -GRID_K), _limit(fluid, span[-1], GRID_K)] if liquid else [span[0], span[-1]]
+        some = sorted({T for T in (*wide, degC) if ends[0] < T < ends[1]})
+        temperatures = list(_between(film, fluid, usual, [ends[0], *some, ends[1]]))
         fluids = [fluid(T) for T in temperatures]
         reference = fluid(degC).nu
         shift = [math.log(x.nu / reference) for x in fluids]
@@ -78,17 +80,6 @@ def _out_of_range(film: Moving, fluid: Fluid, size: float) -> bool:
     """Whether a number that grows with the input has left its range."""
     info = film(size, fluid)[1]
     return any(info.numbers[k] > info.limits[k][1] for k in info.outside)
-
-
-def _temperatures(
-    film: Moving, fluid: Callable[[float], Fluid], usual: float, liquid: bool, degC: float
-) -> list[float]:
-    """The usual one, at which nothing is missed, and as many as viscosity and film ask for where the fluid is known."""
-    wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
-    span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
-    ends = [_limit(fluid, span[0], -GRID_K), _limit(fluid, span[-1], GRID_K)] if liquid else [span[0], span[-1]]
-    some = sorted({T for T in (*wide, degC) if ends[0] < T < ends[1]})
-    return list(_between(film, fluid, usual, [ends[0], *some, ends[1]]))
 
 
 def _limit(fluid: Callable[[float], Fluid], inside: float, step: float) -> float:

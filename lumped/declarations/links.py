@@ -1,23 +1,78 @@
 """The laws of a link and of a stream in network.toml; correlations of known surfaces are in declarations/films.py."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
-from geom.constants import L_MIN, M3_H
-from lumped.declarations.films import contact, natural, over
-from lumped.declarations.mixed import mixed
-from lumped.declarations.rotor import gap, rotating
+from geom.constants import L_MIN, M3_H, RPM
+from lumped.correlations import Info
+from lumped.correlations.streams import Moving
+from lumped.declarations.films import contact, film_air, millimetres, moving_film, natural, natural_film, over
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import Table, powers
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
 from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.properties import Fluid
 from lumped.transfer.shaft_fan import shaft_fan
+from lumped.transfer.streamed import Streamed
 
 Mechanism = tuple[str, Law, bool]
 Read = tuple[Law | list[Law], bool]
+
+
+def gap(table: Table) -> Streamed:
+    """From rotor to stator through the air between them, over the rotor's surface."""
+    radius, width = millimetres(table, "rotor_radius_mm"), millimetres(table, "gap_mm")
+    law = table.word("law", "taylor", ("taylor", "becker-kaye"))
+    return _over_speed(table, partial(_gap_film, law, radius, width), 80.0)
+
+
+def rotating(table: Table) -> Streamed:
+    """A disc or a shaft that turns in open air."""
+    film = ROTATING[table.word("surface", None, ROTATING)]
+    return _over_speed(table, partial(film, millimetres(table, "diameter_mm")), 50.0)
+
+
+def _over_speed(table: Table, film: Moving, usual_degC: float) -> Streamed:
+    of, top = table.word("speed", "speed_rpm"), table.number("up_to_rpm", 20000.0)
+    return moving_film(table, of, film, film_air(table), usual_degC, top)
+
+
+def _gap_film(law: str, radius: float, width: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
+    from lumped.correlations.air_gap import becker_kaye, taylor_film
+
+    if law == "becker-kaye":
+        return becker_kaye(rpm * RPM, radius, width, fluid)
+    one, info = taylor_film(rpm * RPM, radius, width, fluid)
+    return 0.5 * one, info
+
+
+def _disc_film(diameter: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
+    from lumped.correlations.rotating import rotating_disc
+
+    return rotating_disc(rpm * RPM, 0.5 * diameter, fluid)
+
+
+def _shaft_film(diameter: float, rpm: float, fluid: Fluid) -> tuple[float, Info]:
+    from lumped.correlations.rotating import rotating_shaft
+
+    return rotating_shaft(rpm * RPM, diameter, fluid)
+
+
+ROTATING: dict[str, Callable[[float, float, Fluid], tuple[float, Info]]] = {"disc": _disc_film, "shaft": _shaft_film}
+
+
+# Mixed convection in network.toml: still and moving air on one surface, which do not add
+def mixed(table: Table) -> list[Law]:
+    """(h_forced^n + h_natural^n)^(1/n) of a `natural` and a `forced` table: still air, and what moving air adds."""
+    still, moving = (Table(table.raw(key, {}), f"{table.where} {key}") for key in ("natural", "forced"))
+    film, factor = natural_film(still)
+    forced, exponent = over(moving), table.number("exponent", 3.0, of="mixed.exponent")
+    still.close()
+    moving.close()
+    scaled = replace(film, value=tuple(factor * h for h in film.value))
+    return [Fixed(factor, film), replace(forced, table=replace(forced.table, still=scaled, exponent=exponent))]
 
 
 def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[float, bool] | None:

@@ -1,7 +1,5 @@
 """The losses of network.toml, by kind."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
@@ -81,7 +79,17 @@ def _brush(table: Table) -> Law:
 
 def _measured(table: Table, speeds: Collection[str]) -> Law:
     table.words("less", [])
-    return MeasuredLoss(_electrical(table) + _mechanical(table, speeds))
+    # Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor
+    out = []
+    for item in table.listed("mechanical"):
+        names = item.words("product")
+        turning = [name for name in names if name in speeds]
+        if "factor" not in item and not turning and len(names) > 1:
+            right = 'factor = ..., or [inputs.NAME] quantity = "speed"'
+            raise item.error("none of these inputs is known as a speed", right)
+        out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
+        item.close()
+    return MeasuredLoss(_electrical(table) + tuple(out))
 
 
 def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
@@ -133,20 +141,6 @@ def _electrical(table: Table) -> Products:
     out = []
     for item in table.listed("electrical"):
         out.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
-        item.close()
-    return tuple(out)
-
-
-def _mechanical(table: Table, speeds: Collection[str]) -> Products:
-    """Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor."""
-    out = []
-    for item in table.listed("mechanical"):
-        names = item.words("product")
-        turning = [name for name in names if name in speeds]
-        if "factor" not in item and not turning and len(names) > 1:
-            right = 'factor = ..., or [inputs.NAME] quantity = "speed"'
-            raise item.error("none of these inputs is known as a speed", right)
-        out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
         item.close()
     return tuple(out)
 

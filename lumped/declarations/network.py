@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.roles import Identity, Role, identity
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.declarations.identity_tables import read_identities, read_quantities
 from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import Link, Network, Place, Row, Source
-from lumped.model.soundness import checked_names, checked_network, checked_path
+from lumped.model.quantities import INPUTS
+from lumped.model.soundness import checked_names, checked_path, islands
 from lumped.schemas.reader import Table, suggestion
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
@@ -29,6 +30,39 @@ if TYPE_CHECKING:
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
+
+
+def read_identities(
+    top: Table, nodes: Mapping[str, Table], boundaries: Iterable[str], cells: Iterable[str]
+) -> dict[str, Identity]:
+    """`role` and `turns` of nodes, and of boundaries in [boundaries.NAME]; the cells of circuits carry coolant."""
+    around = top.tables("boundaries")
+    for name, table in around.items():
+        if name not in boundaries:
+            raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
+    out = {
+        name: statement
+        for name, table in {**nodes, **around}.items()
+        if (statement := _declared_identity(table)) is not None
+    }
+    for table in around.values():
+        table.close()
+    return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
+
+
+def _declared_identity(table: Table) -> Identity | None:
+    role = Role(table.word("role", None, list(Role))) if "role" in table else None
+    turns = table.flag("turns") if "turns" in table else None
+    return None if role is None and turns is None else identity(role, turns)
+
+
+def read_quantities(top: Table) -> dict[str, str]:
+    """[inputs.NAME] quantity = "speed": what an input measures."""
+    out = {}
+    for name, table in top.tables("inputs").items():
+        out[name] = table.word("quantity", None, INPUTS)
+        table.close()
+    return out
 
 
 def load_network(path: str | Path) -> Network:
@@ -120,21 +154,18 @@ def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Ite
         places[name] = surface_place(name, node, network.column(node), table.number("area_m2"), fluid)
         table.close()
     for name, table in top.tables("means").items():
-        places[name] = _mean(network, name, table)
+        shares = table.shares("of")
+        if not shares:
+            raise table.error("of = {} averages nothing", "shares of nodes that sum to 1")
+        states = np.array([network.column(_end(network, table, node)) for node in shares])
+        weights = np.array(list(shares.values()))
+        if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
+            raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
+        table.close()
+        places[name] = Place(
+            name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights
+        )
     return places
-
-
-def _mean(network: Network, name: str, table: Table) -> Place:
-    """A sensor place that averages nodes, e.g. a winding's resistance."""
-    shares = table.shares("of")
-    if not shares:
-        raise table.error("of = {} averages nothing", "shares of nodes that sum to 1")
-    states = np.array([network.column(_end(network, table, node)) for node in shares])
-    weights = np.array(list(shares.values()))
-    if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
-        raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
-    table.close()
-    return Place(name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights)
 
 
 def _end(network: Network, table: Table, name: str) -> str:
@@ -234,4 +265,15 @@ def _checked(network: Network, where: str) -> Network:
                 raise InputError(
                     f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", suggestion(target, names)
                 )
-    return checked_network(network, where)
+    # The network; InputError names the nodes that no heat can leave, and a network that stores none
+    for island in islands(network):
+        nodes = ", ".join(f"'{name}'" for name in island)
+        raise InputError(
+            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
+            f"{' or '.join(network.boundaries) or 'a boundary'}",
+            where,
+            "a link, stream or surface to a boundary",
+        )
+    if not np.any(network.C > 0.0):
+        raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
+    return network

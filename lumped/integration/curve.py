@@ -1,14 +1,12 @@
 """How an input factor runs between the samples, where the inputs are linear: as parabolas, as many as it needs."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.numerics.knots import halfway, moved
+from lumped.numerics.knots import halfway
 from lumped.transfer.ranges import within_silence
 
 Array = NDArray[np.float64]
@@ -60,15 +58,6 @@ class Moves(NamedTuple):
     def at_positions(self, x: Array) -> Array:
         """An input (nt,) there."""
         return np.concatenate([x, 0.5 * (x[self.left] + x[self.left + 1])])
-
-
-def moving(inputs: Iterable[Array], nt: int) -> Moves:
-    """From inputs (nt,) that are straight lines between the samples."""
-    at_all, far, ends = np.zeros(nt - 1, bool), np.zeros(nt - 1, bool), []
-    for x in inputs:
-        moved(np.array(x), FAR, at_all, far)  # a copy: another layout, or one that is read-only, compiles anew
-        ends += [float(x.argmin()), float(x.argmax())]
-    return Moves(np.flatnonzero(at_all), far, np.unique(ends))
 
 
 class Between(Mapping[str, Array]):
@@ -145,15 +134,10 @@ def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: flo
 
 def _too_curved(five: Array, width: Array | float, small: float) -> NDArray[np.bool_]:
     """(n,) whether a parabola misses too much of a factor in an interval of that width, a share of that of samples."""
-    missed = _missed(five, small)
-    return np.asarray((width * missed > CURVED) | (missed > MISSED))
-
-
-def _missed(five: Array, small: float) -> Array:
-    """(n,) what the parabola through both ends and the middle misses at the quarters, over the largest of them."""
     f0, q1, fm, q3, f1 = five.T
     low, high = (3 * f0 + 6 * fm - f1) / 8, (-f0 + 6 * fm + 3 * f1) / 8
-    return np.asarray(np.maximum(np.abs(q1 - low), np.abs(q3 - high)) / np.maximum(np.abs(five).max(axis=1), small))
+    missed = np.asarray(np.maximum(np.abs(q1 - low), np.abs(q3 - high)) / np.maximum(np.abs(five).max(axis=1), small))
+    return np.asarray((width * missed > CURVED) | (missed > MISSED))
 
 
 def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, small: float) -> Array:

@@ -1,7 +1,5 @@
 """What drives a network over a record, from knot to knot: the samples, and where input factors turn between them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -76,7 +74,10 @@ def forcing(
     u, arch = _between(t, indices, ends, wholes[len(curves) :])
     knots = t[indices]
     renew = np.full(indices.size, 2) if bends else _renewals(knots, factor[:, stiff], bulge[:, stiff])
-    return Forcing(knots, u, factor, bulge, arch, renew, *_samples(time, knots, indices, np.flatnonzero(sample >= 0)))
+    # first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is
+    first, share = np.empty(knots.size + 1, np.int64), np.empty(time.size)
+    placed(time, knots, indices, np.flatnonzero(sample >= 0), first, share)
+    return Forcing(knots, u, factor, bulge, arch, renew, *(first, share))
 
 
 def _needed(
@@ -133,13 +134,6 @@ def _between(time: Array, indices: Ints, curves: Sequence[Curve], wholes: Sequen
             off[np.abs(off) <= ROUNDING * _largest(c.value)] = 0.0
             bulge[starts, e] = off
     return value, bulge
-
-
-def _samples(time: Array, knot_time: Array, indices: Ints, at: Ints) -> tuple[Ints, Array]:
-    """first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is"""
-    first, share = np.empty(knot_time.size + 1, np.int64), np.empty(time.size)
-    placed(time, knot_time, indices, at, first, share)
-    return first, share
 
 
 def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int64]]:

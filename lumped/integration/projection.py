@@ -4,8 +4,6 @@ Heat is kept, so that a node whose time constant is long against an interval fee
 far from a parabola (a switch), the interval is cut at the record's own samples.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -39,7 +37,14 @@ def projected(near: Curve, time: Array, fine: Curve, fine_time: Array) -> Curve:
     largest, off = _deviation_from_parabola(value, bulge, time, cell[inner], fine_time[inner], fine.value[inner])
     cut = off > SWITCH * largest
     value, bulge = _equal_integrals(near, time, full, full & ~cut, fine, fine_time)
-    edges = _edges(fine.value, cell, inner, largest, cut)
+    # Of all fine samples those at which to cut: at both ends of a switch; all where an interval has none
+    to = np.minimum(cell + 1, cut.size - 1)
+    mine = inner & cut[to]
+    jump = np.abs(np.diff(fine.value)) > SWITCH * np.maximum(largest[to[1:]], largest[to[:-1]])
+    ends = np.append(jump, False) | np.append(False, jump)
+    stepping = np.zeros(cut.size, bool)
+    stepping[to[mine & ends]] = True
+    edges = mine & (ends | ~stepping[to])
     return Curve(value, bulge, _positions(near, time, full, cut, fine_time[edges], fine, fine_time))
 
 
@@ -82,17 +87,6 @@ def _deviation_from_parabola(
     np.maximum.at(largest, cell + 1, np.abs(f))
     np.maximum.at(off, cell + 1, np.abs(f - line))
     return np.maximum(largest, SMALL * np.abs(f).max(initial=0.0)), off
-
-
-def _edges(f: Array, cell: NDArray[np.int64], inner: Mask, largest: Array, cut: Mask) -> Mask:
-    """Of all fine samples those at which to cut: at both ends of a switch; all where an interval has none."""
-    to = np.minimum(cell + 1, cut.size - 1)
-    mine = inner & cut[to]
-    jump = np.abs(np.diff(f)) > SWITCH * np.maximum(largest[to[1:]], largest[to[:-1]])
-    ends = np.append(jump, False) | np.append(False, jump)
-    stepping = np.zeros(cut.size, bool)
-    stepping[to[mine & ends]] = True
-    return mine & (ends | ~stepping[to])
 
 
 def _positions(near: Curve, time: Array, full: Mask, cut: Mask, edges: Array, fine: Curve, fine_time: Array) -> Array:

@@ -1,7 +1,5 @@
 """What to say when temperatures leave all bounds: where, when, and which law feeds itself."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,13 +16,10 @@ def checked_run(T: Array, time: Array, names: tuple[str, ...], network: Network)
     wild = ~(np.abs(T) < LIMIT_C)
     if wild.any():
         row = int(np.argmax(wild.any(axis=1)))
-        raise NoSolution(described(network, names[int(np.argmax(wild[row]))], float(time[row])))
+        place = names[int(np.argmax(wild[row]))]
+        t = float(time[row])
+        raise NoSolution(f"{network.title}: '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}")
     return T
-
-
-def described(network: Network, place: str, t: float) -> str:
-    """The message of a run that went astray at `place` (a node, a place or a sensor) after t (s)."""
-    return f"{network.title}: '{place}' runs away from all bounds at t = {t:g} s; {_cause(network)}"
 
 
 def grows(law: Law) -> bool:

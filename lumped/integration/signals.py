@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.errors import InputError
-from lumped.integration.curve import NONE, Between, Curve, Moves, between, curve, moving, parabolas, straight
+from lumped.integration.curve import FAR, NONE, Between, Curve, Moves, between, curve, parabolas, straight
 from lumped.integration.projection import crowded, projected
+from lumped.numerics.knots import moved
 from lumped.transfer.laws import Fixed, Law
 
 Array = NDArray[np.float64]
@@ -162,7 +163,11 @@ class Signals(dict[str, Array]):
         if reading is None:
             moves = self._moves(names)
             halfway = self._between(moves.positions) if self.source else Between(self, moves.at_positions)
-            reading = Reading(moves, halfway, self._turns(names))
+            out = [NONE]
+            for x in (self[name] for name in names):
+                left = np.flatnonzero(x[:-1] * x[1:] < 0.0)
+                out.append(left + x[left] / (x[left] - x[left + 1]))
+            reading = Reading(moves, halfway, np.concatenate(out))
             if self.nt <= LONG:
                 self._readings[names] = reading
         return reading
@@ -173,15 +178,11 @@ class Signals(dict[str, Array]):
     def _moves(self, names: Iterable[str]) -> Moves:
         if self.source:
             return Moves(np.arange(self.nt - 1), np.ones(self.nt - 1, bool), np.arange(self.nt, dtype=float))
-        return moving([self[name] for name in names], self.nt)
-
-    def _turns(self, names: Iterable[str]) -> Array:
-        """Positions at which one of the inputs passes through zero between two samples."""
-        out = [NONE]
-        for x in (self[name] for name in names):
-            left = np.flatnonzero(x[:-1] * x[1:] < 0.0)
-            out.append(left + x[left] / (x[left] - x[left + 1]))
-        return np.concatenate(out)
+        at_all, far, ends = np.zeros(self.nt - 1, bool), np.zeros(self.nt - 1, bool), []
+        for x in [self[name] for name in names]:
+            moved(np.array(x), FAR, at_all, far)  # a copy: another layout, or one that is read-only, compiles anew
+            ends += [float(x.argmin()), float(x.argmax())]
+        return Moves(np.flatnonzero(at_all), far, np.unique(ends))
 
     def _factor(self, name: str, law: Law, inputs: Mapping[str, Array], size: int) -> Array:
         """The factor where the inputs are."""

@@ -4,8 +4,6 @@ The input "on_NAME" is 1 while the machine stands on that base. Then its foot co
 the machine meets the surroundings as the face around it does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -51,15 +49,12 @@ def on_every_base(network: Network) -> Network:
     return replace(network, links=tuple(links), places=places, parameters=())
 
 
-def switches(machine: Machine) -> dict[str, str]:
-    """Input -> the foot it couples."""
-    table = machine.sections.get("bases", {})
-    return {f"on_{name}": "foot" if machine_ == THIS_MACHINE else f"foot.{name}" for name, machine_ in table.items()}
-
-
 def switched(machine: Machine, network: Network) -> Network:
     """The network with every base coupled by its input."""
-    for switch, foot in switches(machine).items():
+    table = machine.sections.get("bases", {})
+    for switch, foot in {
+        f"on_{name}": "foot" if machine_ == THIS_MACHINE else f"foot.{name}" for name, machine_ in table.items()
+    }.items():
         network = _coupled(network, switch, foot)
     return network
 
@@ -70,7 +65,13 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     )
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
-    print_ = footprint(network, joint, body, foot)
+    states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
+    at = {state: k for k, state in enumerate(states)}
+    K = np.zeros((len(states), len(states)))
+    for row, col, value in zip(joint.rows, joint.cols, joint.vals, strict=True):
+        if int(row) in at and int(col) in at:
+            K[at[int(row)], at[int(col)]] += value
+    print_ = Place(f"{foot}.print", "surface", body, np.array(states), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
     larger = replace(network, links=tuple(links), places={**network.places, print_.name: print_})
     films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
     bare = [_bare(larger, film, print_, switch) for film in films]
@@ -81,17 +82,6 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
 
 def _of_base(network: Network, places: tuple[str, str]) -> bool:
     return any(network.declared[place].role is Role.BASE for place in places)
-
-
-def footprint(network: Network, joint: Link, body: str, foot: str) -> Place:
-    """The body's side of the joint as a face of its own."""
-    states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
-    at = {state: k for k, state in enumerate(states)}
-    K = np.zeros((len(states), len(states)))
-    for row, col, value in zip(joint.rows, joint.cols, joint.vals, strict=True):
-        if int(row) in at and int(col) in at:
-            K[at[int(row)], at[int(col)]] += value
-    return Place(f"{foot}.print", "surface", body, np.array(states), K, K[:, 0].copy(), float(K[0, 0]), "ambient")
 
 
 def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:

@@ -1,7 +1,5 @@
 """Which film washes which face of a motor, as coefficient laws by mechanism."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -13,8 +11,8 @@ from lumped.machine.jackets import Cooling, cooling_of, jacket_film
 from lumped.machine.outer import outer_films
 from lumped.machine.part_identities import turning
 from lumped.machine.path import stem
-from lumped.machine.settings import Fan, Films, read_fan, read_films
-from lumped.machine.shapes import Gap, gap_of, radius
+from lumped.machine.settings import Fan, Films, read, read_films
+from lumped.machine.shapes import Gap, gap_fluid, radius
 from lumped.transfer.laws import Inputs, Law
 from lumped.transfer.terms_value import coefficient
 
@@ -34,11 +32,20 @@ class Surroundings:
 
     @cached_property
     def fan(self) -> Fan | None:
-        return read_fan(self.machine)
+        table = {key: value for key, value in self.machine.sections.get("fans", {}).items() if key != "cowl"}
+        return read(Fan, table, f"{self.machine.name} [fans]") if table else None
 
     @cached_property
     def gap(self) -> Gap | None:
-        return gap_of(self.machine)
+        machine = self.machine
+        if not any(part.role is Role.AIR_GAP for part in machine.fluids):
+            return None
+        (profile, _, _), *_ = machine.part(gap_fluid(machine)).prisms
+        if not profile.holes:
+            return None
+        outer, inner = radius(profile.outer), radius(profile.holes[0])
+        height = machine.features.air_gap
+        return Gap(inner, outer - inner if height is None else height)
 
     @cached_property
     def gaps(self) -> frozenset[str]:

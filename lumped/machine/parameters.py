@@ -1,7 +1,5 @@
 """What calibration may move in a motor's network, each with its prior."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from geom.description.machine import Machine
@@ -32,26 +30,30 @@ def parameters(
     losses: Sequence[Source],
 ) -> list[Parameter]:
     """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
-    return [
-        *_films(faces, films),
-        *_contacts(network),
-        *_losses(losses),
-        _capacity(network),
-        *_flows(machine, films, streams),
-        *_conductivities(machine, network),
-    ]
-
-
-def _films(faces: Sequence[Place], films: Sequence[Link]) -> list[Parameter]:
-    """Outer faces part by part, inner faces by the fluid that washes them."""
+    beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
+    out = []
+    for name, by_fan in (("fan.flow", True), ("coolant.flow", False)):
+        flow_links = [s for s in streams if s.name.startswith("stream:fan:") == by_fan]
+        cells = beside if by_fan else {s.places[1] for s in flow_links}
+        films_there = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
+        acts = (*((s.name, 1.0) for s in flow_links), *films_there)
+        if flow_links:
+            out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
     groups: dict[str, list[tuple[str, float]]] = {}
     for face in faces:
         group = face.part if face.fluid == "ambient" else stem(str(face.fluid))
         groups.setdefault(group, []).extend((link.name, 1.0) for link in films if link.places[0] == face.name)
     return [
-        Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
-        for group, acts in groups.items()
-        if acts
+        *[
+            Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
+            for group, acts in groups.items()
+            if acts
+        ],
+        *_contacts(network),
+        *_losses(losses),
+        _capacity(network),
+        *out,
+        *_conductivities(machine, network),
     ]
 
 
@@ -76,20 +78,6 @@ def _losses(losses: Sequence[Source]) -> list[Parameter]:
 def _capacity(network: Network) -> Parameter:
     acts = tuple((f"capacity:{group}", 1.0) for group in dict.fromkeys(network.capacity_group) if group)
     return Parameter("capacity.machine", acts, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
-
-
-def _flows(machine: Machine, films: Sequence[Link], streams: Sequence[Link]) -> list[Parameter]:
-    """A flow moves its streams, and the films of the channels it fills."""
-    beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
-    out = []
-    for name, by_fan in (("fan.flow", True), ("coolant.flow", False)):
-        flow_links = [s for s in streams if s.name.startswith("stream:fan:") == by_fan]
-        cells = beside if by_fan else {s.places[1] for s in flow_links}
-        films_there = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
-        acts = (*((s.name, 1.0) for s in flow_links), *films_there)
-        if flow_links:
-            out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
-    return out
 
 
 def _conductivities(machine: Machine, network: Network) -> list[Parameter]:

@@ -1,7 +1,5 @@
 """What the parts, fluids and boundaries of a motor are: as declared, else by what they are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -36,7 +34,14 @@ def declared(machine: Machine, network: Network, contacts: Iterable[str]) -> dic
 def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Identity]:
     """Part -> what it is; imported parts by their material, the shaft by the axis inside it, if nothing is said."""
     identity_of = {part.name: part.identity or _by_material(machine, part) for part in machine.parts}
-    hung = _hung(identity_of, contacts)
+    # All that hangs on what turns through contacts, without a bearing or a standing part between
+    pairs = [tuple(name.split("|")) for name in contacts]
+    joints = [pair for pair in pairs if all(p in identity_of and identity_of[p].turns is not False for p in pair)]
+    turning_parts, count = {name for name, i in identity_of.items() if i.turns}, -1
+    while len(turning_parts) > count:
+        count = len(turning_parts)
+        turning_parts |= {part for pair in joints if turning_parts & set(pair) for part in pair}
+    hung = frozenset(turning_parts)
     return {
         name: identity_of[name] if identity_of[name].turns is not None else _turned(identity_of[name], name in hung)
         for name in identity_of
@@ -68,17 +73,6 @@ def _on_axis(part: Part) -> bool:
 
     grid = ArcGrid([profile for profile, _, _ in part.prisms], 24)
     return all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms)
-
-
-def _hung(identities: dict[str, Identity], contacts: Iterable[str]) -> frozenset[str]:
-    """All that hangs on what turns through contacts, without a bearing or a standing part between."""
-    pairs = [tuple(name.split("|")) for name in contacts]
-    joints = [pair for pair in pairs if all(p in identities and identities[p].turns is not False for p in pair)]
-    turning_parts, count = {name for name, i in identities.items() if i.turns}, -1
-    while len(turning_parts) > count:
-        count = len(turning_parts)
-        turning_parts |= {part for pair in joints if turning_parts & set(pair) for part in pair}
-    return frozenset(turning_parts)
 
 
 def turning(machine: Machine, contacts: Iterable[str]) -> frozenset[str]:

@@ -1,7 +1,5 @@
 """The thermal sections of a machine file, read into frozen settings: [contacts], [films], [losses], [fans]."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -69,12 +67,6 @@ class Fan:
     flow_m3_h: float = 138.0
     gap_share: float = 0.15
     air_C: float = 40.0
-
-
-def read_fan(machine: Machine) -> Fan | None:
-    """The through-flow of [fans], if the machine is open to it."""
-    table = {key: value for key, value in machine.sections.get("fans", {}).items() if key != "cowl"}
-    return read(Fan, table, f"{machine.name} [fans]") if table else None
 
 
 def read_films(machine: Machine) -> Films:

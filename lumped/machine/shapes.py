@@ -1,7 +1,5 @@
 """What the correlations need to know of a machine's parts: which of them turn, how large they are, how they stand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -61,18 +59,6 @@ class Gap:
 
     rotor_radius: float
     width: float
-
-
-def gap_of(machine: Machine) -> Gap | None:
-    """From the fluid that is the gap; its width is the family's where the space reaches into the slots."""
-    if not any(part.role is Role.AIR_GAP for part in machine.fluids):
-        return None
-    (profile, _, _), *_ = machine.part(gap_fluid(machine)).prisms
-    if not profile.holes:
-        return None
-    outer, inner = radius(profile.outer), radius(profile.holes[0])
-    height = machine.features.air_gap
-    return Gap(inner, outer - inner if height is None else height)
 
 
 def gap_fluid(machine: Machine) -> str:

@@ -1,7 +1,5 @@
 """Loss zones of a motor: teeth and back of a slotted core, halves of a slot, shoe and body of a pole, field coils."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -17,13 +15,19 @@ MANY = 6  # prisms: a winding with this many bars lies in slots
 
 def motor_zones(machine: Machine) -> dict[str, Zone]:
     """Zone -> where; "PART.WORD", as [losses] of a machine file may name them."""
-    return {**_slots(machine), **_poles(machine), **_coils(machine)}
+    # Salient poles: the shoe lies at the air gap
+    out: dict[str, Zone] = {}
+    for name, shoe in machine.features.shoes.items():
+        out |= _split(name, _reach(machine.part(name))[0] + shoe, "shoe", "body")
+    return {**_slots(machine), **out, **_coils(machine)}
 
 
 def _slots(machine: Machine) -> dict[str, Zone]:
     out: dict[str, Zone] = {}
     for winding in machine.parts:
-        if not wound(machine, winding.name) or not _in_slots(winding):
+        if not wound(machine, winding.name) or not (
+            len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
+        ):
             continue
         low, high = _reach(winding)
         out |= _split(winding.name, (low + high) / 2, "inner", "outer")
@@ -33,19 +37,6 @@ def _slots(machine: Machine) -> dict[str, Zone]:
                 teeth_outside = far - high < low - near
                 words = ("back", "teeth") if teeth_outside else ("teeth", "back")
                 out |= _split(core.name, low if teeth_outside else high, *words)
-    return out
-
-
-def _in_slots(winding: Part) -> bool:
-    """Many bars of one and the same length."""
-    return len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
-
-
-def _poles(machine: Machine) -> dict[str, Zone]:
-    """Salient poles: the shoe lies at the air gap."""
-    out: dict[str, Zone] = {}
-    for name, shoe in machine.features.shoes.items():
-        out |= _split(name, _reach(machine.part(name))[0] + shoe, "shoe", "body")
     return out
 
 

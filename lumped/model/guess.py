@@ -23,10 +23,6 @@ def identities(network: Structure) -> Mapping[str, Identity]:
     names = (*top.bodies, *top.fluids, *network.boundaries)
     if all((identity := network.declared.get(n)) is not None and identity.role is not None for n in names):
         return {**network.declared}
-    return _guessed(top, names)
-
-
-def _guessed(top: Topology, names: tuple[str, ...]) -> dict[str, Identity]:
     statements = top.network.declared
     turns = turning(top, {n: bool(i.turns) for n, i in statements.items() if i.turns is not None and n in top.bodies})
     roles = {n: i.role for n, i in statements.items() if i.role is not None}

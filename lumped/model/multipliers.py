@@ -1,7 +1,5 @@
 """What the parameters do: multipliers on links, sources and capacity groups, and their derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import prod
 
@@ -35,11 +33,6 @@ def parameter_values(network: Network, values: Mapping[str, float]) -> dict[str,
     return {p.name: float(values.get(p.name, p.value)) for p in network.parameters}
 
 
-def _valid_targets(network: Network) -> set[str]:
-    groups = {f"capacity:{g}" for g in network.capacity_group}
-    return {link.name for link in network.links} | {source.name for source in network.sources} | groups
-
-
 def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tuple[str, float]]:
     thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
     for target, _ in thermal:
@@ -55,7 +48,8 @@ def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tu
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
-    targets = _valid_targets(network)
+    groups = {f"capacity:{g}" for g in network.capacity_group}
+    targets = {link.name for link in network.links} | {source.name for source in network.sources} | groups
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
         for target, exponent in _targets(network, p, targets):

@@ -1,7 +1,5 @@
 """Which bodies turn, from how they hang together: what a bearing or an air gap holds apart from what stands."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 
 import numpy as np
@@ -124,20 +122,17 @@ def _way(top: Topology, start: Collection[str], end: Collection[str], without: C
         for a in edge:
             for b in top.joined(a):
                 if b in end:
-                    return _back(before, a)
+                    body = a
+                    out = []
+                    while before[body]:
+                        out.append(body)
+                        body = before[body]
+                    return out
                 if b not in before and b not in without:
                     before[b] = a
                     after.append(b)
         edge = after
     return []
-
-
-def _back(before: Mapping[str, str], body: str) -> list[str]:
-    out = []
-    while before[body]:
-        out.append(body)
-        body = before[body]
-    return out
 
 
 def cut(top: Topology, turn: Collection[str], stand: Collection[str], bearings: Collection[str]) -> set[str]:

@@ -1,10 +1,6 @@
 """Whether a declared network can be a machine: heat can leave every node, something is warm, streams go somewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
-
-import numpy as np
 
 from geom.description.names import plain_name
 from geom.errors import InputError
@@ -12,21 +8,6 @@ from lumped.model.network import Network
 from lumped.schemas.reader import excerpt
 
 RESERVED = set("@#")  # of effects at places, and of shapes inside parts
-
-
-def checked_network(network: Network, where: str) -> Network:
-    """The network; InputError names the nodes that no heat can leave, and a network that stores none."""
-    for island in islands(network):
-        nodes = ", ".join(f"'{name}'" for name in island)
-        raise InputError(
-            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
-            f"{' or '.join(network.boundaries) or 'a boundary'}",
-            where,
-            "a link, stream or surface to a boundary",
-        )
-    if not np.any(network.C > 0.0):
-        raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
-    return network
 
 
 def checked_names(names: Iterable[str], where: str) -> None:

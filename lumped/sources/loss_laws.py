@@ -3,8 +3,6 @@
 What a law declares is what the network injects: the source's weights sum to 1 and nothing is clipped.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,15 +73,11 @@ class EddyLoss(Law):
         return (*self.copper.currents, self.speed)
 
     def factor(self, inputs: Inputs) -> Array | float:
-        return self.copper.factor(inputs) * (self.resistance_factor(inputs) - 1.0)
-
-    def resistance_factor(self, inputs: Inputs) -> Array | float:
-        """AC over DC resistance."""
         f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
         out = np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
         if np.any(out < 0.0):
             raise self._negative(np.ravel(out), np.ravel(f))
-        return out
+        return self.copper.factor(inputs) * (out - 1.0)
 
     def _negative(self, factor: Array, f: Array) -> InputError:
         worst = int(np.argmin(factor))

@@ -1,7 +1,5 @@
 """Losses from measured channels: what goes in electrically less what leaves at the shaft."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,10 +3,9 @@
 Channels of several rates share one time column and are empty where they were not sampled.
 """
 
-from __future__ import annotations
-
 import re
 import struct
+import zipfile
 import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -22,7 +21,7 @@ from numpy.typing import NDArray
 from geom.errors import InputError, MissingDependency
 from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
-from geom.recording_bounds import CHUNK, check_archive, check_shape, check_size, counted_rows, timed
+from geom.recording_bounds import CHUNK, check_shape, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.headers.rows import first_row_layout
 from measured.recordings.csv_file import HEAD, csv_pieces, in_rows, joined_parts
@@ -135,7 +134,8 @@ def recording_pieces(file: Path, most: int, worksheet: str = "") -> Iterator[Dat
 
 
 def _table(file: Path, kind: str, package: str, read: Callable[[], Contents]) -> DataTable:
-    check_size(file)
+    # InputError where the file itself has more bytes than a recording may have
+    BYTES.check(file.stat().st_size, file, "holds")
 
     def table() -> DataTable:
         columns, about = read()
@@ -191,7 +191,9 @@ def _workbook(file: Path) -> Iterator[Any]:
         def read_chartsheet(self, sheet: Any, rel: Any) -> None:
             pass
 
-    check_archive(file)
+    # InputError where a workbook, unpacked, has more bytes than a recording may have
+    with zipfile.ZipFile(file) as archive:
+        BYTES.check(sum(entry.file_size for entry in archive.infolist()), file, "holds")
     reader = Reader(file, read_only=True, data_only=True, keep_links=False)
     reader.read()
     book = reader.wb

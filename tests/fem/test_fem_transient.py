@@ -61,16 +61,6 @@ def test_heat_given_is_heat_stored_and_shed(slab):
     assert stored == pytest.approx(np.trapezoid(shed, dx=step), rel=2e-3)
 
 
-def sphere(n):
-    """A ball of n cells from the centre to the skin: a box whose cubic shells become spheres."""
-    x = np.linspace(-1.0, 1.0, 2 * n + 1)
-    cube = box(x, x, x, lambda c: np.full(len(c), "ball", object), lambda c: np.full(len(c), "ambient", object))
-    shell = np.abs(cube.points).max(1)
-    length = np.linalg.norm(cube.points, axis=1)
-    radius = L * shell[:, None] * cube.points / np.where(length > 0, length, 1.0)[:, None]
-    return replace(cube, points=radius)
-
-
 def ball_series(r, t):
     """Carslaw and Jaeger 1959, 9.4: 4 (sin z - z cos z) / (2 z - sin 2 z) exp(-z^2 Fo) sin(z r / L) / (z r / L)."""
     Bi, Fo = h * L / k, k / rho_cp * t / L**2
@@ -83,7 +73,13 @@ def ball_series(r, t):
 
 def off_the_ball(n):
     """Rms error by volume (K) of a ball that cools from 100 K, Bi = 2, worst of Fo = 0.1 ... 0.6."""
-    field = assemble(sphere(n), {"ball": isotropic(k)}, {"ball": rho_cp})
+    # A ball of n cells from the centre to the skin: a box whose cubic shells become spheres
+    x = np.linspace(-1.0, 1.0, 2 * n + 1)
+    cube = box(x, x, x, lambda c: np.full(len(c), "ball", object), lambda c: np.full(len(c), "ambient", object))
+    shell = np.abs(cube.points).max(1)
+    length = np.linalg.norm(cube.points, axis=1)
+    radius = L * shell[:, None] * cube.points / np.where(length > 0, length, 1.0)[:, None]
+    field = assemble(replace(cube, points=radius), {"ball": isotropic(k)}, {"ball": rho_cp})
     step = 0.05 * L**2 * rho_cp / k
     T = transient(
         Solver(field),

@@ -56,7 +56,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "viz/pages/report.py": "effects by their own name, KIND@PLACE",
     "thermoscope/commands/model/crosscheck.py": "shapes that the network names itself, PART#1",
     "thermoscope/commands/model/revise.py": "effects by their own name, KIND@PLACE",
-    "thermoscope/commands/use/simulate_readings.py": "inputs that lumped.drives.coupled names itself",
+    "thermoscope/commands/use/simulate.py": "inputs that lumped.drives.coupled names itself",
     "lumped/build/crosscheck.py": "links by their own name, contact:A|B",
     "measured/importing/target.py": "inputs by the unit that their name says, NAME_W: a guess that is shown",
     "measured/importing/draft.py": "files by their own name, NAME.csv",

@@ -54,10 +54,6 @@ def page(thermoscope, case) -> str:
     return unescape((case / "out" / "report.html").read_text()).replace("→", "->").replace("\u00a0", " ")
 
 
-def flat(text: str) -> str:
-    return " ".join(text.split())
-
-
 def numbers(text: str, pattern: str) -> set[str]:
     return set(re.findall(pattern, text))
 
@@ -70,7 +66,7 @@ def test_what_was_found_is_one_sentence(told):
     assert found.startswith("Found: forced convection by vehicle wind at flange. ")
     assert pair in found
     assert f'<span class="good">{found}</span>' in told["page"], "green, and the same words"
-    assert flat(told["add"]).startswith(found)
+    assert " ".join(told["add"].split()).startswith(found)
     assert runs.finding_words(told["right"], appearance_of(told["right"]).errors) == found
     undone = replace(told["right"], history=told["right"].history.back_to(1))
     assert runs.finding_words(undone, told["compare"]) == ""

@@ -13,7 +13,6 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Parameter
 from measured.case import Channel, Test
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import readings
 from validation.calibration.model_error import with_doubts
 from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import heat_model, record
@@ -23,14 +22,6 @@ if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
 
 Array = NDArray[np.float64]
-
-
-def error_field(folder: Folder, test: Test, nodes: SplitMesh) -> Interpolated:
-    """Measured minus modelled on the parts' own nodes (K), told by the mean residuals of a test's last fifth."""
-    channels, gain = error_gain(folder, test, nodes)
-    model, late = readings(folder.case, test), last_fifth(test)
-    residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
-    return Interpolated(gain.mean @ np.array(residual_K), gain.explained)
 
 
 def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:

@@ -130,19 +130,15 @@ def save_history(path: Path, history: History, before: History) -> History:
                 str(path),
                 "the step again (in the workbench 'take over' first)",
             )
-        write_whole(path, _text(history))
+        document, revisions = tomlkit.document(), tomlkit.aot()
+        document.add("lines", 0)
+        document.add(tomlkit.comment(HEADER))
+        for revision in history.revisions:
+            revisions.append(tomlkit.item(revision.document()))
+        document.add("revision", revisions)
+        document["lines"] = tomlkit.dumps(document).count("\n")
+        write_whole(path, tomlkit.dumps(document))
         return load_history(path)
-
-
-def _text(history: History) -> str:
-    document, revisions = tomlkit.document(), tomlkit.aot()
-    document.add("lines", 0)
-    document.add(tomlkit.comment(HEADER))
-    for revision in history.revisions:
-        revisions.append(tomlkit.item(revision.document()))
-    document.add("revision", revisions)
-    document["lines"] = tomlkit.dumps(document).count("\n")
-    return tomlkit.dumps(document)
 
 
 def checked_values(revision: Revision, parameters: Iterable[Parameter], where: str) -> None:

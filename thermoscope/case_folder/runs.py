@@ -52,19 +52,15 @@ def at_revision(folder: Folder, revision: Revision) -> Case:
     for other, case in _of_revisions(folder):
         if other == revision:
             return case
-    _of_revisions(folder).append((revision, _at_revision(folder, revision)))
+    model = folder.history.model(folder.case.model.network, revision)
+    doubt, answers = split_answers(folder.settings.doubt, revision.answers)
+    _of_revisions(folder).append((revision, replace(folder.case, model=model, doubt=doubt, answers=answers)))
     return _of_revisions(folder)[-1][1]
 
 
 @once
 def _of_revisions(folder: Folder) -> list[tuple[Revision, Case]]:
     return []
-
-
-def _at_revision(folder: Folder, revision: Revision) -> Case:
-    model = folder.history.model(folder.case.model.network, revision)
-    doubt, answers = split_answers(folder.settings.doubt, revision.answers)
-    return replace(folder.case, model=model, doubt=doubt, answers=answers)
 
 
 def before_last(folder: Folder) -> Case | None:

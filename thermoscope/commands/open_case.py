@@ -1,7 +1,5 @@
 """Open the case a command is about."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -236,7 +236,8 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 @contextmanager
 def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
     """Stages that know how long they took the last time, of this very case where they can."""
-    durations, keys = _remembered(), [f"{key}{_case()}", key]
+    # What the cache knows; nothing where it is damaged or was never written
+    durations, keys = _stages_in(cache_folder() / FILE), [f"{key}{_case()}", key]
     memory = next((durations[k] for k in keys if durations.get(k)), None)
     same_case = bool(durations.get(keys[0]))
     stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s, same_case=same_case)
@@ -282,7 +283,7 @@ def _lines(stages: ProgressBar) -> Iterator[Progress]:
 
     def say() -> None:
         spoken[0] = stages.clock()
-        _line(stages.words(now[0]))
+        print(visible(stages.words(now[0])), file=sys.stderr, flush=True)
 
     def tell(message: str) -> None:
         now[0] = now[0] if ALONE.fullmatch(message) else message
@@ -339,15 +340,6 @@ def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
                 bar.update(task, description=visible(message))
 
         yield tell
-
-
-def _line(message: str) -> None:
-    print(visible(message), file=sys.stderr, flush=True)
-
-
-def _remembered() -> dict[str, dict[str, float]]:
-    """What the cache knows; nothing where it is damaged or was never written."""
-    return _stages_in(cache_folder() / FILE)
 
 
 def _usual() -> dict[str, dict[str, float]]:

@@ -1,7 +1,5 @@
 """What a command shows: progress and notes on stderr, tables or one JSON document on stdout."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys
@@ -19,10 +17,6 @@ from thermoscope.console.summary import Summary, printed, to_stdout
 
 STDOUT = "-"
 __all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "ranges_as_notes", "say"]
-
-
-def _line(message: str) -> None:
-    print(visible(message), file=sys.stderr, flush=True)
 
 
 NOTES_SO_FAR: ContextVar[set[str] | None] = ContextVar("said", default=None)  # where each is said once
@@ -43,7 +37,7 @@ def notes(messages: Iterable[str]) -> None:
     so_far = NOTES_SO_FAR.get()
     for message in messages:
         if so_far is None or message not in so_far:
-            _line(f"note: {message}")
+            print(visible(f"note: {message}"), file=sys.stderr, flush=True)
         if so_far is not None:
             so_far.add(message)
 

@@ -1,7 +1,5 @@
 """The band around predicted temperatures: parameters, model error and inputs, all from the one table of doubt."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -102,7 +100,10 @@ def band_stretches(of: ParameterPosterior, test: Test, places: Sequence[Place]) 
     share = np.array([of.slow(p.row) for p in places])
     for y, columns in by.stretches():
         first = first if start else y[0].copy()
-        sd = np.sqrt(_variance(columns, by.root) + (share * np.abs(y - first)) ** 2)
+        # (m, n) K2 of columns (m, n, k)
+        m, n, k = columns.shape
+        independent = columns.reshape(m * n, k) @ by.root
+        sd = np.sqrt(np.einsum("ij,ij->i", independent, independent).reshape(m, n) + (share * np.abs(y - first)) ** 2)
         yield Bands(test.time[start : start + len(y)], names, y, sd)
         start += len(y)
 
@@ -123,13 +124,6 @@ def _root(Sigma: Array) -> Array:
     """R with R R' = Sigma; rounding may have left it a little indefinite."""
     values, vectors = np.linalg.eigh(Sigma)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
-
-
-def _variance(columns: Array, root: Array) -> Array:
-    """(m, n) K2 of columns (m, n, k)."""
-    m, n, k = columns.shape
-    independent = columns.reshape(m * n, k) @ root
-    return np.einsum("ij,ij->i", independent, independent).reshape(m, n)
 
 
 def _virtual_channel(place: Place, test: Test) -> Channel:

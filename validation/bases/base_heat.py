@@ -62,7 +62,7 @@ def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> Base
     feet = [x for x in bare.links if isinstance(x.law, Switched) and x.law.closed]
     air = str(ambient(bare))
     outside = [x for x in bare.links if x.places[1] == air]
-    below = [x for x in outside if _of_base(bare, x)]
+    below = [x for x in outside if (role(bare, part_of(bare, x.places[0])) in (Role.FOOT, Role.BASE))]
     return BaseHeat(
         sum(_out_of_body(bare, flows, x) for x in feet),
         _sum(flows, [x for x in below if not isinstance(x.law.temperature, Radiation)]),
@@ -70,11 +70,6 @@ def base_heat(network: Network, test: Test, values: Mapping[str, float]) -> Base
         _sum(flows, [x for x in outside if x not in below]),
         float(core - np.ravel(test.boundaries[air])[-1]),
     )
-
-
-def _of_base(network: Network, link: Link) -> bool:
-    """A face of foot or base; the footprint that a foot leaves bare is the machine's."""
-    return role(network, part_of(network, link.places[0])) in (Role.FOOT, Role.BASE)
 
 
 def _out_of_body(network: Network, flows: Balance, foot: Link) -> float:

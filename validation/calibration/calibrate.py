@@ -1,7 +1,5 @@
 """Maximum a posteriori calibration: Levenberg-Marquardt on whitened residuals with Gaussian priors and hard bounds."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -254,7 +252,13 @@ class Iterate:
             if predicted > ROUGH and trial:
                 self.gain_ratio = min(self.gain_ratio, gained / predicted)
             if gained > 0.0:
-                return self.accept(new, trial, gained, predicted)
+                self.theta, self.parts, self.fresh = new, trial, False
+                self.damping = self.damping / LESS if self.damping > SHORTER else 0.0
+                if gained < GAIN_RATIO * predicted and not self.outdated:
+                    self.renew()
+                else:
+                    self.read()
+                return gained < self.enough and self.stop()
             if self.back():
                 return True
 
@@ -265,16 +269,6 @@ class Iterate:
         except NoSolution:
             return -np.inf, []
         return self.objective - 0.5 * (self.measure.square(trial) + self.strain(new)), trial
-
-    def accept(self, new: Array, trial: list[Segment], gained: float, predicted: float) -> bool:
-        """Go there; a Jacobian that promised too much is made anew."""
-        self.theta, self.parts, self.fresh = new, trial, False
-        self.damping = self.damping / LESS if self.damping > SHORTER else 0.0
-        if gained < GAIN_RATIO * predicted and not self.outdated:
-            self.renew()
-        else:
-            self.read()
-        return gained < self.enough and self.stop()
 
     def stop(self) -> bool:
         """Done with a true Jacobian; otherwise look once more."""

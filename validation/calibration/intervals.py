@@ -1,7 +1,5 @@
 """Fitted values with their intervals: what the data fixed, what they could not, and with whom it trades."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
-from lumped.model.network import Parameter
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit
 from validation.parameters.unknowns import to_value
@@ -63,13 +60,17 @@ def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[
     out = []
     for i, p in enumerate(fit.unknowns.parameters):
         trades = abs(correlation[i, partner[i]]) > TRADES
+        # Median and central 95 % of the prior inside the bounds
+        median, low, high = (
+            float(np.clip(to_value(p, s * NORMAL_95 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0)
+        )
         out.append(
             Estimate(
                 p.name,
                 to_value(p, float(fit.theta[i])),
                 p.unit,
                 interval(fit, i),
-                prior_of(p),
+                (median, low, high),
                 bool(fit.sd[i] <= UNINFORMED * p.prior_sd),
                 fit.unknowns.names[partner[i]] if trades else None,
                 bool(fit.at_bound[i]),
@@ -94,11 +95,3 @@ def interval(fit: Fit, i: int) -> tuple[float, float]:
     half = NORMAL_95 * min(float(fit.sd[i]), p.prior_sd)
     low, high = (to_value(p, float(fit.theta[i] + s * half)) for s in (-1.0, 1.0))
     return max(low, p.low), min(high, p.high)
-
-
-def prior_of(p: Parameter) -> tuple[float, float, float]:
-    """Median and central 95 % of the prior inside the bounds."""
-    median, low, high = (
-        float(np.clip(to_value(p, s * NORMAL_95 * p.prior_sd), p.low, p.high)) for s in (0.0, -1.0, 1.0)
-    )
-    return median, low, high

@@ -5,8 +5,6 @@ end is called open. The other unknowns are fitted anew at every point, with the 
 Source: Venzon and Moolgavkar 1988; Raue et al. 2009.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -31,14 +29,11 @@ def profiles(
     out = {}
     for name in names:
         progress(f"profile of {name}")
-        out[name] = _profile(fit, tests, fixed, fit.unknowns.names.index(name))
+        i = fit.unknowns.names.index(name)
+        p, line = fit.unknowns.parameters[i], Line(fit, tests, fixed, i)
+        low, high = (end(line, side) for side in (-1.0, 1.0))
+        out[name] = Profile(to_value(p, low[0]), to_value(p, high[0]), (low[1], high[1]))
     return out
-
-
-def _profile(fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], i: int) -> Profile:
-    p, line = fit.unknowns.parameters[i], Line(fit, tests, fixed, i)
-    low, high = (end(line, side) for side in (-1.0, 1.0))
-    return Profile(to_value(p, low[0]), to_value(p, high[0]), (low[1], high[1]))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Calibration in stages: an isolating test frees its own parameters, later tests take them as found."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -80,7 +78,8 @@ def staged_fit(
     for stage in fit_stages(case, tests, unknowns):
         names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
-        fits.append(_one(network, stage.tests, free, values, search, progress))
+        best = best_start(network, stage.tests, free, values, search, progress) if search.starts > 1 else values
+        fits.append(calibrated(network, stage.tests, free, best, progress=progress, keep=search.keep))
         values |= fits[-1].values
     return fits
 
@@ -95,18 +94,6 @@ def measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
     if not of_measurement(p) or not measured(p.name):
         return of_measurement(p)
     return bool(target.split(":", 1)[1] in ends or any(starts(target, t.name) for t in tests))
-
-
-def _one(
-    network: Network,
-    tests: Sequence[Test],
-    unknowns: Unknowns,
-    values: Mapping[str, float],
-    search: Search,
-    progress: Progress,
-) -> Fit:
-    best = best_start(network, tests, unknowns, values, search, progress) if search.starts > 1 else values
-    return calibrated(network, tests, unknowns, best, progress=progress, keep=search.keep)
 
 
 def best_start(

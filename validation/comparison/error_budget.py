@@ -63,11 +63,7 @@ def error_budgets(folder: OpenCase, records: Mapping[str, Record], progress: Pro
 
 def budgets_of(folder: OpenCase, tests: Sequence[Test]) -> dict[str, ErrorBudget]:
     """Test -> its budget."""
-    return error_budgets(folder, {test.name: _record(test) for test in tests}, lambda message: None)
-
-
-def _record(test: Test) -> Record:
-    return record(test, {})
+    return error_budgets(folder, {test.name: record(test, {}) for test in tests}, lambda message: None)
 
 
 def model_of(folder: OpenCase) -> tuple[Network, dict[str, float]]:

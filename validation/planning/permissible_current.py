@@ -10,8 +10,6 @@ hot even without current is none to ask for. A machine without currents has noth
 they are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -117,7 +115,11 @@ def permissible_factor(excess: Callable[[float], Array]) -> float | None:
         return None
     low, high = 0.0, 1.0
     for _ in range(TRIALS):
-        square = _crossing(runs, -0.5 * margin)
+        target = -0.5 * margin
+        (a, f), (b, g) = sorted(runs, key=lambda run: abs(float(np.max(run[1])) - target))[:2]
+        rising = (g - f) / (b - a)
+        grows = np.isfinite(rising) & (rising > 0.0)
+        square = float(np.min(a + (target - f[grows]) / rising[grows], initial=np.inf))
         square = square if low < square < high else 0.5 * (low + high)
         runs.append((square, excess(float(np.sqrt(square)))))
         over = float(np.max(runs[-1][1]))
@@ -125,14 +127,6 @@ def permissible_factor(excess: Callable[[float], Array]) -> float | None:
             return float(np.sqrt(square))
         low, high = (square, high) if over < 0.0 else (low, square)
     return float(np.sqrt(low))
-
-
-def _crossing(runs: Sequence[tuple[float, Array]], target: float) -> float:
-    """Square of the factor at which the first excess crosses the target, by the two runs that come nearest to it."""
-    (a, f), (b, g) = sorted(runs, key=lambda run: abs(float(np.max(run[1])) - target))[:2]
-    rising = (g - f) / (b - a)
-    grows = np.isfinite(rising) & (rising > 0.0)
-    return float(np.min(a + (target - f[grows]) / rising[grows], initial=np.inf))
 
 
 def current_levels(plan: Test, before: Test, network: Network) -> tuple[CurrentLevel, ...]:

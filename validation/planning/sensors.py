@@ -1,7 +1,5 @@
 """Where one more thermocouple would set rivals apart best, in the tests as they were driven."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -11,11 +9,10 @@ from numpy.typing import NDArray
 from lumped.model.network import Network, Place
 from lumped.model.sites import outside, turns
 from measured.case import Channel, Test
-from validation.comparison.linearisation import Segment, segments
+from validation.comparison.linearisation import segments
 from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import Gram
-from validation.noise import Noise
 from validation.planning.rivals import CompetingModels, Plan, refitted_gains, separable_pairs, separation, widened_error
 
 Array = NDArray[np.float64]
@@ -78,19 +75,16 @@ def with_sensors(evidence: Evidence, places: Sequence[Place], effects: Sequence[
         parts, p = [error.beside(s, p) for s in parts], p + error.size
     for place in places:
         segments_there = [s for s in parts if s.channel == PREFIX + place.name]
-        yield place, _without_bias(segments_there, fit.noise, p)
+        # The Gram matrix of one sensor over all tests, with one bias of the usual size taken out; no residual yet
+        noise = fit.noise
+        X = np.vstack([noise.whiten(s, np.column_stack([s.J, np.ones(s.time.size)])) for s in segments_there])
+        Z, b = X[:, :-1], X[:, -1]
+        G = Z.T @ Z - np.outer(Z.T @ b, b @ Z) / (b @ b + SIGMA_K**-2)
+        K = G.shape[0] - p
+        yield place, Gram(G[:p, :p], G[:p, p:], G[p:, p:], np.zeros(p), np.zeros(K), 0.0)
 
 
 def with_thermocouples(test: Test, places: Sequence[Place]) -> Test:
     """The test with a thermocouple at every place, and nothing else read."""
     still = np.zeros_like(test.time)
     return replace(test, channels=tuple(Channel(PREFIX + p.name, p.name, p.mean, still, SIGMA_K) for p in places))
-
-
-def _without_bias(parts: Sequence[Segment], noise: Noise, p: int) -> Gram:
-    """The Gram matrix of one sensor over all tests, with one bias of the usual size taken out; no residual yet."""
-    X = np.vstack([noise.whiten(s, np.column_stack([s.J, np.ones(s.time.size)])) for s in parts])
-    Z, b = X[:, :-1], X[:, -1]
-    G = Z.T @ Z - np.outer(Z.T @ b, b @ Z) / (b @ b + SIGMA_K**-2)
-    K = G.shape[0] - p
-    return Gram(G[:p, :p], G[:p, p:], G[p:, p:], np.zeros(p), np.zeros(K), 0.0)

@@ -15,7 +15,6 @@ from viz.data import short
 from viz.figures import paper
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 COLUMNS, MOST = 3, 12  # panels: more are not read
@@ -42,21 +41,18 @@ def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png:
     words = f"{title}{left}", "time (min)", "temperature, 95 % band (°C)"
     figure, axes = paper.panels(len(widest), COLUMNS, (3.4, 2.1), *words, more=0.5)
     for ax, place in zip(axes, widest, strict=False):
-        _panel(ax, np.asarray(time, float) / 60.0, place)
+        minutes = np.asarray(time, float) / 60.0
+        colour = BLUE if place.read is not None else ORANGE
+        ax.fill_between(minutes, place.y - place.half95, place.y + place.half95, color=colour, alpha=0.25, lw=0)
+        if place.read is not None:
+            ax.plot(minutes, place.read, color=LIGHT.ink, lw=1.0)
+        ax.plot(minutes, place.y, color=colour)
+        ax.margins(x=0)
+        ax.set_title(short(place.name.removeprefix("sensor ")))
+        ax.set_title(f"± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)
+        if place.read is None:
+            ax.text(0.03, 0.95, "no sensor", transform=ax.transAxes, va="top", color=LIGHT.ink, fontsize=8.5)
     return paper.save(figure, png)
-
-
-def _panel(ax: Axes, minutes: Array, place: Predicted) -> None:
-    colour = BLUE if place.read is not None else ORANGE
-    ax.fill_between(minutes, place.y - place.half95, place.y + place.half95, color=colour, alpha=0.25, lw=0)
-    if place.read is not None:
-        ax.plot(minutes, place.read, color=LIGHT.ink, lw=1.0)
-    ax.plot(minutes, place.y, color=colour)
-    ax.margins(x=0)
-    ax.set_title(short(place.name.removeprefix("sensor ")))
-    ax.set_title(f"± {float(place.half95.max()):.1f} K", loc="right", fontweight="normal", fontsize=8.5)
-    if place.read is None:
-        ax.text(0.03, 0.95, "no sensor", transform=ax.transAxes, va="top", color=LIGHT.ink, fontsize=8.5)
 
 
 @paper.styled

@@ -144,15 +144,11 @@ def size(candidate: Mapping[str, Any]) -> str:
     return f"{a['value']:.3g} {a['unit']}".removesuffix(" 1")
 
 
-def interval(candidate: Mapping[str, Any]) -> str:
-    """'8.1 ... 16.5', 95 %; empty where it is not known."""
-    ci95 = candidate["amplitude"].get("ci95")
-    return f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 and np.isfinite(ci95).all() else ""
-
-
 def amplitude(candidate: Mapping[str, Any]) -> str:
     """'12.3 W/m2/K (95 %: 8.1 ... 16.5)'; empty where it has none."""
-    text, between = size(candidate), interval(candidate)
+    # '8.1 ... 16.5', 95 %; empty where it is not known
+    ci95 = candidate["amplitude"].get("ci95")
+    text, between = size(candidate), f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 and np.isfinite(ci95).all() else ""
     return f"{text} (95 %: {between})" if text and between else text
 
 

@@ -24,7 +24,16 @@ GAP = 0.065  # of the total between ribbons: nearly the height of a name; less w
 @paper.styled
 def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> Figure:
     """Losses and what a machine that cools gives up on the left, exits and what is stored on the right (W)."""
-    left, right = entries(heat), exits(heat)
+    # Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine
+    out: dict[str, float] = {}
+    for name, watts in heat.out.items():
+        name = name.partition(":")[0]
+        out[name] = out.get(name, 0.0) + watts
+    least = SMALL * sum(heat.losses.values())
+    large = {k: v for k, v in sorted(out.items(), key=lambda kv: -kv[1]) if v >= least}
+    rest = sum(v for k, v in out.items() if k not in large)
+    tail = {ELSEWHERE: rest, WARMS: heat.stored}
+    left, right = entries(heat), large | {k: v for k, v in tail.items() if v >= least}
     total = sum(left.values())
     if sum(heat.losses.values()) <= 0:
         raise InputError("no losses to draw", "sankey", "a machine that is running")
@@ -44,19 +53,6 @@ def entries(heat: Heat) -> dict[str, float]:
     losses = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
     least = SMALL * sum(losses.values())
     return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
-
-
-def exits(heat: Heat) -> dict[str, float]:
-    """Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine."""
-    out: dict[str, float] = {}
-    for name, watts in heat.out.items():
-        name = name.partition(":")[0]
-        out[name] = out.get(name, 0.0) + watts
-    least = SMALL * sum(heat.losses.values())
-    large = {k: v for k, v in sorted(out.items(), key=lambda kv: -kv[1]) if v >= least}
-    rest = sum(v for k, v in out.items() if k not in large)
-    tail = {ELSEWHERE: rest, WARMS: heat.stored}
-    return large | {k: v for k, v in tail.items() if v >= least}
 
 
 def colour_of(name: str, heat: Heat) -> str:

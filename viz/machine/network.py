@@ -95,7 +95,9 @@ def network_in_machine(
 
 def places(mesh: NamedMesh, nodes: SplitMesh) -> dict[str, Array]:
     """Name of part or fluid -> (0, y, z) m: mean radius in the upper half, or its own middle if off the axis."""
-    volume = _volumes(nodes)
+    corners = nodes.points[nodes.tets]
+    edges = corners[:, 1:] - corners[:, :1]
+    volume = np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
     middle = nodes.points[nodes.tets].mean(axis=1)
     at = {}
     for i, part in enumerate(nodes.parts):
@@ -130,12 +132,6 @@ def spread_out(at: Mapping[str, Array], least: float) -> dict[str, Array]:
             xyz[i, 2] += push
             xyz[j, 2] -= push
     return dict(zip(names, xyz, strict=True))
-
-
-def _volumes(nodes: SplitMesh) -> Array:
-    corners = nodes.points[nodes.tets]
-    edges = corners[:, 1:] - corners[:, :1]
-    return np.abs(np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), edges[:, 2])) / 6
 
 
 def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, pixel_m: float) -> float:

@@ -1,7 +1,5 @@
 """A page as PDF, with whatever converter this computer has."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from importlib.util import find_spec

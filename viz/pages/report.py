@@ -5,8 +5,6 @@ the reader's light or dark theme. (plotly's script alone would be 4.8 MB.) Only 
 more in a frame of its own, needs scripts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
@@ -83,17 +81,13 @@ def _top(r: Report) -> str:
         tone, sentence = "good" if r.finding.startswith("Found") else "info", r.finding.replace("->", "→")
     head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
-    return head + html.text(words.detail(diagnosis), r.description) + _cards(r)
-
-
-def _cards(r: Report) -> str:
     items = []
     if r.comparison is not None:
         items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
         if plain := best_plain_K(r.comparison):
             items.append((f"{plain:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
-    return html.cards(items) if items else ""
+    return head + html.text(words.detail(diagnosis), r.description) + (html.cards(items) if items else "")
 
 
 def best_plain_K(comparison: Document) -> float | None:

@@ -3,8 +3,6 @@
 The sides of a window are planes through the eye, so only its bottom is seen: the section at the sensor's own place.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,14 +99,10 @@ def window(at: Array, eye: Array, radius: float, others: Array) -> Window:
     normals = np.cross(at + spokes - eye, np.roll(at + spokes, -1, axis=0) - eye)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     normals *= np.sign(normals @ (at - eye))[:, None]
-    midway = _midway(at, eye, others)
-    reach = np.max(-(spokes @ midway.T) / (midway @ (at - eye)), axis=1, initial=1.0)  # how far a spoke oversteps
-    return Window(eye, np.concatenate([normals, midway]), at, towards, at + spokes / reach[:, None])
-
-
-def _midway(at: Array, eye: Array, others: Array) -> Array:
-    """(n, 3) normals of the planes through the eye that part a line of sight from others; the same line has none."""
+    # (n, 3) normals of the planes through the eye that part a line of sight from others; the same line has none
     away = (at - eye) / np.linalg.norm(at - eye) - (others - eye) / np.linalg.norm(others - eye, axis=1, keepdims=True)
     length = np.linalg.norm(away, axis=1)
     distinct = length > SAME
-    return np.asarray(away[distinct] / length[distinct, None])
+    midway = np.asarray(away[distinct] / length[distinct, None])
+    reach = np.max(-(spokes @ midway.T) / (midway @ (at - eye)), axis=1, initial=1.0)  # how far a spoke oversteps
+    return Window(eye, np.concatenate([normals, midway]), at, towards, at + spokes / reach[:, None])

@@ -1,7 +1,5 @@
 """What the camera sees: a small picture of part numbers, read back."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -31,7 +29,8 @@ def anchors(surface: Surface, view: View, room: Room, points: Array | None = Non
     data.cell_data["number"] = _as_colour(surface.part + 1)
     p.add_mesh(data, scalars="number", rgb=True, lighting=False)
     scene.look(p, surface.points if points is None else points, view, room)
-    part_numbers = _as_number(np.asarray(p.screenshot(return_img=True))) - 1
+    coarse = np.round(np.asarray(p.screenshot(return_img=True))[..., :2] / 16.0).astype(np.int64)
+    part_numbers = (coarse[..., 0] + 16 * coarse[..., 1]) - 1
     depth = np.abs(p.get_image_depth())
     eye = np.array(p.camera.position)
     p.close()
@@ -41,7 +40,12 @@ def anchors(surface: Surface, view: View, room: Room, points: Array | None = Non
         inside = distance_transform_edt(np.pad(part_numbers == part, 1))[1:-1, 1:-1] * free
         row, column = np.unravel_index(np.argmax(inside), inside.shape)
         if inside[row, column] >= SMALLEST and np.isfinite(depth[row, column]):
-            places[int(part)] = eye + depth[row, column] * _ray(int(row), int(column), view)
+            # From the eye through the middle of a pixel, of length 1 along the line of sight
+            towards, right, up = view.axes()
+            tan = np.tan(np.deg2rad(view.angle) / 2)
+            x = ((int(column) + 0.5) / SIZE[0] * 2 - 1) * tan * SIZE[0] / SIZE[1]
+            y = (1 - (int(row) + 0.5) / SIZE[1] * 2) * tan
+            places[int(part)] = eye + depth[row, column] * np.asarray(-towards + x * right + y * up)
     return places
 
 
@@ -77,19 +81,5 @@ def distance(obstacle: Any, points: Array) -> Array:
     return np.array([nearest(at) for at in points], float)
 
 
-def _ray(row: int, column: int, view: View) -> Array:
-    """From the eye through the middle of a pixel, of length 1 along the line of sight."""
-    towards, right, up = view.axes()
-    tan = np.tan(np.deg2rad(view.angle) / 2)
-    x = ((column + 0.5) / SIZE[0] * 2 - 1) * tan * SIZE[0] / SIZE[1]
-    y = (1 - (row + 0.5) / SIZE[1] * 2) * tan
-    return np.asarray(-towards + x * right + y * up)
-
-
 def _as_colour(number: Ints) -> NDArray[np.uint8]:
     return np.stack([number % 16 * 16, number // 16 * 16, np.zeros_like(number)], axis=1).astype(np.uint8)
-
-
-def _as_number(picture: NDArray[np.uint8]) -> Ints:
-    coarse = np.round(picture[..., :2] / 16.0).astype(np.int64)
-    return coarse[..., 0] + 16 * coarse[..., 1]

@@ -1,7 +1,5 @@
 """Measured minus modelled everywhere, as the page mixes it: what each sensor's residual tells at every node."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from geom.arrays import Array
-from viz.data import Comparison, short
+from viz.data import short
 from viz.rendering.nodes import SplitMesh
-from viz.rendering.scale import marks, rounded
 from viz.viewer.part_shapes import packed_fields
 
 ERROR = 0.02  # of a residual: far below what a sensor can tell
@@ -41,14 +38,3 @@ def packed_maps(maps: Sequence[ErrorMap], nodes: SplitMesh) -> dict[str, Any]:
         "sensors": [[short(name) for name in m.sensors] for m in maps],
         "told": packed_fields(np.stack([m.explained for m in maps]), nodes, SHARE, SHARE),
     }
-
-
-def error_marks(maps: Sequence[ErrorMap], compared: Sequence[Comparison], frames: int) -> list[float]:
-    """Round marks for the error (K), as far below zero as above."""
-    most = []
-    for m, c in zip(maps, compared, strict=True):
-        at = np.linspace(0, len(c.test.time) - 1, frames).astype(int)
-        channels = {channel.name: channel for channel in c.channels}
-        most.append(np.abs(m.at({name: c.residual(channels[name])[at] for name in m.sensors})).max(axis=0))
-    high = max(float(np.quantile(one, PEAK)) for one in most)
-    return marks(*rounded(-high, high))

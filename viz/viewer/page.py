@@ -1,7 +1,5 @@
 """The page: mesh once, a few shapes of its temperature, amplitudes per instant; a script that draws them."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -22,7 +20,7 @@ from viz.data import Comparison, late_mean, short
 from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
-from viz.viewer.error_map import ErrorMap, error_marks, packed_maps
+from viz.viewer.error_map import PEAK, ErrorMap, packed_maps
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
 from viz.viewer.part_shapes import ERROR_K, packed_fields
@@ -133,12 +131,21 @@ def temperature_document(
     slack = UNSEEN * (high - low) if limits else 0.0
     ends = [end for f in every for end in map(float, (f.min(), f.max())) if not low - slack <= end <= high + slack]
     low, high = rounded(min(low, *ends), max(high, *ends)) if ends else rounded(low, high)
+    out, first = [], 0
+    for test in tests:
+        n, count = len(test.times), len(test.states)
+        name = f"{test.comparison.test.name} ({test.comparison.test.role})"
+        states = [first + i * n for i in range(count)]
+        run = {"test": test.comparison.test.name, "name": name, "times": test.times.tolist(), "states": states}
+        out.append({**run, **_sensors(test, positions)})
+        first += n * count
+    changes = [float(np.ptp(np.stack(t.states), axis=0).max()) for t in tests if len(t.states) > 1]
     return {
         "fields": packed_fields(np.concatenate(every), nodes, ERROR_K, STEP_K),
         "revisions": list(revisions),
-        "tests": _tests(tests, positions),
+        "tests": out,
         "marks": marks(low, high),
-        "change_marks": _change(tests),
+        "change_marks": marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0))),
         "flux_marks": conductivity and _flux(nodes, tests, conductivity),
     }
 
@@ -167,18 +174,18 @@ def script() -> str:
     return "\n".join(files("viz.viewer").joinpath(f"{n}.js").read_text(encoding="utf-8") for n in ("network", "viewer"))
 
 
-def _change(tests: Sequence[Recorded]) -> list[float]:
-    """Round marks for the difference of any two states (K), as far below zero as above."""
-    changes = [float(np.ptp(np.stack(t.states), axis=0).max()) for t in tests if len(t.states) > 1]
-    return marks(*rounded(-max(changes, default=1.0), max(changes, default=1.0)))
-
-
 def _errors(tests: Sequence[Recorded], nodes: SplitMesh) -> dict[str, Any] | None:
     """What residuals tell between the sensors, if it is known for every test."""
     maps = [t.error_map for t in tests if t.error_map is not None]
     if len(maps) < len(tests):
         return None
-    return {**packed_maps(maps, nodes), "marks": error_marks(maps, [t.comparison for t in tests], FRAMES)}
+    most = []
+    for m, c in zip(maps, [t.comparison for t in tests], strict=True):
+        at = np.linspace(0, len(c.test.time) - 1, FRAMES).astype(int)
+        channels = {channel.name: channel for channel in c.channels}
+        most.append(np.abs(m.at({name: c.residual(channels[name])[at] for name in m.sensors})).max(axis=0))
+    high = max(float(np.quantile(one, PEAK)) for one in most)
+    return {**packed_maps(maps, nodes), "marks": marks(*rounded(-high, high))}
 
 
 def _network(mesh: NamedMesh | None, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any] | None:
@@ -201,19 +208,6 @@ def _parts(nodes: SplitMesh, colours: Mapping[str, str]) -> list[dict[str, Any]]
 def _faces(nodes: SplitMesh) -> Ints:
     """(n_tets,) bits: 1, 2, 4, 8 for faces that bound their part, 16, 32, 64, 128 where another part lies on them."""
     return np.asarray(nodes.outer() @ [1, 2, 4, 8] + nodes.touching() @ [16, 32, 64, 128])
-
-
-def _tests(tests: Sequence[Recorded], positions: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
-    """What was read and modelled; `states` are the numbers of their first fields, in the order of those given."""
-    out, first = [], 0
-    for test in tests:
-        n, count = len(test.times), len(test.states)
-        name = f"{test.comparison.test.name} ({test.comparison.test.role})"
-        states = [first + i * n for i in range(count)]
-        run = {"test": test.comparison.test.name, "name": name, "times": test.times.tolist(), "states": states}
-        out.append({**run, **_sensors(test, positions)})
-        first += n * count
-    return out
 
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[str, Any]:

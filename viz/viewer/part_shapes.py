@@ -3,8 +3,6 @@
 Parts need fewer shapes than the machine, for each part's field is smooth: fewer bytes, and less to mix per instant.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

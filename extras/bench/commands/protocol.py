@@ -34,8 +34,6 @@ resistance = [
 emf = { range = [0, 1000], percent = 0.1, offset = 1.0 }
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -3,8 +3,6 @@
 A record that would give a wrong temperature is refused, step by step; one that is only incomplete says what comes next.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -144,7 +142,9 @@ def _result(record: Record, cold: Cold, hot: Hot, steps: tuple[Step, ...]) -> Pr
         ways = tuple(all_ways(cooling_of(source, hot), record.rated_kW))
         temperatures = {f"winding, {w.method}": w.value for w in ways}
         best = min(ways[1:], key=lambda w: (w.method != "exponentials", w.method), default=ways[0])
-        winding = source.rise(_ohm_at(source, best.value))
+        # The resistance (ohm) that belongs to a temperature (degC): the law is a straight line
+        per_ohm = source.temperature(source.cold_ohm + 1.0) - source.cold_C
+        winding = source.rise(source.cold_ohm + (best.value - source.cold_C) / per_ohm)
     if hot.volt is not None and hot.rpm and cold.volt is not None and cold.rpm:
         pm = Magnets(cold.volt, cold.machine_C, cold.rpm, record.voltmeter, record.alpha, record.curve)
         magnets = pm.rise(hot.volt, hot.rpm)
@@ -156,12 +156,6 @@ def cooling_of(winding: Winding, hot: Hot) -> Cooling:
     """Readings after switching off as temperatures."""
     t, ohm = np.array(hot.cooling, float).T
     return Cooling(t, winding.temperature(ohm), hot.ambient_C, winding.reading_sd(float(np.median(ohm))))
-
-
-def _ohm_at(winding: Winding, T: float) -> float:
-    """The resistance (ohm) that belongs to a temperature (degC): the law is a straight line."""
-    per_ohm = winding.temperature(winding.cold_ohm + 1.0) - winding.cold_C
-    return winding.cold_ohm + (T - winding.cold_C) / per_ohm
 
 
 def _room(record: Record) -> tuple[State, str]:

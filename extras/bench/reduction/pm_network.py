@@ -5,15 +5,13 @@ differences. Small and soon made, it serves screening and calibration; the one c
 Films: Churchill and Chu, McAdams; end space: Schubert; slot: a heated bundle, liner and gap in series.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from thermoscope import Network, read_network
-from thermoscope.plugin import RPM, SCHUBERT, Group, PartRow, part_table, winding_conductivity
+from thermoscope.plugin import RPM, SCHUBERT, PartRow, part_table, winding_conductivity
 from thermoscope.plugin import MachineDescription as Machine
 
 Rows = Mapping[str, PartRow]
@@ -113,9 +111,17 @@ class _Builder:
     def document(self, bases: Sequence[Base]) -> dict[str, Any]:
         self._nodes()
         self._winding()
-        self._inside()
+        for side in ("left", "right"):
+            air = f"air.{side}"
+            for part in (f"winding.{side}", f"endcap.{side}", "stator.core", "rotor.core", "shaft"):
+                area = self.rows[part].faces[f"{part}.{air}"]
+                self._stirred(part, air, area, 1.0 if part in ("rotor.core", "shaft") else WALL)
         self._rotor()
-        self._outside()
+        diameter, rows = self.g.stator.outer_diameter, self.rows
+        self._film("stator.core", "horizontal cylinder", diameter, rows["stator.core"].faces["stator.core.outer"])
+        for cap in ("endcap.left", "endcap.right"):
+            self._film(cap, "vertical plate", diameter, rows[cap].faces[f"{cap}.outer"])
+        self._film("shaft", "horizontal cylinder", self.g.shaft.diameter, rows["shaft"].faces["shaft.outer"])
         for base in bases:
             self._base(f"base.{base.name}", base.emissivity, base.switch, base.machine)
         if not bases and self.settings.base is not None and "base" in self.rows:
@@ -170,14 +176,6 @@ class _Builder:
             path = length / 6 / along + (g.winding.straight + g.winding.end / 3) / k_out
             self.link("winding", f"winding.{side}", R_K_W=path / area)
 
-    def _inside(self) -> None:
-        """Every wall of an end space to its air, stirred by the rotor."""
-        for side in ("left", "right"):
-            air = f"air.{side}"
-            for part in (f"winding.{side}", f"endcap.{side}", "stator.core", "rotor.core", "shaft"):
-                area = self.rows[part].faces[f"{part}.{air}"]
-                self._stirred(part, air, area, 1.0 if part in ("rotor.core", "shaft") else WALL)
-
     def _stirred(self, part: str, air: str, area: float, share: float) -> None:
         tip = 383 * RPM * (self.g.stator.bore_diameter / 2 - self.g.stator.air_gap)
         turning = {"input": "speed_rpm", "at": 383, "exponent": K3}
@@ -196,13 +194,6 @@ class _Builder:
             R = self.contact("shaft", bearing, "bearing") + self.contact(cap, bearing, "seat")
             self.link(cap, "shaft", R_K_W=R)
             self.link(cap, "stator.core", R_K_W=self.contact(cap, "stator.core", "endcap"))
-
-    def _outside(self) -> None:
-        diameter, rows = self.g.stator.outer_diameter, self.rows
-        self._film("stator.core", "horizontal cylinder", diameter, rows["stator.core"].faces["stator.core.outer"])
-        for cap in ("endcap.left", "endcap.right"):
-            self._film(cap, "vertical plate", diameter, rows[cap].faces[f"{cap}.outer"])
-        self._film("shaft", "horizontal cylinder", self.g.shaft.diameter, rows["shaft"].faces["shaft.outer"])
 
     def _film(self, part: str, surface: str, size: float, area: float, emissivity: float | None = None) -> None:
         """A face to ambient: still air (or a given coefficient) and radiation."""
@@ -242,25 +233,21 @@ class _Builder:
         for i in range(BANDS):
             node, share = f"{name}.{i}", (edges[i + 1] - edges[i]) / half
             self.nodes[node] = {"C_J_K": capacity * share + (self._foot_capacity(machine, rows) if i == 0 else 0.0)}
-            self._plate(node, b, share, emissivity)
+            one, size = b.length * b.width * share, b.length * b.width / (2 * (b.length + b.width))
+            self._film(node, "plate facing up", size, one, emissivity)
+            under = self._still("plate facing down", size)
+            self.links[f"{node}.under-ambient"] = {
+                "between": [node, "ambient"],
+                "area_m2": one,
+                **under,
+                "radiation": {"emissivity": emissivity},
+            }
             if i:
                 step = (edges[i + 1] - edges[i - 1]) / 2
                 self.link(f"{name}.{i - 1}", node, G_W_K=2 * k * b.width / step)
 
     def _foot_capacity(self, machine: Machine, rows: Rows) -> float:
         return rows["foot"].mass * machine.material_of("foot").cp
-
-    def _plate(self, node: str, b: Group, share: float, emissivity: float) -> None:
-        """Both sides of one band of the plate."""
-        one, size = b.length * b.width * share, b.length * b.width / (2 * (b.length + b.width))
-        self._film(node, "plate facing up", size, one, emissivity)
-        under = self._still("plate facing down", size)
-        self.links[f"{node}.under-ambient"] = {
-            "between": [node, "ambient"],
-            "area_m2": one,
-            **under,
-            "radiation": {"emissivity": emissivity},
-        }
 
     def _means(self) -> dict[str, Any]:
         volume = {p: fill * self.rows[p].volume for p, fill in COPPER_SHARE.items()}

@@ -1,7 +1,5 @@
 """thermoscope use watch CASE --follow FILE|-: temperatures and missing heat while the machine runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +11,7 @@ from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
 from extras.monitor.rows.live_rows import PIPE, Rows
-from extras.monitor.rows.observing import joined, record_of, started
+from extras.monitor.rows.observing import joined, record_of
 from thermoscope import Record
 from thermoscope.plugin import (
     NORMAL_95,
@@ -67,7 +65,11 @@ class Session:
 
     def take(self, rows: Rows) -> None:
         if self.one is None:
-            self.one, self.start_s = started(self.design, self.sensors, rows), float(rows.time[0])
+            readings = np.array([rows.readings[c.name][0] for c in self.sensors])
+            self.one, self.start_s = (
+                self.design.started(self.sensors, readings, {n: float(u[0]) for n, u in rows.boundaries.items()}),
+                float(rows.time[0]),
+            )
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
             initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
             self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
@@ -78,7 +80,17 @@ class Session:
         self.before = whole
         self._compare(rows, samples, self._open_loop(record, len(samples)))
         for sample in samples:
-            self._note(sample)
+            temperatures = {n: sample.at(row) for n, row in self.rows.items()}
+            for name, (T, _) in temperatures.items():
+                if name not in self.hottest or self.hottest[name][0] < T:
+                    self.hottest[name] = T, sample.time_s
+            numbers = [sample.time_s, *(x for pair in temperatures.values() for x in pair)]
+            numbers += [x for pair in zip(sample.heat, sample.heat_sd, strict=True) for x in pair]
+            self.lines.append(",".join(f"{x:.7g}" for x in numbers))
+            self.last = sample
+            if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
+                self.spoken = sample.time_s
+                say(self._line(sample, temperatures))
 
     def _open_loop(self, record: Record, count: int) -> list[Array]:
         """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
@@ -102,19 +114,6 @@ class Session:
             good = np.isfinite(y)
             sums[0] += np.sum(both[good] ** 2, axis=0)
             sums[1] += float(good.sum())
-
-    def _note(self, sample: Sample) -> None:
-        temperatures = {n: sample.at(row) for n, row in self.rows.items()}
-        for name, (T, _) in temperatures.items():
-            if name not in self.hottest or self.hottest[name][0] < T:
-                self.hottest[name] = T, sample.time_s
-        numbers = [sample.time_s, *(x for pair in temperatures.values() for x in pair)]
-        numbers += [x for pair in zip(sample.heat, sample.heat_sd, strict=True) for x in pair]
-        self.lines.append(",".join(f"{x:.7g}" for x in numbers))
-        self.last = sample
-        if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
-            self.spoken = sample.time_s
-            say(self._line(sample, temperatures))
 
     def _line(self, sample: Sample, estimates: dict[str, tuple[float, float]]) -> str:
         """One line for the terminal."""

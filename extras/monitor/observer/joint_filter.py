@@ -6,9 +6,6 @@ Because heat may be missing, a recording that the model cannot follow moves the 
 and no further. From test to test only w and its covariance are carried. Source: Jazwinski 1970, chapter 8.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -80,11 +77,6 @@ class _Run:
         names = self.process.network.boundaries
         self.u = np.column_stack([np.broadcast_to(course.boundaries[b], self.time.shape) for b in names])
         self.at = {c.name: j for j, c in enumerate(of.constants.channels)}
-        self.x, self.P = self._begun(of.noise)
-        self.along = self.process.slow_only
-        self.lagged = np.zeros(len(test.channels))
-
-    def _begun(self, noise: ProcessNoise) -> tuple[Array, Array]:
         first = {c.place: float(c.y[0]) for c in self.test.channels if np.isfinite(c.y[0])}
         x = initial_state(self.process.network, first or float(self.u[0].mean()))
         around = np.std([*first.values(), *self.u[0]])
@@ -92,9 +84,11 @@ class _Run:
         read = {self.process.state(c) for c in self.test.channels if c.place in first}
         sd[[int(i) in read for i in self.process.slow]] = USUAL["start"]
         P, s = np.zeros((self.n + self.w.size,) * 2), self.process.slow.size
-        P[:s, :s], P[s : self.n, s : self.n] = np.diag(sd**2), noise.covariance
+        P[:s, :s], P[s : self.n, s : self.n] = np.diag(sd**2), of.noise.covariance
         P[self.n :, self.n :] = self.of.P
-        return np.asarray(x, float), P
+        self.x, self.P = (np.asarray(x, float), P)
+        self.along = self.process.slow_only
+        self.lagged = np.zeros(len(test.channels))
 
     def take(self, k: int) -> None:
         """To sample k, and its readings."""
@@ -191,20 +185,18 @@ class _Terms:
             acting = multipliers(self.network, values)
             self.m = np.array([acting.get(name, 1.0) for name in self.every.names])
             self.C = self.network.C * capacity_multipliers(self.network, acting)
-            self._turn(slopes(self.network, values, self.constants.parameters))
+            # by (ne, p), C_by (n, p) : slopes of the coefficients, and of the logarithm of the capacities
+            moves = slopes(self.network, values, self.constants.parameters)
+            at = {name: e for e, name in enumerate(self.every.names)}
+            self.by = np.zeros((len(at), len(moves)))
+            for j, slope in enumerate(moves):
+                for target, value in slope.items():
+                    if target in at:
+                        self.by[at[target], j] += value
+            capacity_by = [capacity_slopes(self.network, slope) for slope in moves]
+            self.C_by = np.reshape(capacity_by, (-1, self.n)).T * (self.network.C / np.maximum(self.C, 1e-30))[:, None]
             self._known = w.copy()
         self.f, self._sizes = f[: len(self.every.names)], f[self._place]
-
-    def _turn(self, moves: Sequence[Mapping[str, float]]) -> None:
-        """by (ne, p), C_by (n, p) : slopes of the coefficients, and of the logarithm of the capacities."""
-        at = {name: e for e, name in enumerate(self.every.names)}
-        self.by = np.zeros((len(at), len(moves)))
-        for j, slope in enumerate(moves):
-            for target, value in slope.items():
-                if target in at:
-                    self.by[at[target], j] += value
-        capacity_by = [capacity_slopes(self.network, slope) for slope in moves]
-        self.C_by = np.reshape(capacity_by, (-1, self.n)).T * (self.network.C / np.maximum(self.C, 1e-30))[:, None]
 
     def _unit(self, z: Array) -> Array:
         """(ne, n) heat into every state by a coefficient of one."""

@@ -1,7 +1,5 @@
 """The observer: sample by sample all temperatures and the missing heat, dropped sensors, and where the model fails."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -152,7 +150,10 @@ class Observer:
     def _judge(self, time: float) -> None:
         """Say what has become sure, withdraw what no longer is."""
         count = len(self.sensors)
-        for i, chance in enumerate(self.missing_heat_probability, count):
+        sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
+        for i, chance in enumerate(
+            np.asarray(ndtr((np.abs(self.filter.q) - TOLERANCE * self.table_sd) / np.maximum(sd, 1e-9))), count
+        ):
             size = float(self.filter.q[i - count])
             if i not in self.open:
                 if chance > SURE:
@@ -165,12 +166,6 @@ class Observer:
         drifts = self.tests.probability[:count]
         if count and drifts.max() > SURE:
             self._drop_drifting(int(drifts.argmax()), time, float(drifts.max()))
-
-    @property
-    def missing_heat_probability(self) -> Array:
-        """(m,) probability that the missing heat of a body is more than the table of doubt allows."""
-        sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
-        return np.asarray(ndtr((np.abs(self.filter.q) - TOLERANCE * self.table_sd) / np.maximum(sd, 1e-9)))
 
     def _drop_drifting(self, j: int, time: float, chance: float) -> None:
         """Without the sensor; where it has led the estimate is forgotten."""

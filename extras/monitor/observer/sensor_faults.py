@@ -1,7 +1,5 @@
 """Readings that say nothing: lost, impossible, or frozen."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,7 +43,9 @@ class SensorState:
             self.longest_s = max(self.longest_s, self.same_s)
             self.same_s, self.last, self.then = 0.0, reading, around
         if self.dropped:
-            self._return()
+            moves = self.dropped != "frozen" or self.same_s == 0.0
+            if self.dropped != "drifting" and self.good_s >= BACK_S and moves:
+                self.dropped = ""
         elif self.missing_s >= max(LOST_S, 3.0 * step_s):
             self.dropped, self.since_s = "lost", time_s - self.missing_s
         elif self.same_s >= max(FROZEN_S, LONGER * self.longest_s) and self._others_moved(around, sigma_K):
@@ -54,9 +54,3 @@ class SensorState:
 
     def _others_moved(self, around: Array, sigma_K: Array) -> bool:
         return bool(np.any(np.abs(around - self.then) > MOTION * sigma_K))
-
-    def _return(self) -> None:
-        """A sensor that was lost or frozen is believed again once its readings are good and move."""
-        moves = self.dropped != "frozen" or self.same_s == 0.0
-        if self.dropped != "drifting" and self.good_s >= BACK_S and moves:
-            self.dropped = ""

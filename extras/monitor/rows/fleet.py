@@ -1,7 +1,5 @@
 """Recordings of a fleet, motor by motor and piece by piece: only their statistics stay in memory."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
@@ -15,7 +13,7 @@ from extras.monitor.fleet import Statistics, UnitHistory, statistics
 from extras.monitor.rows.live_rows import Rows, table_of
 from thermoscope import InputError, Network
 from thermoscope.plugin import LAW_RUNNING as RUNNING
-from thermoscope.plugin import SUFFIXES, Array, Channel, Ints, Sheet, Test, stem_of
+from thermoscope.plugin import SUFFIXES, Array, Channel, Sheet, Test, stem_of
 from thermoscope.plugin import CaseProgress as Progress
 from thermoscope.plugin import MeasuredCase as Case
 
@@ -65,7 +63,8 @@ class Reader:
     def _test(self, rows: Rows, recording: Recording, network: Network) -> Test:
         if rows.time.size < LEAST:
             raise InputError(f"holds {rows.time.size} rows", str(recording.file), f"at least {LEAST} to fit a motor to")
-        start = _starts(rows.time, self.step_s)
+        cell = np.floor((rows.time - rows.time[0]) / self.step_s)
+        start = np.flatnonzero(np.diff(cell, prepend=-1.0) > 0)
 
         def mean(y: Array) -> Array:
             good = np.isfinite(y).astype(float)
@@ -81,12 +80,6 @@ class Reader:
         inputs |= {f"{RUNNING}{name}": np.zeros(time.size) for name in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
         return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
-
-
-def _starts(time: Array, step_s: float) -> Ints:
-    """First row of every step."""
-    cell = np.floor((time - time[0]) / step_s)
-    return np.flatnonzero(np.diff(cell, prepend=-1.0) > 0)
 
 
 def _initial(channels: Sequence[Channel], air: dict[str, Array]) -> dict[str, float]:

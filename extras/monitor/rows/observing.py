@@ -1,7 +1,5 @@
 """The observer of a case. What the calibration tests teach it is learned once, and kept."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -9,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from extras.monitor.observer import Observer
 from extras.monitor.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
 from extras.monitor.observer.process import bodies_of
 from extras.monitor.observer.process_noise import most_doubtful, of_doubt
@@ -92,12 +89,6 @@ def less_sure(folder: Folder, gap: Mapping[str, float]) -> Folder:
 def _from_cache(file: Path) -> Lesson:
     with np.load(file) as archive:
         return Lesson(tuple(str(b) for b in archive["bodies"]), archive["table"], archive["constants"])
-
-
-def started(design: Design, sensors: Sequence[Channel], first: Rows) -> Observer:
-    """An observer at its first rows."""
-    readings = np.array([first.readings[c.name][0] for c in sensors])
-    return design.started(sensors, readings, {n: float(u[0]) for n, u in first.boundaries.items()})
 
 
 def chosen(here: Sequence[Channel], sensors: Sequence[str], where: str) -> list[Channel]:

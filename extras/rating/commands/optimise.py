@@ -1,7 +1,5 @@
 """thermoscope use optimise CASE|MACHINE: designs that trade temperature, settling, loss and auxiliary power."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
@@ -154,8 +152,9 @@ def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     rows += [_row(d["design"], d, objectives, names) for d in picked]
     parts: list[Table | str] = [Table("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
     if error := document.get("interpolation_error"):
+        rises = 100.0 * max(e for n, e in error.items() if n not in (SETTLING, COPPER))
         parts.append(
-            f"Against models condensed anew for three of them: rises within {100.0 * _rises(error):.2g} %, settling "
+            f"Against models condensed anew for three of them: rises within {rises:.2g} %, settling "
             f"time within {100.0 * error[SETTLING]:.2g} %, copper loss within {100.0 * error[COPPER]:.2g} %."
         )
     if document["robust"]:
@@ -164,10 +163,6 @@ def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     point = {**document["operating_point"]["inputs"], **document["operating_point"]["boundaries"]}
     parts.append(f"At {torque}{', '.join(f'{n} = {u:.4g}' for n, u in point.items())}.")
     return Summary(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
-
-
-def _rises(error: Mapping[str, float]) -> float:
-    return max(e for n, e in error.items() if n not in (SETTLING, COPPER))
 
 
 def _in_display_unit(objective: str, value: float) -> float:

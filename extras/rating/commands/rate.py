@@ -1,7 +1,5 @@
 """thermoscope use rate CASE|MACHINE: what it may carry, for how long, and how sure that is."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from extras.rating.envelope import DUTIES, rated, until
-from extras.rating.holding_map import holding_times
 from extras.rating.operation import Operation
+from extras.rating.points import Model
 from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import derated, load_of, point, row
 from thermoscope import InputError
 from thermoscope.plugin import (
+    Array,
     Folder,
     Progress,
     RangeWarning,
@@ -44,6 +43,19 @@ POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
 LARGEST_START = 1e7  # in amperes or newton metres: beyond any machine
 WARM = 0.75  # load at rest from which an overload begins warm
+
+
+def holding_times(
+    model: Model, op: Operation, limits: Mapping[str, float], loads: Sequence[float], speeds: Sequence[float]
+) -> Array:
+    """(n_speed, n_load) seconds from cold until a limit is reached; inf where it may stay for ever."""
+    return np.array([[_time(model, op, list(limits.values()), load, n) for load in loads] for n in speeds])
+
+
+def _time(model: Model, op: Operation, most: Sequence[float], load: float, speed: float) -> float:
+    if np.all(model.rest(op, load, speed) < np.asarray(most)):
+        return float("inf")
+    return until(model, op, most, load, speed, None)
 
 
 def read_at(words: Sequence[str]) -> dict[str, float]:

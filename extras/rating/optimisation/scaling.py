@@ -50,7 +50,8 @@ class Scaling:
 
         Only faces are looked at whose part or fluid has another shape.
         """
-        differing = changed(self.machine, machine)
+        before = {p.name: p.prisms for p in (*self.machine.parts, *self.machine.fluids)}
+        differing = {p.name for p in (*machine.parts, *machine.fluids) if before.get(p.name) != p.prisms}
         if not differing:
             return {}
         there = Films(surroundings(machine, ()))
@@ -100,12 +101,6 @@ class Films:
         if part not in self._walls:
             self._walls[part] = _walls(self.around.machine.part(part))
         return self._walls[part]
-
-
-def changed(old: Machine, new: Machine) -> set[str]:
-    """Parts and fluids with other prisms."""
-    before = {p.name: p.prisms for p in (*old.parts, *old.fluids)}
-    return {p.name for p in (*new.parts, *new.fluids) if before.get(p.name) != p.prisms}
 
 
 def _conductance(where: Surroundings, jacket: str, area: float, inputs: Mapping[str, float]) -> float:

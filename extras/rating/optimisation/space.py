@@ -1,7 +1,5 @@
 """What an optimisation may change, between which bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Laminations, slots and winding of the stator."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes
@@ -22,7 +20,17 @@ def stator(g: Geometry, at: Layout) -> tuple[Part, ...]:
     fillings = shapes.turned(Profile(whole, (lined,)), angles) if gap else []
     ends, loose = _ends(g, at, angles), (w.end_fill, w.end_impregnation)
     left, right = extrude(ends, at.ring0, at.coil0), extrude(ends, at.coil1, at.ring1)
-    core = Profile(shapes.circle_loop(at.core), (_bore(g, at, angles),))
+    half = g.stator.opening / 2
+    mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)
+    inner, outer = (at.half_angle(r) for r in (at.slot0, at.slot1))
+    lip, bottom = shapes.bulge_of(inner - throat), shapes.bulge_of(2 * outer)
+    loop, polar = [], shapes.polar
+    for angle, pitch in zip(angles, shapes.gaps(angles)):
+        loop += [polar(at.bore, angle - mouth), polar(at.slot0, angle - throat, -lip)]
+        loop += [polar(at.slot0, angle - inner), polar(at.slot1, angle - outer, bottom)]
+        loop += [polar(at.slot1, angle + outer), polar(at.slot0, angle + inner, -lip)]
+        loop += [polar(at.slot0, angle + throat), polar(at.bore, angle + mouth, shapes.bulge_of(pitch - 2 * mouth))]
+    core = Profile(shapes.circle_loop(at.core), (tuple(loop),))
     return (
         Part("stator.core", "electrical-steel", ((core, at.core0, at.core1),), role=Role.IRON),
         *([Part("slot.gap", "gap-resin", extrude(fillings, at.core0, at.core1), role=Role.INSULATION)] if gap else []),
@@ -59,18 +67,3 @@ def slot_loop(at: Layout, inner: float, outer: float, lining: float) -> Loop:
     near, far = -shapes.bulge_of(2 * a), shapes.bulge_of(2 * b)
     polar = shapes.polar
     return polar(inner, -a), polar(outer, -b, far), polar(outer, b), polar(inner, a, near)
-
-
-def _bore(g: Geometry, at: Layout, angles: list[float]) -> Loop:
-    """The bore with all slots and their openings."""
-    half = g.stator.opening / 2
-    mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)
-    inner, outer = (at.half_angle(r) for r in (at.slot0, at.slot1))
-    lip, bottom = shapes.bulge_of(inner - throat), shapes.bulge_of(2 * outer)
-    loop, polar = [], shapes.polar
-    for angle, pitch in zip(angles, shapes.gaps(angles)):
-        loop += [polar(at.bore, angle - mouth), polar(at.slot0, angle - throat, -lip)]
-        loop += [polar(at.slot0, angle - inner), polar(at.slot1, angle - outer, bottom)]
-        loop += [polar(at.slot1, angle + outer), polar(at.slot0, angle + inner, -lip)]
-        loop += [polar(at.slot0, angle + throat), polar(at.bore, angle + mouth, shapes.bulge_of(pitch - 2 * mouth))]
-    return tuple(loop)

@@ -1,7 +1,5 @@
 """Values of a series-wound motor that are allowed one by one but do not fit together."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes
@@ -18,14 +16,37 @@ def check(g: Geometry, z: Axial) -> None:
     """Raise InputError for the first rule that does not hold."""
     fit, r = Fit(g), Radii(g)
     _check_rotor(fit, g, r)
-    _check_poles(fit, g, r)
-    _check_lengths(fit, g, z)
+    half = math.pi / g.stator.poles
+    tips = half * g.stator.pole_arc
+    fit.need(tips < half - 0.01, "stator.pole_arc", "small enough for the shoes to stay apart", unit="")
+    x, y, _ = shapes.polar(r.bore + g.stator.tip, tips)
+    shoe = f"less than the shoe, {1.9 * y * mm:.4g} mm, whose tips lie below its back"
+    fit.need(r.body < 0.95 * y and r.shoe_back > x, "stator.body_width", shoe)
+    sides = math.atan2(r.coil_side, r.coil0)
+    fit.need(sides < half - 0.005, "field.coil_width", "narrow enough for neighbouring coils to stay apart")
+    corner = math.hypot(r.coil1, r.coil_side)
+    clear = f"more than {2.01 * corner * mm:.4g} mm, to clear the field coils"
+    fit.need(corner < 0.995 * r.yoke0, "stator.yoke_inner_diameter", clear)
+    first, last = min(z.ring0, z.field0, z.yoke0), max(z.bars1, z.field1, z.yoke1)
+    fit.above(z.core0 - first, "flange.rotor_offset", ": end winding, field coil and yoke")
+    fit.above(last + z.end - z.inner1, "shaft.length", ", for all that it carries")
     _check_fins(fit, g, r)
-    _check_commutator(fit, g)
+    if g.commutator.bars:
+        around = math.pi * g.commutator.diameter / g.commutator.bars
+        high = (g.commutator.diameter - g.shaft.hub_diameter) / 2
+        fit.below(0.5 * min(around, high), "commutator.mica", ", to leave copper")
     check_fan(fit, g.shaft.bearing_diameter, 2 * r.shell)
-    _check_brushes(fit, g, z)
+    if g.brushes.arms:
+        room = (g.rotor.outer_diameter - g.commutator.diameter) / 2 - g.brushes.arm
+        fit.below(room, "brushes.height", " with such an arm, to stay below the armature's radius")
+        fit.need(z.bars1 < z.inner1, "brushes.arms", "0, or a commutator that ends before the flange", unit="")
     _check_jackets(fit, g, r, z)
-    _check_feet(fit, g, r, z)
+    inside, outermost = z.inner1 - z.inner0, max(r.fins, r.jacket) if z.jackets else r.fins
+    fit.below(0.95 * r.shell - g.feet.inner, "feet.width", ": the foot must end under the housing")
+    fit.above(2 * (g.feet.inner + g.feet.width), "base.width")
+    fit.above(outermost, "feet.shaft_height", ", where fins or jacket end")
+    fit.below(inside / 2 - g.feet.inset, "feet.length")
+    fit.above(inside - 2 * g.feet.inset, "base.length", ", to carry the feet")
 
 
 def _check_rotor(fit: Fit, g: Geometry, r: Radii) -> None:
@@ -57,26 +78,6 @@ def _ducts_fit(g: Geometry, r: Radii) -> bool:
     return clear and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
 
 
-def _check_poles(fit: Fit, g: Geometry, r: Radii) -> None:
-    half = math.pi / g.stator.poles
-    tips = half * g.stator.pole_arc
-    fit.need(tips < half - 0.01, "stator.pole_arc", "small enough for the shoes to stay apart", unit="")
-    x, y, _ = shapes.polar(r.bore + g.stator.tip, tips)
-    shoe = f"less than the shoe, {1.9 * y * mm:.4g} mm, whose tips lie below its back"
-    fit.need(r.body < 0.95 * y and r.shoe_back > x, "stator.body_width", shoe)
-    sides = math.atan2(r.coil_side, r.coil0)
-    fit.need(sides < half - 0.005, "field.coil_width", "narrow enough for neighbouring coils to stay apart")
-    corner = math.hypot(r.coil1, r.coil_side)
-    clear = f"more than {2.01 * corner * mm:.4g} mm, to clear the field coils"
-    fit.need(corner < 0.995 * r.yoke0, "stator.yoke_inner_diameter", clear)
-
-
-def _check_lengths(fit: Fit, g: Geometry, z: Axial) -> None:
-    first, last = min(z.ring0, z.field0, z.yoke0), max(z.bars1, z.field1, z.yoke1)
-    fit.above(z.core0 - first, "flange.rotor_offset", ": end winding, field coil and yoke")
-    fit.above(last + z.end - z.inner1, "shaft.length", ", for all that it carries")
-
-
 def _check_fins(fit: Fit, g: Geometry, r: Radii) -> None:
     fins, around = g.housing.fins, 2 * math.pi * r.shell
     if fins:
@@ -84,20 +85,6 @@ def _check_fins(fit: Fit, g: Geometry, r: Radii) -> None:
         fit.below(0.9 * pitch, "housing.fin_thickness", f": {fins} fins on this housing overlap otherwise")
         most = f"at most {around / fins * mm:.4g} mm"
         fit.need(fins * g.housing.fin_spacing <= around, "housing.fin_spacing", most)
-
-
-def _check_commutator(fit: Fit, g: Geometry) -> None:
-    if g.commutator.bars:
-        around = math.pi * g.commutator.diameter / g.commutator.bars
-        high = (g.commutator.diameter - g.shaft.hub_diameter) / 2
-        fit.below(0.5 * min(around, high), "commutator.mica", ", to leave copper")
-
-
-def _check_brushes(fit: Fit, g: Geometry, z: Axial) -> None:
-    if g.brushes.arms:
-        room = (g.rotor.outer_diameter - g.commutator.diameter) / 2 - g.brushes.arm
-        fit.below(room, "brushes.height", " with such an arm, to stay below the armature's radius")
-        fit.need(z.bars1 < z.inner1, "brushes.arms", "0, or a commutator that ends before the flange", unit="")
 
 
 def _check_jackets(fit: Fit, g: Geometry, r: Radii, z: Axial) -> None:
@@ -114,12 +101,3 @@ def _check_jackets(fit: Fit, g: Geometry, r: Radii, z: Axial) -> None:
     fit.below(0.9 * min(room, length / 2.5), "jacket.rib", ", to leave room for the channels")
     fit.below(bore, "jacket.port", ", the channel's share for it")
     fit.need(not too_near(nozzles(g)), "jacket.port", "less, to keep the ports apart")
-
-
-def _check_feet(fit: Fit, g: Geometry, r: Radii, z: Axial) -> None:
-    inside, outermost = z.inner1 - z.inner0, max(r.fins, r.jacket) if z.jackets else r.fins
-    fit.below(0.95 * r.shell - g.feet.inner, "feet.width", ": the foot must end under the housing")
-    fit.above(2 * (g.feet.inner + g.feet.width), "base.width")
-    fit.above(outermost, "feet.shaft_height", ", where fins or jacket end")
-    fit.below(inside / 2 - g.feet.inset, "feet.length")
-    fit.above(inside - 2 * g.feet.inset, "base.length", ", to carry the feet")

@@ -1,7 +1,5 @@
 """Where things are: positions along the axis and radii that several parts share."""
 
-from __future__ import annotations
-
 from geom.description.geometry import Geometry
 
 
@@ -24,14 +22,11 @@ class Axial:
         self.yoke0, self.yoke1 = self.core0 - g.stator.yoke_overhang, self.core1 + g.stator.yoke_overhang
         self.field0 = self.core0 - g.field.insulation - g.field.coil_width
         self.field1 = self.core1 + g.field.insulation + g.field.coil_width
-        self.jackets = self._jackets(g)
-
-    def _jackets(self, g: Geometry) -> dict[str, tuple[float, float]]:
-        """Each jacket's axial range: the housing between the feet, halved."""
+        # Each jacket's axial range: the housing between the feet, halved
         first = self.inner0 + g.feet.inset + g.feet.length
         last = self.inner1 - g.feet.inset - g.feet.length
         middle = (first + last) / 2
-        return dict([("jacket.left", (first, middle)), ("jacket.right", (middle, last))][: g.jacket.sides])
+        self.jackets = dict([("jacket.left", (first, middle)), ("jacket.right", (middle, last))][: g.jacket.sides])
 
 
 class Radii:

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from extras.rating import points
+from extras.rating.commands.rate import holding_times
 from extras.rating.derating import deratings
 from extras.rating.envelope import rated, until
-from extras.rating.holding_map import holding_times
 from extras.rating.hot_spots import hot_spots
 from extras.rating.loss_grid import loss_grid, with_losses
 from extras.rating.operation import at_altitude, operation

@@ -16,17 +16,12 @@ def draft_of(folder, more="", **changes):
     return import_draft(saved(folder, motor_cad(more, **changes), "small.mot"))
 
 
-def slot_area(bore, teeth, tooth, inner, outer):
-    """Between parallel-sided teeth from one radius to another."""
-    return math.pi / teeth * (outer**2 - inner**2) - tooth * (outer - inner)
-
-
 def test_a_small_machine_has_the_volumes_of_its_file(tmp_path):
     machine = load_machine(saved(tmp_path, motor_cad(), "small.mot"))
     winding = machine.part("winding")
     assert winding.volume * winding.filling[0] == pytest.approx(12 * 40 * math.pi / 4 * 1e-6 * 0.04, rel=1e-6)
     assert winding.filling[1] == 0.8
-    whole = 12 * slot_area(0.03, 12, 0.008, 0.0315, 0.044) * 0.04
+    whole = 12 * (math.pi / 12 * (0.044**2 - 0.0315**2) - 0.008 * (0.044 - 0.0315)) * 0.04
     assert winding.volume == pytest.approx(whole, rel=0.05)  # tips and corners take some per cent
     angle = math.radians(150) / 2  # two pole pairs
     assert machine.part("magnets").volume == pytest.approx(4 * angle / 2 * (0.029**2 - 0.025**2) * 0.04, rel=1e-6)

@@ -12,11 +12,10 @@ from test_declared_films import MOVING, STILL
 
 from lumped.correlations.contacts import GAPS, PRESSED
 from lumped.declarations.films import moving_surfaces, still_surfaces
-from lumped.declarations.links import FLOW_INPUTS, MECHANISMS
+from lumped.declarations.links import FLOW_INPUTS, MECHANISMS, ROTATING
 from lumped.declarations.loss_tables import LOSSES, MEASURED, PLAIN
 from lumped.declarations.network import read_network
 from lumped.declarations.parameters import MAPPINGS
-from lumped.declarations.rotor import ROTATING
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Parameter

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from measured.sensors.spline import through
+from measured.sensors.operators import through
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 50])

@@ -91,11 +91,6 @@ def every_effect():
 EVERY = [pytest.param(make, id=name) for name, make in every_effect()]
 
 
-def size(parameter):
-    """A usual one, to the side that physics allows."""
-    return parameter.neutral + parameter.prior_sd * (parameter.sign or 1)
-
-
 @pytest.mark.parametrize("kind", LASTING)
 def test_what_cannot_hold_for_a_while_says_so(kind, net):
     with pytest.raises(InputError, match="cannot hold for a while"):
@@ -177,7 +172,7 @@ def test_patterns_conserve_heat_at_every_place(kind, net):
 def test_heat_is_conserved_at_a_usual_size(make, net):
     """In - out - stored along the run; what the effect adds carries some of it."""
     bigger, p = grown(make(net), net)
-    test, values = warm_test(net), {p.name: size(p)}
+    test, values = warm_test(net), {p.name: p.neutral + p.prior_sd * (p.sign or 1)}
     heat = balance(*heat_record(bigger, test, values))
     assert np.abs(heat.residual).max() < 1e-4
     for one in added(bigger, net):

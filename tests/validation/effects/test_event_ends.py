@@ -18,8 +18,13 @@ from validation.inference.refit import laplace
 DAY, STEP_S = 10800.0, 10.0
 
 
-def day_with_a_lid(begin, end, size):
-    """Three hours of a sample every ten seconds, in which a lid was open once."""
+@pytest.mark.parametrize(
+    "size", [5.0, 40.0]
+)  # W/K; by the larger one the body is halfway to the room's temperature at the end
+def test_ends_in_a_day_are_found_to_the_sample(size):
+    """Begun some minutes off, which is where windows of a long record put them; blocks of the fit are one minute."""
+    begin = 5000.0
+    end = 5090.0
     rng, net = np.random.default_rng(1), two_bodies()
     lid = effect(f"convection.constant@body in {Event.of({'day': [(begin, end)]}).name}")
     truth, time = lid.extend(net), np.arange(0.0, DAY, STEP_S)
@@ -29,15 +34,7 @@ def day_with_a_lid(begin, end, size):
     y = simulate(truth, Record(time, test.signals, test.boundaries, 20.0), {lid.name: size}, rows).y
     y = y + 0.05 * rng.standard_normal(y.shape)
     channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
-    return Case("day", Model(net), (replace(test, channels=channels),))
-
-
-@pytest.mark.parametrize(
-    "size", [5.0, 40.0]
-)  # W/K; by the larger one the body is halfway to the room's temperature at the end
-def test_ends_in_a_day_are_found_to_the_sample(size):
-    """Begun some minutes off, which is where windows of a long record put them; blocks of the fit are one minute."""
-    case = day_with_a_lid(5000.0, 5090.0, size)
+    case = Case("day", Model(net), (replace(test, channels=channels),))
     wrong = effect("convection.constant@body in day:4700-5400s")
     evidence, where = scored(case, [wrong], calibrated_case(case)), wrong.event
     for _ in range(3):

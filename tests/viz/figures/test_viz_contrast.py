@@ -24,14 +24,6 @@ def contrast(one: str, other: str) -> float:
     return (light + 0.05) / (dark + 0.05)
 
 
-def themes(css: str) -> list[dict[str, str]]:
-    """Colours by name: the light theme, and the dark one over it."""
-    roots = [
-        dict(re.findall(r"--(\w+): (#[0-9a-fA-F]{3,6})", block)) for block in re.findall(r":root \{(.*?)\}", css, re.S)
-    ]
-    return [roots[0], {**roots[0], **roots[1]}]
-
-
 def test_the_formula_is_that_of_the_standard():
     assert contrast("#ffffff", "#000000") == pytest.approx(21.0)
     assert contrast("#777777", "#ffffff") == pytest.approx(4.48, abs=0.01)
@@ -51,7 +43,11 @@ def test_ink_on_paper(theme):
 @pytest.mark.parametrize("dark", [0, 1])
 def test_words_of_pages(room, dark):
     css = files(f"viz.{room}").joinpath("viewer.css" if room == "viewer" else "page.css").read_text(encoding="utf-8")
-    colours = themes(css)[dark]
+    # Colours by name: the light theme, and the dark one over it
+    roots = [
+        dict(re.findall(r"--(\w+): (#[0-9a-fA-F]{3,6})", block)) for block in re.findall(r":root \{(.*?)\}", css, re.S)
+    ]
+    colours = [roots[0], {**roots[0], **roots[1]}][dark]
     words = {"ink", "faint", "good", "warn", "info", "link"} & set(colours)
     assert {word: c for word in words if (c := contrast(colours[word], colours["paper"])) < NEEDED} == {}
 

@@ -79,14 +79,10 @@ def _viewer() -> Iterator[ViewerClient]:
         try:
             yield _connected(process, port)
         finally:
-            _end(process)
-
-
-def _end(process: subprocess.Popen) -> None:
-    """The program is a script that starts the viewer: both are ended."""
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGTERM)
-    process.wait(timeout=30)
+            # The program is a script that starts the viewer: both are ended
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGTERM)
+            process.wait(timeout=30)
 
 
 def _connected(process: subprocess.Popen, port: int) -> ViewerClient:

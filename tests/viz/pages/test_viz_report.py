@@ -9,7 +9,7 @@ from fictional import HISTORY, comparison, documents
 from PIL import Image
 from viewer_pages import NODES, PLACE, recorded
 
-from extras.workbench.policy import report_policy
+from extras.workbench.tabs import report_policy
 from viz.pages.report import Report, render, write_report
 from viz.pages.words import verdict
 from viz.viewer.page import document as viewer_document

@@ -19,7 +19,6 @@ from thermoscope.console.terminal import give, notes, progress
 
 if TYPE_CHECKING:
     from geom import Machine as MachineDescription
-    from geom.meshing.mesh import NamedMesh
     from geom.solids.surfaces import CadCheck
     from lumped.build.network_size import NetworkSize
     from lumped.build.pipeline import Built
@@ -93,7 +92,11 @@ def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
     """The document of the command; surfaces, mesh and formula volumes in m3, areas in m2."""
     from geom.meshing.areas import part_table
 
-    meshed = mesh_volumes(built.mesh)
+    # Volume of every part in the mesh (m3): its tetrahedra summed
+    mesh = built.mesh
+    corners = mesh.points[mesh.tets]
+    sizes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6.0
+    meshed = dict(zip(mesh.parts, np.bincount(mesh.region, sizes, len(mesh.parts)).tolist(), strict=True))
     rows = {row.name: row for row in part_table(built.machine)}
     parts = [
         {
@@ -115,13 +118,6 @@ def described_as(built: Built, solids: list[CadCheck]) -> dict[str, Any]:
         "mesh": {"nodes": len(built.mesh.points), "tets": len(built.mesh.tets)},
         "network": {"nodes": len(built.network.states), "links": len(built.network.links)},
     }
-
-
-def mesh_volumes(mesh: NamedMesh) -> dict[str, float]:
-    """Volume of every part in the mesh (m3): its tetrahedra summed."""
-    corners = mesh.points[mesh.tets]
-    sizes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6.0
-    return dict(zip(mesh.parts, np.bincount(mesh.region, sizes, len(mesh.parts)).tolist(), strict=True))
 
 
 def build_summary(document: Mapping[str, Any], folder: Path) -> Summary:

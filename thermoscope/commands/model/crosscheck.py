@@ -109,11 +109,8 @@ def save(document: Mapping[str, Any], folder: Path) -> None:
     write_whole(folder / "crosscheck.json", json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
     for name in ("crosscheck", "links", "hand"):
         file = folder / ("crosscheck.csv" if name == "crosscheck" else f"crosscheck-{name}.csv")
-        write_whole(file, _csv(document[name]))
-
-
-def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
-    return csv_lines([list(rows[0]), *(list(plain(row).values()) for row in rows)] if rows else [])
+        rows = document[name]
+        write_whole(file, csv_lines([list(rows[0]), *(list(plain(row).values()) for row in rows)] if rows else []))
 
 
 def crosscheck_summary(document: Mapping[str, Any], folder: Path) -> Summary:

@@ -176,6 +176,8 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
+    blind = [named(p) for p in document["parameters"] if not p["identified"] and not p["of_measurement"]]
+    few = f"{', '.join(blind[:FEW])}{', ...' if len(blind) > FEW else ''}"
     parts: list[Table | str] = [
         errors,
         *([f"Accepted: {document['why']}."] if document["accepted"] and document["found"] else []),
@@ -184,7 +186,7 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
         _hidden_starts(document["parameters"]),
         *passed,
         _fixed(document["parameters"]),
-        _blind(document["parameters"]),
+        f"The data do not fix {len(blind)} parameters: {few}" if blind else "",
     ]
     return Summary(
         " ".join(filter(None, [*_outcome_words(document), outcome])),
@@ -227,9 +229,3 @@ def _hidden_starts(parameters: Sequence[Mapping[str, Any]]) -> str:
     each = [f"{p['name'].removeprefix('start of ')} {p['value']:+.1f} K" for p in rows]
     more = f" and {len(each) - FEW} more" if len(each) > FEW else ""
     return f"Began off the mean of the first readings: {', '.join(each[:FEW])}{more}." if each else ""
-
-
-def _blind(parameters: Sequence[Mapping[str, Any]]) -> str:
-    blind = [named(p) for p in parameters if not p["identified"] and not p["of_measurement"]]
-    few = f"{', '.join(blind[:FEW])}{', ...' if len(blind) > FEW else ''}"
-    return f"The data do not fix {len(blind)} parameters: {few}" if blind else ""

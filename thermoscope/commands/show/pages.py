@@ -111,7 +111,16 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
     tell("running the model and its error budget")
     _ = folder.compared
     tell("drawing curves")
-    files = [*_plots(folder, into), *_pictures(folder, into, current_diagnosis(folder)).values()]
+    paths = []
+    for test in runs.by_interest(folder):
+        comparison = marked(runs.comparison_of(folder, test), current_diagnosis(folder))
+        for name, draw in (("curves", viz.measured_and_model), ("residuals", viz.residuals)):
+            paths.append(into / f"{name}-{file_stem(test.name)}.png")
+            draw(comparison, png=paths[-1])
+    if folder.history.revisions:
+        paths.append(into / "error.png")
+        viz.staircase(runs.steps(folder), png=paths[-1])
+    files = [*paths, *_pictures(folder, into, current_diagnosis(folder)).values()]
     if folder.built is not None:
         tell("writing the recording")
         files.append(_recording(folder, into))
@@ -125,19 +134,6 @@ def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
         return current, False
     last = last_diagnosis(folder)
     return last, last is not None
-
-
-def _plots(folder: Folder, into: Path) -> list[Path]:
-    paths = []
-    for test in runs.by_interest(folder):
-        comparison = marked(runs.comparison_of(folder, test), current_diagnosis(folder))
-        for name, draw in (("curves", viz.measured_and_model), ("residuals", viz.residuals)):
-            paths.append(into / f"{name}-{file_stem(test.name)}.png")
-            draw(comparison, png=paths[-1])
-    if folder.history.revisions:
-        paths.append(into / "error.png")
-        viz.staircase(runs.steps(folder), png=paths[-1])
-    return paths
 
 
 def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:

@@ -21,14 +21,16 @@ from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
 from thermoscope.bands import field_half95, posterior_of, predicted_bands
 from thermoscope.case_folder import runs
-from thermoscope.case_folder.error_field import error_field
+from thermoscope.case_folder.error_field import error_gain, last_fifth
 from thermoscope.case_folder.folder import Folder, Progress
+from thermoscope.case_folder.runs import readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import last_diagnosis
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
+from validation.comparison.interpolation import Interpolated
 from validation.comparison.predict import heat_model, record
 from validation.parameters.unknowns import standing
 from viz.data import LATE
@@ -157,7 +159,11 @@ def _difference(s: Subject, png: Path) -> None:
 
 
 def _misses(s: Subject, png: Path) -> None:
-    error = error_field(s.folder, s.test, s.nodes)
+    test = s.test
+    channels, gain = error_gain(s.folder, test, s.nodes)
+    model, late = readings(s.folder.case, test), last_fifth(test)
+    residual_K = [float(np.nanmean((np.asarray(c.y, float) - model[c.name])[late])) for c in channels]
+    error = Interpolated(gain.mean @ np.array(residual_K), gain.explained)
     title = f"{s.test.name}, its last fifth: measured minus model"
     viz.misses(s.nodes, error.mean, error.explained, sensors=s.sensors, title=title, png=png).close()
 

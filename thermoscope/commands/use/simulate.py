@@ -1,7 +1,5 @@
 """thermoscope use simulate CASE: inputs in, temperatures out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +26,6 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
 from thermoscope.commands.model.error_budget import budget, in_short
 from thermoscope.commands.open_case import PACKAGE, open_case
-from thermoscope.commands.use.simulate_readings import readings, short_of
 from thermoscope.console.options import Case, Json, Out, Sure
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
@@ -36,6 +33,31 @@ from validation.bands import Bands, ParameterPosterior
 
 Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
+
+
+def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
+    """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
+    from measured.sensors.operators import observe, setting
+
+    if not folder.case.tests:
+        return T
+    channels = tuple(replace(c, y=np.full(record.time.size, np.nan)) for c in sensors(folder).values())
+    air = {n: np.broadcast_to(u, record.time.shape) for n, u in record.boundaries.items()}
+    run = replace(folder.case.tests[0], name=name, time=record.time, inputs={}, boundaries=air, channels=channels)
+    return observe(network, run, T, setting(network.parameters, folder.case.model.values))
+
+
+def short_of(record: Record, share: float = 0.01) -> dict[str, float]:
+    """What the drive could not deliver: quantity -> seconds for which it missed what was wanted by more than `share`.
+
+    Of the torque or speed wanted, against the largest wanted: too little, and, where it has no brake for it, too much.
+    """
+    out, step = {}, np.diff(record.time, prepend=record.time[0])
+    for name, demand in record.inputs.items():
+        if (actual := record.inputs.get(name.replace("_wanted", ""))) is not None and "_wanted" in name:
+            missed = np.abs(demand - actual) > share * np.abs(demand).max(initial=1e-12)
+            out[name.replace("_wanted", "")] = float(step @ missed)
+    return {name: seconds for name, seconds in out.items() if seconds > 0.0}
 
 
 def simulate(

@@ -157,17 +157,13 @@ def test_corrections_are_learned_and_their_error_is_that_of_others():
     assert_allclose(errors(known, [np.zeros(2)], [{"q": 1.01}])["q"], 1.0 - 1.0 / 1.01)
 
 
-def pumped(x):
-    """What the flow of `problem` costs (W): its cube."""
-    return 10.0 * x**3
-
-
 class Pumped(Problem):
     """A problem whose auxiliary power is the cube of its flow, over a channel that may be narrowed."""
 
     def judged(self, named, machine):
         done = super().judged({"flow": named["flow"] / named.get("height", 1.0) ** 0.5}, machine)
-        power = pumped(named["flow"]) / named.get("height", 1.0) ** 2
+        # What the flow of `problem` costs (W): its cube
+        power = (10.0 * named["flow"] ** 3) / named.get("height", 1.0) ** 2
         return replace(done, objectives={**done.objectives, AUXILIARY: power})
 
 
