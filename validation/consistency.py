@@ -22,7 +22,6 @@ from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
 from validation.inference.result import Check, Remainder
-from validation.inference.say import remainder
 from validation.parameters.unknowns import standing, working
 from validation.yardstick.words import WORTH
 from validation.yardstick.yardstick import free_network_error, persistence_error
@@ -46,11 +45,13 @@ class RecordError:
         return self.error.rmse_K / self.u_K
 
 
-def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> tuple[Check, ...]:
+def checks(
+    case: Case, posterior: Posterior, choice: Decision, budget: Mapping[str, float], left: Sequence[Remainder] = ()
+) -> tuple[Check, ...]:
     """What a decision claims, held against the tests that a fit may use; none where it claims neither a name nor that
     nothing is missing.
 
-    budget : channel -> error (K) of the model's own numbers there
+    budget : channel -> error (K) of the model's own numbers there;  left : what stays off
     """
     e = posterior.evidence
     if choice.verdict in ("named", "several"):
@@ -61,7 +62,7 @@ def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[s
         return ()
     records = least_errors(case, posterior, budget)
     every = (record_check(records, posterior.against), tests_check(posterior.against), persistence_check(case, records))
-    more = doubts_check(case, remainder(posterior, choice, {})), free_network_check(case, records, e.fit)
+    more = doubts_check(case, left), free_network_check(case, records, e.fit)
     return tuple(c for c in (*every, *more) if c is not None)
 
 
