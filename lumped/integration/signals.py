@@ -16,7 +16,7 @@ from lumped.integration.projection import crowded, projected
 from lumped.transfer.laws import Fixed, Law
 
 Array = NDArray[np.float64]
-KEPT = 8  # finer ones of one record: every event that is tried needs others, and each holds a factor of every law
+MOST_FINER = 8  # finer ones of one record: every event that is tried needs others, and each holds a factor of every law
 LONG = 200_000  # samples: of longer records only the factors are kept of which every stretch asks for the whole
 
 
@@ -86,9 +86,9 @@ class Signals(dict[str, Array]):
     def finer(self, at: Array) -> Signals:
         """The signals at positions (index of a sample plus share); those asked for last are kept for the next time."""
         key = at.tobytes()
-        found = self._finer.pop(key, None)
-        self._finer[key] = out = self._at(at) if found is None else found
-        for oldest in list(self._finer)[:-KEPT]:
+        before = self._finer.pop(key, None)
+        self._finer[key] = out = self._at(at) if before is None else before
+        for oldest in list(self._finer)[:-MOST_FINER]:
             self._finer.pop(oldest, None)
         return out
 

@@ -100,8 +100,8 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
-        known, _ = as_once_known(case, unknowns.parameters, np.diag(sd**2), np.zeros(sd.size))
-        return ParameterPosterior(larger, values, unknowns.names, known, of_network, (), case.doubt)
+        covariance, _ = interval_covariance(case, unknowns.parameters, np.diag(sd**2), np.zeros(sd.size))
+        return ParameterPosterior(larger, values, unknowns.names, covariance, of_network, (), case.doubt)
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
@@ -109,7 +109,7 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(larger, doubts, tests[0], values, fit, case.doubt), *inputs)
-    covariance, offset = as_once_known(case, unknowns.parameters, *joint(fit, inputs))
+    covariance, offset = interval_covariance(case, unknowns.parameters, *joint(fit, inputs))
     have = {p.name for p in larger.parameters}
     others = [p for p in nuisances(network, case.tests, case.doubt) if p.name not in have]  # starts of other tests
     return ParameterPosterior(
@@ -125,7 +125,9 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     )
 
 
-def as_once_known(case: Case, parameters: Sequence[Parameter], covariance: Array, offset: Array) -> tuple[Array, Array]:
+def interval_covariance(
+    case: Case, parameters: Sequence[Parameter], covariance: Array, offset: Array
+) -> tuple[Array, Array]:
     """A covariance and its offset with no parameter, the first of its rows, wider than the interval that a fit gave it;
     as they are where all tests of that fit are there, which say more."""
     fitted = case.model.reference.tests if case.model.reference and case.model.revision else ()
