@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -147,19 +148,35 @@ def cut(file: Path, into: Path) -> tuple[Path, ...]:
 
 
 def imported(source: Source, scratch: Path) -> Path:
-    """The case that `test new --yes` makes of raw files, with the kept-back tests held out."""
+    """The case that `test new --yes` makes of raw files, with the kept-back tests held out.
+
+    Of all files it holds out the last. Where others are kept back the first network is learnt without any of them.
+    """
     folder = scratch / f"case-{source.name}"
-    period = ["--period", f"{source.period:g}"] if source.period else []
-    command = ["thermoscope", "test", "new", *map(str, source.files), "--yes", *period, "--out", str(folder)]
-    done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "not imported")
+    if source.kept == (source.files[-1].name.partition(".")[0],):
+        new_case(source, source.files, folder)
+    else:
+        taught = [f for f in source.files if f.name.partition(".")[0] not in source.kept]
+        lesson = scratch / f"taught-{source.name}"
+        new_case(source, taught, lesson)
+        sheet = tomllib.loads(next((lesson / "tests").glob("*.toml")).read_text(encoding="utf-8"))
+        places = [f"--place={name}={c['place']}" for name, c in sheet["columns"].items() if "place" in c]
+        new_case(source, source.files, folder, ["--network", str(lesson / "network.toml"), *places])
     file = folder / "case.toml"
     text = re.sub(r'role = "[a-z-]+"', 'role = "validate"', file.read_text(encoding="utf-8"))
     for name in source.kept:
         text = re.sub(rf'(\[tests\."?{re.escape(name)}"?\]\nrole = )"validate"', r'\1"hold-out"', text)
     file.write_text(text.replace('role = "validate"', 'role = "calibrate"', 1), encoding="utf-8")
     return folder
+
+
+def new_case(source: Source, files: Sequence[Path], folder: Path, more: Sequence[str] = ()) -> None:
+    """A case of some of the files, as the command makes it."""
+    period = ["--period", f"{source.period:g}"] if source.period else []
+    command = ["thermoscope", "test", "new", *map(str, files), "--yes", *period, *more, "--out", str(folder)]
+    done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "not imported")
 
 
 def measured_row(source: Source, most: int, scratch: Path) -> Row:

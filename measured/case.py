@@ -192,6 +192,7 @@ class Model:
     """The model as it stands: network, effects added, parameter values (those not listed are at their declared value).
 
     reference : what exponents and effects refer to; None before the first fit
+    intervals : parameter -> its central 95 % by the tests that were fitted
     """
 
     network: Network
@@ -199,6 +200,7 @@ class Model:
     values: Mapping[str, float] = field(default_factory=dict)
     revision: int = 0
     reference: Reference | None = None
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from validation.counting import counted
 Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
 JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
-LAYOUT = 2  # of a kept file: a change here makes old ones be left alone
+LAYOUT = 3  # of a kept file: a change here makes old ones be left alone
 
 
 def bands_requested(network: Network, requested: bool | None) -> bool:

@@ -1,8 +1,9 @@
 """What a verdict claims, held against its own numbers: a verdict that they contradict is withheld.
 
 "Nothing is missing" is contradicted by a record far beyond its uncertainty, by tests that would need different
-parameters, and by a guess of no change that predicts better. A name is contradicted by a refit that is worse in most
-tests.
+parameters, by doubts that take more off a record than all of them come to in sound machines, by a guess of no change
+that predicts better, and, of a model that leaves more than its uncertainty, by a free network that does. A name is
+contradicted by a refit that is worse in most tests.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,14 +13,16 @@ import numpy as np
 
 from measured.case import Case, Test
 from validation.calibration.calibrate import Fit, calibrated
+from validation.calibration.model_error import machine_rise
 from validation.comparison.compare import ChannelError, physical, pooled, test_error
 from validation.comparison.linearisation import allowed, rmse
 from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
-from validation.inference.result import Check
+from validation.inference.result import Check, Remainder
 from validation.parameters.unknowns import standing, working
-from validation.yardstick.yardstick import persistence_error
+from validation.yardstick.words import WORTH
+from validation.yardstick.yardstick import free_network_error, persistence_error
 
 MOST_UNCERTAINTIES = 5.0  # standard uncertainties of a sensor and a good model: what inputs leave is two or three
 MOST_DEVIATIONS = 10.0  # deviations between tests: beyond what tangents are wrong by
@@ -40,11 +43,13 @@ class RecordError:
         return self.error.rmse_K / self.u_K
 
 
-def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[str, float]) -> tuple[Check, ...]:
+def checks(
+    case: Case, posterior: Posterior, choice: Decision, budget: Mapping[str, float], left: Sequence[Remainder] = ()
+) -> tuple[Check, ...]:
     """What a decision claims, held against the tests that a fit may use; none where it claims neither a name nor that
     nothing is missing.
 
-    budget : channel -> error (K) of the model's own numbers there
+    budget : channel -> error (K) of the model's own numbers there;  left : what stays off
     """
     e = posterior.evidence
     if choice.verdict in ("named", "several"):
@@ -55,7 +60,8 @@ def checks(case: Case, posterior: Posterior, choice: Decision, budget: Mapping[s
         return ()
     records = least_errors(case, posterior, budget)
     every = (record_check(records, posterior.against), tests_check(posterior.against), persistence_check(case, records))
-    return tuple(c for c in every if c is not None)
+    more = doubts_check(case, left), free_network_check(case, records, e.fit)
+    return tuple(c for c in (*every, *more) if c is not None)
 
 
 def least_errors(case: Case, posterior: Posterior, budget: Mapping[str, float]) -> list[RecordError]:
@@ -122,6 +128,19 @@ def tests_check(against: Contradiction | None) -> Check | None:
     )
 
 
+def doubts_check(case: Case, left: Sequence[Remainder]) -> Check | None:
+    """Of the record that the doubts of the model take most off.  left : what stays off"""
+    left = [r for r in left if r.forgiven]
+    if not left:
+        return None
+    worst, limit = max(left, key=lambda r: r.model_K), case.doubt["total"] * machine_rise(case.usable)
+    words = (
+        f"{worst.forgiven}, where all doubts of a sound machine come to {limit:.1f} K: the sensor, its place or the "
+        "model there would have to differ"
+    )
+    return Check("doubts", f"{worst.channel} in {worst.record}", worst.model_K, limit, "K", words)
+
+
 def persistence_check(case: Case, records: Sequence[RecordError]) -> Check | None:
     """Of a guess of no change."""
     no_model = persistence_error(case.training())
@@ -135,6 +154,29 @@ def persistence_check(case: Case, records: Sequence[RecordError]) -> Check | Non
         f"of those it was fitted to, most at {where}: what heats or cools there would have to differ"
     )
     return Check("persistence", where, error, no_model[0], "K", words)
+
+
+def free_network_check(case: Case, records: Sequence[RecordError], fit: Fit) -> Check | None:
+    """Of a free network, which knows nothing but heat that flows down gradients; None where the model leaves no more
+    than it may be wrong by: a better guess says nothing there.
+
+    fit : the same with its sensors as fitted, since the network learns these, too
+    """
+    shares = [r.share for r in records], [rmse([s]) / s.weight for s in fit.parts]
+    if not all(np.mean(np.square(each)) > COVERAGE**2 for each in shares):
+        return None
+    free = free_network_error(case.training())
+    rows = [r for r in records if free and r.error.channel in free[1]]
+    if free is None or not rows:
+        return None
+    worst = max(rows, key=lambda r: r.error.rmse_K)
+    error = min(pooled([r.error for r in rows]), rmse([s for s in fit.parts if s.channel in free[1]]))
+    where = f"{worst.error.channel} in {worst.test}"
+    words = (
+        f"a free network predicts tests left out within {free[0]:.1f} K, and the model leaves {error:.1f} K of those "
+        f"it was fitted to, most at {where}: what the readings tell of the heat there is not in it"
+    )
+    return Check("free network", where, error, WORTH * free[0], "K", words)
 
 
 def refit_check(before: Fit, after: Fit, name: str) -> Check:

@@ -117,7 +117,8 @@ def diagnose(
     wrong, small = wrong_bases(bases), fidelity_error(whole, case, posterior)
     budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
     choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), budget))
-    choice = consistent_decision(choice, checks(case, posterior, choice, budget))
+    left = remainder(posterior, choice, posterior.single)
+    choice = consistent_decision(choice, checks(case, posterior, choice, budget, left))
     if wrong:  # nothing else is accused of what the base does
         choice = Decision("data", (), choice.sure)
     progress("writing the tables")

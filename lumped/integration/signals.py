@@ -17,6 +17,7 @@ from lumped.numerics.knots import moved
 from lumped.transfer.laws import Fixed, Law
 
 Array = NDArray[np.float64]
+MOST_FINER = 8  # finer ones of one record: every event that is tried needs others, and each holds a factor of every law
 LONG = 200_000  # samples: of longer records only the factors are kept of which every stretch asks for the whole
 
 
@@ -84,11 +85,13 @@ class Signals(dict[str, Array]):
         return out
 
     def finer(self, at: Array) -> Signals:
-        """The signals at positions (index of a sample plus share), kept for the next time."""
+        """The signals at positions (index of a sample plus share); those asked for last are kept for the next time."""
         key = at.tobytes()
-        if key not in self._finer:
-            self._finer[key] = self._at(at)
-        return self._finer[key]
+        before = self._finer.pop(key, None)
+        self._finer[key] = out = self._at(at) if before is None else before
+        for oldest in list(self._finer)[:-MOST_FINER]:
+            self._finer.pop(oldest, None)
+        return out
 
     def _at(self, at: Array) -> Signals:
         source = self.source

@@ -54,3 +54,27 @@ def test_the_shipped_recordings_keep_back_the_profiles_of_the_paper():
     raw = next(s for s in bench.shipped() if s.files)
     assert {f.name.partition(".")[0] for f in raw.files} >= set(raw.kept)
     assert len(raw.files) == 12
+
+
+def test_no_test_that_is_kept_back_teaches_the_first_network(tmp_path, monkeypatch):
+    """The files are the two heaters' recordings; what is learnt from is what is imported first."""
+    imports = []
+
+    def new_case(source, files, folder, more=()):
+        imports.append(([f.name for f in files], list(more)))
+        (folder / "tests").mkdir(parents=True)
+        (folder / "tests" / "a.toml").write_text('[columns.T1]\nplace = "part-1"\n[columns.u]\ninput = "u"\n')
+        (folder / "case.toml").write_text('[tests.a]\nrole = "x"\n\n[tests.b]\nrole = "x"\n\n[tests.c]\nrole = "x"\n')
+
+    monkeypatch.setattr(bench, "new_case", new_case)
+    files = tuple(tmp_path / f"{name}.csv" for name in "abc")
+    folder = bench.imported(bench.Source("three", files, kept=("b",)), tmp_path)
+    network = str(tmp_path / "taught-three" / "network.toml")
+    assert imports == [
+        (["a.csv", "c.csv"], []),
+        (["a.csv", "b.csv", "c.csv"], ["--network", network, "--place=T1=part-1"]),
+    ]
+    roles = [line for line in (folder / "case.toml").read_text().splitlines() if line.startswith("role")]
+    assert roles == ['role = "calibrate"', 'role = "hold-out"', 'role = "validate"']
+    bench.imported(bench.Source("last", files, kept=("c",)), tmp_path)
+    assert imports[2:] == [(["a.csv", "b.csv", "c.csv"], [])]  # it holds out the last by itself

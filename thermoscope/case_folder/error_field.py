@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.constants import NORMAL_95
 from lumped.integration.simulate import simulate
-from lumped.model.network import Parameter
 from measured.case import Channel, Test
 from thermoscope.case_folder.folder import Folder
+from validation.bands.posterior import deviation
 from validation.calibration.model_error import with_doubts
 from validation.comparison.interpolation import Interpolated, interpolated
 from validation.comparison.predict import heat_model, record
@@ -30,7 +28,7 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
     Its mean is (n_nodes, n_channels) K/K. Doubts: every parameter within its interval, where it has one, else its
     prior, as if apart from the others; and the model error of validation.calibration.model_error.
     """
-    case, intervals = folder.case, folder.history.last.intervals if folder.history.revisions else {}
+    case, intervals = folder.case, folder.case.model.intervals
     network, values = heat_model(standing(case), case.model.values)
     larger = with_doubts(network, case.doubt)[0]
     doubted = [p for p in larger.parameters if p.prior_sd > 0]
@@ -47,11 +45,3 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
 def last_fifth(test: Test) -> slice:
     """Of its samples."""
     return slice(int(0.8 * len(test.time)), None)
-
-
-def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:
-    """One standard deviation of a parameter in its own coordinate: of its 95 % interval, else of its prior."""
-    if interval is None:
-        return parameter.prior_sd
-    low, high = np.log(interval) if parameter.mapping == "log" else interval
-    return min(float(high - low) / (2 * NORMAL_95), parameter.prior_sd)

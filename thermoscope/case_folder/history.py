@@ -78,7 +78,8 @@ class History:
     def model(self, network: Network, revision: Revision) -> Model:
         """The model after one of the revisions."""
         effects = tuple(AddedEffect(*name.partition("@")[::2]) for name in revision.effects)
-        return Model(network, effects, dict(revision.values), revision.number, revision.reference or self.reference)
+        reference = revision.reference or self.reference
+        return Model(network, effects, dict(revision.values), revision.number, reference, revision.intervals)
 
     def and_then(self, revision: Revision) -> History:
         """One revision more; what the user answered stays."""

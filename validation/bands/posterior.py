@@ -19,6 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.constants import NORMAL_95
 from geom.one_thread import one_blas_thread
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter, Row
@@ -86,7 +87,10 @@ def silent(message: str) -> None:
 
 @one_blas_thread
 def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPosterior:
-    """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone."""
+    """Of the model as it stands: on the tests that it was fitted to; before any calibration the priors alone.
+
+    Of fitted tests that are not there any more the intervals say what they told of each parameter by itself.
+    """
     tests = case.fitted if case.model.revision else ()
     network, unknowns = working(replace(case, tests=tests or case.tests))
     values = parameter_values(network, case.model.values)
@@ -94,7 +98,8 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     of_network = tuple(p.name for p in doubts)
     if not tests:
         sd = np.array([p.prior_sd for p in unknowns.parameters])
-        return ParameterPosterior(larger, values, unknowns.names, np.diag(sd**2), of_network, (), case.doubt)
+        covariance, _ = interval_covariance(case, unknowns.parameters, np.diag(sd**2), np.zeros(sd.size))
+        return ParameterPosterior(larger, values, unknowns.names, covariance, of_network, (), case.doubt)
     progress("uncertainty of the calibrated model")
     parts = segments(network, tests, values, unknowns.parameters)
     start = unknowns.coordinates(values)
@@ -102,7 +107,7 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
     fit = with_model_error(plain, tests, values, case.doubt)
     inputs = input_columns(network, tests, values, case.doubt, parts)
     names = (*unknowns.names, *uncertain_names(larger, doubts, tests[0], values, fit, case.doubt), *inputs)
-    covariance, offset = joint(fit, inputs)
+    covariance, offset = interval_covariance(case, unknowns.parameters, *joint(fit, inputs))
     have = {p.name for p in larger.parameters}
     others = [p for p in nuisances(network, case.tests, case.doubt) if p.name not in have]  # starts of other tests
     return ParameterPosterior(
@@ -116,6 +121,31 @@ def parameter_posterior(case: Case, progress: Progress = silent) -> ParameterPos
         rows_read(tests),
         offset,
     )
+
+
+def interval_covariance(
+    case: Case, parameters: Sequence[Parameter], covariance: Array, offset: Array
+) -> tuple[Array, Array]:
+    """A covariance and its offset with no parameter, the first of its rows, wider than the interval that a fit gave it;
+    as they are where all tests of that fit are there, which say more."""
+    fitted = case.model.reference.tests if case.model.reference and case.model.revision else ()
+    if {t.name for t in case.usable} >= set(fitted):
+        return covariance, offset
+    sd, most = np.sqrt(np.diag(covariance)), np.full(len(covariance), np.inf)
+    most[: len(parameters)] = [
+        deviation(p, ci) if (ci := case.model.intervals.get(p.name)) else np.inf for p in parameters
+    ]
+    H = np.linalg.inv(covariance)
+    new = np.linalg.inv(H + np.diag(np.maximum(np.maximum(most, 1e-12) ** -2.0 - sd**-2.0, 0.0)))
+    return new, new @ (H @ offset)
+
+
+def deviation(parameter: Parameter, interval: Sequence[float] | None) -> float:
+    """One standard deviation of a parameter in its own coordinate: of its 95 % interval, else of its prior."""
+    if interval is None:
+        return parameter.prior_sd
+    low, high = np.log(interval) if parameter.mapping == "log" else interval
+    return min(float(high - low) / (2 * NORMAL_95), parameter.prior_sd)
 
 
 def rows_read(tests: Sequence[Test]) -> tuple[Row, ...]:

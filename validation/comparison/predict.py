@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.integration.compiled import READINGS, Precision
-from lumped.integration.simulate import Record, Run, Stand, simulate
+from lumped.integration.simulate import Record, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from measured.case import Test
@@ -92,8 +92,9 @@ def moves(target: str, boundary: str, test: Test) -> bool:
 
 
 @once
-def last_runs(test: Test) -> deque[tuple[Network, tuple[tuple[tuple[str, float], ...], Precision], Run]]:
-    """The last runs over a test, newest last; they go with it."""
+def last_runs(test: Test) -> deque[tuple[Network, tuple[tuple[tuple[str, float], ...], Precision], Array, Stand]]:
+    """Temperatures and ends of the last runs over a test, newest last; they go with it. A run itself holds all that
+    drove it, thousands of numbers a sample in a large network."""
     return deque(maxlen=16)
 
 
@@ -124,30 +125,29 @@ class Course:
         first = some.start - self.kept.start
         T, dT = self.T, self.dT = self.T[first:].copy(), self.dT[first:].copy()
         if some.stop > self.kept.stop:
-            run = self._run(slice(max(self.kept.stop - 1, 0), some.stop))
-            new = run.dy if run.dy is not None else np.empty((*run.y.shape, 0))
-            T, dT = (np.concatenate([T, run.y[1:]]), np.concatenate([dT, new[1:]])) if self.end else (run.y, new)
-            self.end = run.end
+            y, dy, end = self._run(slice(max(self.kept.stop - 1, 0), some.stop))
+            T, dT = (np.concatenate([T, y[1:]]), np.concatenate([dT, dy[1:]])) if self.end else (y, dy)
+            self.end = end
         self.T, self.dT, self.kept = T, dT, some
         return T, dT
 
-    def _run(self, some: slice) -> Run:
+    def _run(self, some: slice) -> tuple[Array, Array, Stand]:
         whole = some == slice(0, len(self.test.time)) and self.end is None
         if not whole or self.tangents or self.shifts or self.test.time.size * len(self.test.channels) > CACHED_NUMBERS:
             return self._simulated(some)
         key = (*self.heat.items(), *((k, v) for k, v in self.shift.items() if k.startswith(MOVING)))
         how = (key, self.precision)
-        for network, at, run in tuple(last_runs(self.test)):
+        for network, at, y, end in tuple(last_runs(self.test)):
             if network is self.network and at == how:
-                return run
-        run = self._simulated(some)
-        last_runs(self.test).append((self.network, how, run))
-        return run
+                return y, np.empty((*y.shape, 0)), end
+        y, dy, end = self._simulated(some)
+        last_runs(self.test).append((self.network, how, y, end))
+        return y, dy, end
 
-    def _simulated(self, some: slice) -> Run:
+    def _simulated(self, some: slice) -> tuple[Array, Array, Stand]:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
-        return simulate(
+        run = simulate(
             self.network,
             part,
             self.heat,
@@ -157,6 +157,7 @@ class Course:
             shifts=self.shifts,
             precision=self.precision,
         )
+        return run.y, np.empty((*run.y.shape, 0)) if run.dy is None else run.dy, run.end
 
 
 class Watch:

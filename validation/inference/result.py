@@ -188,8 +188,9 @@ class PossibleEvent(TableRow):
 class Check(TableRow):
     """Something that a verdict claims, held against its own numbers.
 
-    kind : "record" (far from the model), "tests" (contradict each other), "persistence" (predicts better), "refit" (is
-    worse in most tests);  where : of the worst;  number, limit : in `unit`;  words : what would have to differ
+    kind : "record" (far from the model), "tests" (contradict each other), "doubts" (forgive too much), "persistence" or
+    "free network" (predict better), "refit" (is worse in most tests);  where : of the worst;  number, limit : in `unit`
+    words : what would have to differ
     """
 
     kind: str

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from measured.case import Case
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import Comparison, errors, pooled
@@ -14,7 +16,7 @@ from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import standing, with_model
 from validation.revision.revise import Revision, add, calibrate
 from validation.yardstick.suggestions import suggested_effects
-from validation.yardstick.words import WORTH
+from validation.yardstick.words import NAMES, WORTH
 from validation.yardstick.yardstick import yardstick
 
 Progress = Callable[[str], None]
@@ -69,12 +71,16 @@ class Step:
 
 @dataclass(frozen=True)
 class Improvement:
-    """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair."""
+    """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair.
+
+    plain_K : what the best plain model leaves (K rms) on tests left out in turn; NaN where none can be learnt
+    """
 
     case: Case
     stairs: tuple[Step, ...]
     diagnosis: Diagnosis
     why: str
+    plain_K: float = float("nan")
 
     @property
     def adequate(self) -> bool:
@@ -86,6 +92,8 @@ class Improvement:
             "words": self.diagnosis.words,
             "adequate": self.adequate,
             "why": self.why,
+            "left_out_K": self.stairs[-1].left_out_K,
+            "plain_left_out_K": self.plain_K if np.isfinite(self.plain_K) else None,
             "stairs": [s.document() for s in self.stairs],
             "diagnosis": self.diagnosis.document(),
         }
@@ -129,7 +137,7 @@ def improve(
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
     A model that was never calibrated is calibrated first, if its own tests gain by that. What the diagnosis cannot
-    tell is not offered.
+    tell is not offered. Whether the best plain model is reached then, or what stops it, is told at every end.
     """
     stairs = [Step(errors(case), {})]
     if not case.model.values:
@@ -140,11 +148,24 @@ def improve(
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(f"{diagnosis.verdict}: {diagnosis.words}")
         if supervisor.offer(diagnosis) and len(stairs) > most:
-            return Improvement(case, tuple(stairs), diagnosis, f"{most} steps are enough for one run")
+            return ended(case, stairs, diagnosis, f"{most} steps are enough for one run")
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, progress)
         if step is None:
-            return Improvement(case, tuple(stairs), diagnosis, why)
+            return ended(case, stairs, diagnosis, why)
         case = _with_step(case, step, supervisor, document, stairs)
+
+
+def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) -> Improvement:
+    """The improvement, and beside why it ended how near it came to the best plain model."""
+    yard, ours = yardstick(case), stairs[-1].left_out_K
+    finite = {kind: K for kind, K in yard.left_out.items() if np.isfinite(K)} if yard else {}
+    if not finite:
+        why = f"{why}; no plain model can be learnt from these tests, so nothing says how good a model could be"
+        return Improvement(case, tuple(stairs), diagnosis, why)
+    kind, K = min(finite.items(), key=lambda x: x[1])
+    beside = f"left out in turn {ours:.2f} K, where {NAMES[kind]} leaves {K:.2f} K"
+    why = f"{beside}; what stops it: {why}" if ours > WORTH * K else f"{why}; {beside}"
+    return Improvement(case, tuple(stairs), diagnosis, why, K)
 
 
 def _added(
@@ -186,7 +207,7 @@ def further_step(
         return None, {}, []
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]
     present = {e.name for e in case.model.effects}
-    why, trials = [f"left out in turn {left_out:.2f} K, of the best plain model {best:.2f} K"], list[Trial]()
+    why, trials = list[str](), list[Trial]()
     if best * WORTH < left_out and not diagnosis.groups:
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]

@@ -233,6 +233,7 @@ def _revised(
     accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
+    new = replace(new, intervals={p.name: p.ci95 for p in rows})
     why = "; ".join([why, *law_words(effects, fits[-1].network, new.values, ci95)])
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)

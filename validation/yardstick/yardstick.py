@@ -199,6 +199,12 @@ def persistence_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
     return rms(_best(_persistences(folds, columns), folds)[1]), columns.sensors
 
 
+def free_network_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
+    """The same of a free network."""
+    learnt = _free_network(case)
+    return learnt and (rms(learnt[2][1]), learnt[1].sensors)
+
+
 def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
     """The window and powers with which a free network predicts best what was left out."""
     fit, _ = _best(_free_networks(folds, columns, POWERS), folds)

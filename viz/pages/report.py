@@ -109,6 +109,7 @@ def _error(r: Report) -> str:
         "The error, step by step",
         html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),
         html.plot(bars, "bars", title),
+        html.text(words.ending(None if r.earlier else r.diagnosis)),
     )
 
 

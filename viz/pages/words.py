@@ -68,6 +68,12 @@ def _agreement(comparison: Document | None) -> tuple[str, str]:
     return "warn", f"The model disagrees with the measurements at {spoken(places)}."
 
 
+def ending(diagnosis: Document | None) -> str:
+    """Why an improvement ended, and how near it came to the best plain model; "" where there was none."""
+    why = (diagnosis or {}).get("ended", "")
+    return f"It ended here. {why[:1].upper()}{why[1:]}." if why else ""
+
+
 def _where(diagnosis: Document) -> str:
     places = [w["place"] for w in diagnosis.get("where", [])[:2]]
     return f" near {spoken(places, 'or')}" if places else ""

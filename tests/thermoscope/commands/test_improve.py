@@ -11,6 +11,7 @@ from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
 from validation.inference.result import Candidate, Diagnosis
 from validation.revision.improvement import offered, singletons
+from viz.pages.words import ending
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +28,15 @@ def improved(tmp_path_factory):
 def test_it_ends_adequate(improved):
     code, document, _ = improved
     assert (code, document["verdict"], document["adequate"]) == (0, "adequate", True)
+
+
+def test_its_end_says_how_near_the_best_plain_model_is_here_and_in_the_report(improved):
+    _, document, case = improved
+    assert document["why"].endswith(f"leaves {document['plain_left_out_K']:.2f} K")
+    assert f"left out in turn {document['left_out_K']:.2f} K, where " in document["why"]
+    assert document["left_out_K"] < 1.1 * document["plain_left_out_K"]
+    ended = json.loads((case / "out" / "diagnosis.json").read_text())
+    assert document["why"][1:] in ending(ended)
 
 
 def test_the_staircase_falls_on_the_test_never_used(improved):

@@ -145,3 +145,20 @@ def test_all_states_at_the_end_are_those_of_the_band(calibrated):
     slow = np.array([known.slow(p.row) for p in places(case.model.network)]) * (last - first)
     assert_allclose(np.sqrt(np.sum(R**2, axis=1) + slow**2), found.sd[-1], rtol=1e-9)
     assert (R[0] @ R[1]) ** 2 < 0.99 * (R[0] @ R[0]) * (R[1] @ R[1])  # core and shell are not unsure alike
+
+
+def test_bands_stay_where_they_were_when_fitted_tests_leave_the_case():
+    """What a fit told of each parameter stands in its interval, whether its readings are still there or not."""
+    network, (test, _) = chain(), measured(("core", "shell"))
+    other = replace(measured(("core", "shell"), seed=1)[0], name="other")
+    case = Case("chain", Model(network), (test, other))
+    case = replace(case, model=calibrate(case).model)
+    tests = (case.tests, case.tests[:1], (replace(test, name="new", channels=()),))
+    both, one, none = (parameter_posterior(replace(case, tests=some)) for some in tests)
+    sd = [
+        [float(np.sqrt(of.covariance[i, i])) for i in (of.names.index(p.name) for p in network.parameters)]
+        for of in (both, one, none)
+    ]
+    assert max(sd[0]) < 0.5 * max(p.prior_sd for p in network.parameters)
+    assert_allclose(sd[1], sd[0], rtol=0.2)
+    assert_allclose(sd[2], sd[0], rtol=0.2)

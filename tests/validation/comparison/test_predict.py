@@ -1,5 +1,6 @@
 """Channel operators against closed forms."""
 
+import gc
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from everything import machine, warm_test
 from one_body import measured, one_node
 
 from lumped.model.network import Parameter
+from lumped.numerics.terms import Forcing
 from measured.sensors.operators import lag
 from validation.comparison.predict import Watch, predict
 from validation.parameters.unknowns import nuisances
@@ -107,3 +109,26 @@ def test_a_lag_is_bounded_by_the_test_where_it_is_least():
     late = replace(late, channels=tuple(replace(c, lag_s=19.5) for c in late.channels))
     for tests in ((late, prompt), (prompt, late)):
         assert [p.low for p in nuisances(network, tests) if p.name.startswith("lag of")] == [0.0]
+
+
+def test_runs_that_are_over_leave_no_course_of_their_inputs_behind():
+    """What drives a large network over a record takes far more memory than its readings, so it goes with the run."""
+
+    def courses():
+        gc.collect()
+        return {id(x) for x in gc.get_objects() if isinstance(x, Forcing)}
+
+    net, test = machine(), warm_test(machine())
+    before = courses()
+    for bias in (0.1, 0.2, 0.3):
+        predict(net, test, {net.parameters[0].name: bias})
+    assert courses() <= before
+
+
+def test_a_record_keeps_only_what_was_asked_of_it_last():
+    """Every event that is tried has ends of its own, and each set of instants takes a factor of every law."""
+    signals = warm_test(machine()).signals
+    instants = [np.union1d(np.arange(5.0), [0.01 * n]) for n in range(1, 30)]
+    first, *_, last = [signals.finer(at) for at in instants]
+    assert signals.finer(instants[-1]) is last
+    assert signals.finer(instants[0]) is not first

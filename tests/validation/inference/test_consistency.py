@@ -8,10 +8,12 @@ import pytest
 from two_bodies import bench
 
 from validation import diagnose
+from validation.calibration.model_error import machine_rise
 from validation.comparison.linearisation import Segment, allowed
-from validation.consistency import persistence_check, record_errors, refit_check
+from validation.consistency import doubts_check, free_network_check, persistence_check, record_errors, refit_check
+from validation.diagnosis import infer
 from validation.inference.decide import Decision, consistent_decision
-from validation.inference.result import Check
+from validation.inference.result import Check, Remainder
 
 
 def moved_probe(share):
@@ -44,12 +46,12 @@ def test_a_record_far_beyond_its_uncertainty_is_not_adequate(found):
 
 def test_the_document_lists_what_was_checked(found):
     rows = {row["kind"]: row for row in found.document()["checks"]}
-    assert set(rows) == {"record", "tests", "persistence"}
+    assert set(rows) == {"record", "tests", "persistence", "free network"}
     assert rows["record"]["where"] == "core in dusk"
     core = next(c for t in moved_probe(0.5).tests if t.name == "dusk" for c in t.channels if c.name == "core")
     assert rows["record"]["limit"] == pytest.approx(5 * np.hypot(0.3, allowed(core)))
     assert rows["tests"]["limit"] == 10.0
-    assert [rows[kind]["contradicts"] for kind in ("record", "tests", "persistence")] == [True, True, False]
+    assert [rows[kind]["contradicts"] for kind in rows] == [True, True, False, False]
     assert all(row["contradicts"] == (row["number"] > row["limit"]) for row in rows.values())
 
 
@@ -100,3 +102,33 @@ def test_a_name_whose_refit_is_worse_in_most_tests_is_withheld(after, contradict
 def test_what_is_within_its_limit_changes_nothing():
     choice = Decision("adequate", (), 0.3)
     assert consistent_decision(choice, (Check("record", "core in dusk", 1.5, 1.5, "K", ""),)).verdict == "adequate"
+
+
+def remainder(taken, error=4.0):
+    """A record that is off by `error` K, of which the doubts of the model take some."""
+    return Remainder("core", "dusk", error, taken, "joint:core|frame", "", 0.0, 0.0, "")
+
+
+def test_no_record_is_forgiven_more_than_all_doubts_of_a_sound_machine_come_to():
+    """Doubts that together take a twentieth of the machine's largest rise off one record are no doubts."""
+    case = bench(())
+    limit = case.doubt["total"] * machine_rise(case.usable)
+    assert doubts_check(case, [remainder(3.0), remainder(1.01 * limit, 1.1 * limit)]).contradicts
+    assert not doubts_check(case, [remainder(0.9 * limit, limit)]).contradicts
+    assert "joint:core|frame" in doubts_check(case, [remainder(3.0)]).words
+    assert doubts_check(case, [remainder(0.4 * limit, limit)]) is None  # most of it is not forgiven
+
+
+def test_a_free_network_that_predicts_what_the_model_does_not_even_fit_is_told():
+    """Readings of a machine whose core is warmed three times as much as the model says."""
+    case = bench(())
+    sound = infer(case).evidence.fit
+    rows = record_errors(case, case.tests, {}, {})
+    assert free_network_check(case, rows, sound) is None
+    off = replace(sound, parts=tuple(replace(s, r=s.r + 20.0 * s.weight) for s in sound.parts))
+    assert free_network_check(case, rows, off) is None  # as it reads it is right
+    far = [replace(r, error=replace(r.error, rmse_K=20.0 * r.u_K)) for r in rows]
+    check = free_network_check(case, far, off)
+    assert check.contradicts
+    assert check.where.partition(" in ")[0] in ("core", "frame")
+    assert "a free network predicts tests left out within" in check.words

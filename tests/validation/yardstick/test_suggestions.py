@@ -7,8 +7,9 @@ import pytest
 from two_bodies import bench
 
 from validation.calibration.calibrate import no_progress
+from validation.comparison.compare import errors
 from validation.effects import effect
-from validation.revision.improvement import Supervisor, best, further_step
+from validation.revision.improvement import Step, Supervisor, best, ended, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
@@ -88,9 +89,21 @@ def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(
 
 
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
-    step, _, (why,) = further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, no_progress)
-    assert step is None
-    assert why.startswith("left out in turn 0.01 K, of the best plain model 0.")
+    assert further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, no_progress) == (None, {}, [])
+
+
+def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
+    def end(some):
+        return ended(some, [Step(errors(some), {})], SILENT, "nothing is offered")
+
+    near, far = end(case), end(without(case, ("body", "ambient")))
+    assert near.plain_K == far.plain_K == min(yardstick(case).left_out.values())
+    both = f"K, where a free network leaves {near.plain_K:.2f} K"
+    assert near.why == f"nothing is offered; left out in turn {near.stairs[-1].left_out_K:.2f} {both}"
+    assert far.why.startswith("left out in turn ")
+    assert far.why.endswith(f"{both}; what stops it: nothing is offered")
+    short = replace(case, tests=tuple(replace(t, channels=()) for t in case.tests))
+    assert end(short).why.startswith("nothing is offered; no plain model can be learnt from these tests")
 
 
 def test_where_no_name_is_given_the_likeliest_sets_are_tried_and_the_criterion_decides(case):

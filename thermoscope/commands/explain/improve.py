@@ -51,7 +51,8 @@ def improve(
         except KeyboardInterrupt:
             ledger.show(case)
             raise
-    last = {"case": folder.case.name, "revision": ledger.history.last.number, **result.diagnosis.document()}
+    number = ledger.history.last.number
+    last = {"case": folder.case.name, "revision": number, **result.diagnosis.document(), "ended": result.why}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     plain = yardstick_document(folder.yardstick, result.stairs[-1].comparison, result.case)
     document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
