@@ -6,6 +6,8 @@ check_cad(machine); export_cad(machine, "out")
 mesh = build_mesh(machine, **COARSE)
 """
 
+from __future__ import annotations
+
 from geom.lazy import loaded_when_used
 
 _HOME = {

@@ -1,5 +1,7 @@
 """Texts that others wrote, made safe for each kind of file. No writer relies on the rule that let a name in."""
 
+from __future__ import annotations
+
 import csv
 import io
 import re

@@ -1,5 +1,7 @@
 """Names of a package that load their module when they are used: `import viz` loads no VTK."""
 
+from __future__ import annotations
+
 import ast
 from collections.abc import Callable, Mapping
 from functools import cache

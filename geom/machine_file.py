@@ -1,5 +1,7 @@
 """Machine files: the library, the families, and from a file's tables, or a STEP file, to a machine."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache

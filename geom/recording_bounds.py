@@ -1,5 +1,7 @@
 """Recordings are counted before they are kept: bytes, rows and columns, in pieces that need no memory themselves."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any, TypeVar

@@ -4,6 +4,8 @@ The priors of a fit and the covariance of the model error are made from this one
 (`Case.doubt`, `widened`). Deviations are one standard deviation of a normal distribution.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType

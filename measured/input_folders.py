@@ -1,5 +1,7 @@
 """Where a case keeps its inputs."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 CASE = "case.toml"

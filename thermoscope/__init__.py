@@ -16,6 +16,8 @@ Nothing heavy is loaded before it is used. What is wrong with the input raises I
 right.
 """
 
+from __future__ import annotations
+
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 

@@ -1,5 +1,7 @@
 """The command line. Nothing heavy is loaded until a command runs: the help of the others is read from their files."""
 
+from __future__ import annotations
+
 import io
 import os
 import signal

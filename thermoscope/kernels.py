@@ -3,6 +3,8 @@
 Loading takes half a second, running a node for two samples next to nothing.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from lumped.integration.record import Record

@@ -3,6 +3,8 @@
 plugin.pyi lists them with their modules. What is missing there is added there; nothing else of the rooms is promised.
 """
 
+from __future__ import annotations
+
 from functools import cache
 from importlib import import_module
 from pathlib import Path

@@ -1,5 +1,7 @@
 """See it: fields, residuals and the error falling. Nothing heavy is loaded before the first picture."""
 
+from __future__ import annotations
+
 from geom.lazy import loaded_when_used
 
 _MODULES = {

@@ -1,5 +1,7 @@
 """The commands of this extra; nothing heavy is loaded until one runs."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated
 

@@ -1,5 +1,7 @@
 """C99 from a model: fixed code (runtime/), the numbers, and the heading of every export: what the model is good for."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any

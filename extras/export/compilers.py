@@ -1,5 +1,7 @@
 """Compilers at hand: gcc or clang for this computer, zig (a wheel) for this and others."""
 
+from __future__ import annotations
+
 import importlib.util
 import platform
 import shutil

@@ -1,5 +1,7 @@
 """A model as data: for JSON, and as structs for MAT files."""
 
+from __future__ import annotations
+
 import io
 from dataclasses import asdict
 from typing import Any

@@ -1,5 +1,7 @@
 """The exported C, compiled for this computer and held against `simulate` on the tests of the case."""
 
+from __future__ import annotations
+
 import ctypes
 import tempfile
 from collections.abc import Mapping, Sequence

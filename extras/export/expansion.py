@@ -1,5 +1,7 @@
 """Laws as sums of products (products.py), exactly."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import singledispatch

@@ -1,5 +1,7 @@
 """Sums of products as flat arrays, for languages without objects."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -3,6 +3,8 @@
 What cannot be is refused: a law of time or of the whole record, one of three inputs at once of unknown form.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 

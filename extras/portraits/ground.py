@@ -1,5 +1,7 @@
 """A soft shadow on the ground: the machine seen from above, blurred."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

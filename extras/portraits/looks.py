@@ -3,6 +3,8 @@
 Every corner shows a mix of the two nodes of its meshed part that lie nearest.
 """
 
+from __future__ import annotations
+
 import hashlib
 import json
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """What is left of the continuous rating in other surroundings: warmer, higher, with warmer or less coolant."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,7 @@
 """Places whose largest temperature is limited: the hot spot of a part that was meshed, else a node; or its mean."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """A drive cycle that follows on itself: the share of its load that holds for ever, and how long all of it holds."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,7 @@
 """Rows of a rating's document: each load with its 95 % band, beside that of the model before its last step."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Everything the page lists and draws of one model but the machine: errors and curves."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

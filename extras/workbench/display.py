@@ -1,5 +1,7 @@
 """What a tab shows: one model, one test, one sensor. Every value from the browser is checked here."""
 
+from __future__ import annotations
+
 from typing import Any
 
 from extras.workbench import revisions as ledger

@@ -1,5 +1,7 @@
 """The model's history as one tab sees it: the steps that still count."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 from thermoscope.plugin import Folder, History, at_revision

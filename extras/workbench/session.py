@@ -1,5 +1,7 @@
 """One tab: what it shows, its model's history, and the one calculation it may have running."""
 
+from __future__ import annotations
+
 import asyncio
 import re
 import time

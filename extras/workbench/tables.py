@@ -1,5 +1,7 @@
 """What the page lists, as plain values: errors per test and sensor, steps, candidates."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any
 

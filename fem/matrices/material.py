@@ -1,5 +1,7 @@
 """Thermal conductivity, direction by direction."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

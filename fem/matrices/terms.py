@@ -1,5 +1,7 @@
 """Heat that depends on temperature, one small object each: what it takes out of the solid, and the derivative."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,5 +1,7 @@
 """A steady colour for every material, the same in CAD files and drawings."""
 
+from __future__ import annotations
+
 import colorsys
 import hashlib
 

@@ -1,5 +1,7 @@
 """A part: a name, a material and the prisms it is made of."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

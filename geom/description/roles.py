@@ -1,5 +1,7 @@
 """What a part, a node, a fluid or a boundary is: its role, never read out of its name, and how that is known."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import StrEnum
 

@@ -1,5 +1,7 @@
 """Random machines of a family: every parameter drawn within its documented bounds, all by themselves."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """A machine file in the making: every value with its source, and what of the other program's file went nowhere."""
 
+from __future__ import annotations
+
 import json
 import math
 from collections.abc import Iterable, Mapping

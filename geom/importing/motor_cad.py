@@ -1,5 +1,7 @@
 """Motor-CAD files (.mot, sections of key=value): machines with permanent magnets and a rotor inside the stator."""
 
+from __future__ import annotations
+
 import cmath
 import math
 from collections.abc import Callable

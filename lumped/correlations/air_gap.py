@@ -1,5 +1,7 @@
 """The annular gap between rotor and stator."""
 
+from __future__ import annotations
+
 import math
 
 from lumped.correlations.info import Info, checked

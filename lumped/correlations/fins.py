@@ -1,5 +1,7 @@
 """Natural and forced convection between fins."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 

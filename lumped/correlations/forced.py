@@ -1,5 +1,7 @@
 """Forced convection on outer surfaces, and its mixture with natural convection."""
 
+from __future__ import annotations
+
 from typing import TypeVar
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What a correlation says about its own answer."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 

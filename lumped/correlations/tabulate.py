@@ -1,5 +1,7 @@
 """Any correlation at compiled speed: tabulated once over the temperature difference."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 
 import numpy as np

@@ -1,5 +1,7 @@
 """View factors F12: the share of what surface 1 sends out diffusely that falls on surface 2."""
 
+from __future__ import annotations
+
 import math
 
 

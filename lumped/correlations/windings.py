@@ -1,5 +1,7 @@
 """The T-circuit of a hollow cylinder."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 

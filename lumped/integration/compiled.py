@@ -1,5 +1,7 @@
 """From a Network, a set of values and the inputs of a record to the flat arrays of the kernel."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple

@@ -4,6 +4,8 @@ Heat is kept, so that a node whose time constant is long against an interval fee
 far from a parabola (a switch), the interval is cut at the record's own samples.
 """
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

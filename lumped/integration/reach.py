@@ -1,5 +1,7 @@
 """Whether the films of a run stayed where their fluids are known: what went beyond is said with its value and range."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

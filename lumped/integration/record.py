@@ -1,5 +1,7 @@
 """The record a network runs over."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

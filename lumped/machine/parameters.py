@@ -1,5 +1,7 @@
 """What calibration may move in a motor's network, each with its prior."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 
 from geom.description.machine import Machine

@@ -1,5 +1,7 @@
 """Loss zones of a motor: teeth and back of a slotted core, halves of a slot, shoe and body of a pole, field coils."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What the parameters do: multipliers on links, sources and capacity groups, and their derivatives."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from math import prod
 

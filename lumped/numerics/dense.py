@@ -4,6 +4,8 @@ Unknowns are eliminated in an order in which few zeros fill in, columns swapped 
 Rows of U are taken in groups: shapes of one part have nearly the same neighbours; a row is written once for all four.
 """
 
+from __future__ import annotations
+
 from functools import cache
 from typing import NamedTuple
 

@@ -3,6 +3,8 @@
 What a law declares is what the network injects: the source's weights sum to 1 and nothing is clipped.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Losses from a map over speed and torque."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

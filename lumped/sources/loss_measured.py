@@ -1,5 +1,7 @@
 """Losses from measured channels: what goes in electrically less what leaves at the shaft."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

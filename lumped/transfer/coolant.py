@@ -1,5 +1,7 @@
 """Coolants by name: water, glycol mixtures with a stated share, oil, air."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import partial
 

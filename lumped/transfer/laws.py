@@ -4,6 +4,8 @@ The compiled kernel knows only the temperature laws below, so any correlation, w
 NumPy, runs at compiled speed.
 """
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass

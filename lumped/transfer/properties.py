@@ -1,5 +1,7 @@
 """Properties of the fluids that cool motors, from kept libraries."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, floor

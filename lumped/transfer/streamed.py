@@ -1,5 +1,7 @@
 """A number times a film or share of a stream."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,6 +6,8 @@ Three ways, each with a standard uncertainty:
 - one or two exponentials, by the corrected Akaike criterion (Burnham and Anderson 2002).
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -3,6 +3,8 @@
 Channels of several rates share one time column and are empty where they were not sampled.
 """
 
+from __future__ import annotations
+
 import re
 import struct
 import zipfile

@@ -1,5 +1,7 @@
 """Samples onto the analysis grid: averages around each instant, gaps kept as gaps."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """Samples averaged to a few hundred blocks, one stretch of them after another."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

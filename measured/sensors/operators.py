@@ -4,6 +4,8 @@ Order: delay, stem conduction, lag, gain, bias, drift, exchanged plugs. Each is 
 pass through its linear part.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Measures of a named mesh."""
 
+from __future__ import annotations
+
 import numpy as np
 
 

@@ -1,5 +1,7 @@
 """The comparison of a machine's case, kept by content: it takes many runs, and every picture and page asks for it."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass

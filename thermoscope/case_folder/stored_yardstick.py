@@ -1,5 +1,7 @@
 """The plain models of a case, kept by the content of its tests: every comparison shows them."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, replace

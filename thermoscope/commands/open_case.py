@@ -1,5 +1,7 @@
 """Open the case a command is about."""
 
+from __future__ import annotations
+
 import shutil
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """NAME=VALUE on the command line."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from math import inf, nan
 

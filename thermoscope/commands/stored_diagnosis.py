@@ -1,5 +1,7 @@
 """The last diagnosis of a case, kept in its out/ so that a report or an added effect can refer to it."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import os

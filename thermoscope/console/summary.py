@@ -3,6 +3,8 @@
 Columns that do not fit are left out, the least important first; rows that do not fit are counted.
 """
 
+from __future__ import annotations
+
 import os
 import re
 import shutil

@@ -1,5 +1,7 @@
 """Maximum a posteriori calibration: Levenberg-Marquardt on whitened residuals with Gaussian priors and hard bounds."""
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """Calibration in stages: an isolating test frees its own parameters, later tests take them as found."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase

@@ -1,5 +1,7 @@
 """The model against each test: error per sensor against the uncertainty of reading, inputs and arithmetic."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -1,5 +1,7 @@
 """Residuals and Jacobians of all tests, channel by channel, averaged to a few hundred instants."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

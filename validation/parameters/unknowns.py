@@ -1,5 +1,7 @@
 """The unknowns of a fit: their coordinates, priors and bounds, and the nuisances every measurement brings along."""
 
+from __future__ import annotations
+
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase

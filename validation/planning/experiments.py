@@ -1,5 +1,7 @@
 """How far the candidate tests would set rivals apart."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Heat through every link of a network over one step of a run, sorted for drawing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

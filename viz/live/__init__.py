@@ -4,6 +4,8 @@ Each function returns a plotly figure; viz.live.style.save writes it as HTML, or
 installed. The drawings on paper (viz.figures) need no browser.
 """
 
+from __future__ import annotations
+
 from geom.lazy import loaded_when_used
 
 _HOME = {

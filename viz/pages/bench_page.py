@@ -1,5 +1,7 @@
 """One page to pin on the bench: what to drive tomorrow, and what each hypothesis predicts for it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path

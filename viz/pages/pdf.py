@@ -1,5 +1,7 @@
 """A page as PDF, with whatever converter this computer has."""
 
+from __future__ import annotations
+
 import shutil
 import subprocess
 from importlib.util import find_spec

@@ -1,5 +1,7 @@
 """The verdict in one sentence, from the result documents."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -3,6 +3,8 @@
 The sides of a window are planes through the eye, so only its bottom is seen: the section at the sensor's own place.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """From the conformal mesh to one whose parts own their nodes: temperatures jump where a contact resists."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -1,5 +1,7 @@
 """Colour scales that span the data, marked at round numbers."""
 
+from __future__ import annotations
+
 import math
 
 INTERVALS = 8  # between marks at most: few enough to read

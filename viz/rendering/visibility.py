@@ -1,5 +1,7 @@
 """What the camera sees: a small picture of part numbers, read back."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Measured minus modelled everywhere, as the page mixes it: what each sensor's residual tells at every node."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,5 +1,7 @@
 """The network beside the machine, as the page draws it: nodes in the half section, heat along the lines between."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,5 +1,7 @@
 """Arrays as short text for a page: whole numbers, differences of neighbours without a sign, deflate, base64."""
 
+from __future__ import annotations
+
 import base64
 import zlib
 from typing import Any

@@ -3,6 +3,8 @@
 Parts need fewer shapes than the machine, for each part's field is smooth: fewer bytes, and less to mix per instant.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

@@ -34,6 +34,8 @@ resistance = [
 emf = { range = [0, 1000], percent = 0.1, offset = 1.0 }
 """
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Any
 

@@ -7,6 +7,8 @@ by Lenth's pseudo standard error, as published with the half-normal plot.
 Sources: Box, Hunter and Hunter 2005; Daniel 1959; Lenth 1989, Technometrics 31, 469.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product

@@ -1,5 +1,7 @@
 """The published acceptance rule, assembly by assembly: within 3 to 4 % of the measured temperature, never above 7 %."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal

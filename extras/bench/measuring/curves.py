@@ -1,5 +1,7 @@
 """What the warming curves of a case say: eq. 8 and eq. 9 for every sensor, the 3 to 4 % rule, equal tests pooled."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar

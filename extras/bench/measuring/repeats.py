@@ -1,5 +1,7 @@
 """Equal tests repeated, and equal machines: pooled, and whether they repeat within the measurement's uncertainty."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

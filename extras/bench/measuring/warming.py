@@ -4,6 +4,8 @@ eq. 8   T = a exp(b exp(c t)), t in minutes       a: end temperature (degC); b <
 eq. 9   T(t1) - T(t2) = 0 for two late readings, within the sensor's resolution
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

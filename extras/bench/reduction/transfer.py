@@ -1,5 +1,7 @@
 """One model, other machines: calibrated values go to networks of machines that were not used, and are tested there."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Any
 

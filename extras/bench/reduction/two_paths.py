@@ -5,6 +5,8 @@ T_m = T_a + R_ext P          T_w = T_m + R_w P_w         P_w copper loss, P all 
 The two come from one steady state; what they leave over is how far they miss other loads and the transient.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,5 +1,7 @@
 """thermoscope use export CASE --as observer"""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

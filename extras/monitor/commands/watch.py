@@ -1,5 +1,7 @@
 """thermoscope use watch CASE --follow FILE|-: temperatures and missing heat while the machine runs."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

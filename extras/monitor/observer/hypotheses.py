@@ -10,6 +10,8 @@ A sensor that only has the bias it may have, of variance v0, is no fault: its ev
 forget, so that what was long ago is no evidence now. Odds and temper are those of the diagnosis.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

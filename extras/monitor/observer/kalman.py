@@ -4,6 +4,8 @@ Time update by QR, measurement update one reading at a time by Potter's method.
 Sources: Kaminski, Bryson and Schmidt 1971; Bierman 1977, chapters II and V; Simon 2006, chapter 6.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -4,6 +4,8 @@ A parameter, loss, input or boundary that is off by one deviation moves the heat
 the calibration tests, by the covariance that the calibration has left, is the covariance of the missing heat.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

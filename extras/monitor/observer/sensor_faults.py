@@ -1,5 +1,7 @@
 """Readings that say nothing: lost, impossible, or frozen."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What moves coolant and air costs: pressure along their ways times flow over the efficiency of pump or fan."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """What a torque takes: the current, and the terminal voltage of a warm machine."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """What an optimisation may change, between which bounds."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

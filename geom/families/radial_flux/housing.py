@@ -1,5 +1,7 @@
 """End-caps, bearings, housing, foot and base."""
 
+from __future__ import annotations
+
 import math
 
 from geom.description import shapes

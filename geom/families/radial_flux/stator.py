@@ -1,5 +1,7 @@
 """Laminations, slots and winding of the stator."""
 
+from __future__ import annotations
+
 import math
 
 from geom.description import shapes

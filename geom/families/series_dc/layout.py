@@ -1,5 +1,7 @@
 """Where things are: positions along the axis and radii that several parts share."""
 
+from __future__ import annotations
+
 from geom.description.geometry import Geometry
 
 

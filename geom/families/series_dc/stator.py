@@ -1,5 +1,7 @@
 """Yoke, poles and field coils."""
 
+from __future__ import annotations
+
 import math
 
 from geom.description import shapes

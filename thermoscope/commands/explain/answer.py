@@ -1,5 +1,7 @@
 """thermoscope explain answer CASE yes|no"""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """thermoscope model import FILE"""
 
+from __future__ import annotations
+
 from pathlib import Path
 from shlex import quote
 from typing import Annotated, Any

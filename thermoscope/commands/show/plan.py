@@ -1,5 +1,7 @@
 """thermoscope show plan CASE"""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated
 

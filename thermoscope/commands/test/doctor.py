@@ -1,5 +1,7 @@
 """thermoscope test doctor CASE"""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """thermoscope test quantities"""
 
+from __future__ import annotations
+
 from geom.table import Table
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES
 from thermoscope.console.options import Json
