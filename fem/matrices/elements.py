@@ -61,20 +61,20 @@ class Elements:
             return cls(tets, tets, corners, np.empty(0, np.int64), sp.eye_array(m, format="csr"))
         edges, which = np.unique(_keys(tets[:, EDGES], m), return_inverse=True)
         diagonal, rectangle = _upright_diagonals(edges, corners)
-        kept = np.delete(np.arange(len(edges)), diagonal)
+        other = np.delete(np.arange(len(edges)), diagonal)
         unknown = np.concatenate([np.arange(m), np.full(len(edges), -1)])
-        unknown[m + kept] = m + np.arange(len(kept))
+        unknown[m + other] = m + np.arange(len(other))
         plain = np.flatnonzero(unknown >= 0)
         row = np.concatenate([plain, np.repeat(m + diagonal, 8)])
         column = unknown[np.concatenate([plain, rectangle.ravel()])]
         value = np.concatenate([np.ones(len(plain)), np.tile(np.repeat([-0.25, 0.5], 4), len(diagonal))])
-        nodes = sp.csr_array((value, (row, column)), shape=(len(unknown), m + len(kept)))
-        middles = (corners[edges // m] + corners[edges % m])[kept] / 2
+        nodes = sp.csr_array((value, (row, column)), shape=(len(unknown), m + len(other)))
+        middles = (corners[edges // m] + corners[edges % m])[other] / 2
         cells = np.hstack([tets, m + which.reshape(-1, 6)])
         return cls(tets, cells, np.vstack([corners, middles]), edges, nodes)
 
     @property
-    def kept(self) -> Ints:
+    def middles(self) -> Ints:
         """(n - m,) those of the edges whose middles are unknowns."""
         m = self.nodes.shape[0] - len(self.edges)
         return np.asarray(self.edges[np.flatnonzero(np.diff(self.nodes.indptr)[m:] == 1)])

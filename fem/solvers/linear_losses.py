@@ -45,7 +45,7 @@ def _level(field: FieldModel) -> Bools:
     """(n,) whether an unknown is the middle of an edge that lies in the plane."""
     out = np.zeros(field.n, bool)
     for block in field.blocks.values():
-        corners, edges, z = len(block.points), block.elements.kept, block.xyz[:, 2]
+        corners, edges, z = len(block.points), block.elements.middles, block.xyz[:, 2]
         a, b = edges // corners, edges % corners
         along = np.linalg.norm(block.xyz[a] - block.xyz[b], axis=1)
         out[block.dofs][corners:] = np.abs(z[a] - z[b]) < 0.5 * along
@@ -56,6 +56,6 @@ def _bend(field: FieldModel, T: Floats) -> Floats:
     """(n, k) of T (n, k): at the middle of every edge above the mean of its ends, 0 at corners."""
     out = np.zeros_like(T)
     for block in field.blocks.values():
-        corners, edges, mine = len(block.points), block.elements.kept, T[block.dofs]
+        corners, edges, mine = len(block.points), block.elements.middles, T[block.dofs]
         out[block.dofs][corners:] = mine[corners:] - (mine[edges // corners] + mine[edges % corners]) / 2
     return out

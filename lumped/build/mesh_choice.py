@@ -34,15 +34,17 @@ from lumped.model.network import Array
 
 SHARE = 0.5  # of the wish that the mesh may use up: the rest is left to the condensation
 LARGEST_SHARE = 0.75  # of a mesh beyond CHEAP, or where nothing finer fits: the condensation can do with a quarter
-CHEAP = 110_000  # unknowns that are condensed within two minutes of a core
+CHEAP = 90_000  # unknowns that are condensed within two minutes of a core
 ORDER = 2.0  # of the means and the hottest points of linear elements; windings, quadratic, converge faster
 SAFETY = 1.25  # Roache's factor where the order is known (1994, J. Fluids Eng. 116, 405)
 UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is assumed: left is what halving moved
 SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothing can be foretold
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
-MOST_UNKNOWNS = 170_000  # of the mesh that is condensed: within 4 GB and 3 min on two cores
-MOST_SOLVED = 250_000  # of one that is solved once, for its hot spots
-MOST_QUADRATIC = 500_000  # of the one that has quadratic elements in every part: 3.5 GB and 40 s
+MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the choice some 3 min of a core
+MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
+MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
+ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
+IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
 ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
 WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
 NOTABLE = 0.3  # percent of a hot spot that linear triangles of a part would cost: below, it is not the cause of errors
@@ -102,7 +104,7 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, NOTABLE, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, IDLE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
@@ -120,6 +122,7 @@ class _Looks:
     """Meshes of a machine that were looked at: how large they are, and how hot their parts.
 
     point : the rated one, its coefficients the same on every mesh
+    losses, every : what each part's linear elements cost, and the mesh of quadratic ones that it is known from
     """
 
     machine: Machine
@@ -128,6 +131,7 @@ class _Looks:
     counts: dict[Meshing, Counts] = field(default_factory=dict)
     rises: dict[Meshing, Kelvins] = field(default_factory=dict)
     losses: Losses = field(default_factory=dict)
+    every: Meshing = field(init=False)
 
     def size(self, how: Meshing) -> tuple[int, int]:
         """Points and unknowns; nothing is assembled."""
@@ -153,8 +157,8 @@ class _Looks:
         """Find out what every hot spot would lose, in the first order, if the elements of a part were linear ones."""
         self.rises[how], lost = _linear_losses(self.point, self.ready(how).field)
         floor = FLOOR * max(self.rises[how].values())
-        own = np.array([max(rise, floor) for rise in self.rises[how].values()])
-        self.losses = {part: 100.0 * np.abs(kelvins) / own for part, kelvins in lost.items()}
+        scale = np.array([max(rise, floor) for rise in self.rises[how].values()])
+        self.losses = {part: 100.0 * np.abs(kelvins) / scale for part, kelvins in lost.items()}
 
     def moved(self, here: Meshing, there: Meshing) -> Kelvins:
         """How far the hot spots of two meshes are apart."""
@@ -191,6 +195,7 @@ def _ratio(before: float, after: float) -> float:
 
 def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     how, linear = _curved(looks, looks.first, most)
+    plain = how
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
@@ -203,7 +208,11 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         if percent[worst] <= enough * accuracy:
             return MeshChoice(how, percent, *looks.size(how), True)
         plane = max(ways[w].left(worst) for w in IN_PLANE)
-        if (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
+        most_left = max(halvings.left(worst) for halvings in ways.values())
+        if linear[worst] > most_left and (part := _part_to_bend(looks, how, worst, most)):
+            how, plain = (replace(mesh, quadratic=(*mesh.quadratic, part)) for mesh in (how, plain))
+            linear = looks.moved(plain, looks.every)
+        elif (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
             how, ways = alone, {**ways, **dict.fromkeys(IN_PLANE, _Way())}
@@ -215,6 +224,17 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
                 halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
             )
             how, ways[way] = there, _Way(moves, halvings.level + 1)
+
+
+def _part_to_bend(looks: _Looks, how: Meshing, worst: str, most: int) -> str | None:
+    """The part whose linear elements cost the worst hot spot most for each unknown that quadratic ones would add."""
+    column, here = list(looks.hot(how)).index(worst), looks.size(how)[1]
+    worth = {}
+    for part in set(_linear(looks.machine)) - set(how.quadratic):
+        there = looks.size(replace(how, quadratic=(*how.quadratic, part)))[1]
+        if (loss := float(looks.losses[part][:, column].sum())) >= NOTABLE and there <= most:
+            worth[part] = loss / (there - here)
+    return max(worth, key=lambda part: (worth[part], part), default=None)
 
 
 def _one_part_finer(
@@ -253,12 +273,12 @@ def _curved(looks: _Looks, how: Meshing, most: int) -> tuple[Meshing, Kelvins]:
     added = {part: looks.size(replace(how, quadratic=(part,)))[1] - bare for part in _linear(looks.machine)}
     while bare + sum(added.values()) > MOST_QUADRATIC and added:
         del added[max(added, key=lambda p: added[p])]
-    every = replace(how, quadratic=tuple(added))
+    looks.every = every = replace(how, quadratic=tuple(added))
     looks.lose(every)
     worth = {p: looks.losses[p].sum(axis=0).max() * bare / added[p] for p in added}
     for part in sorted(added, key=lambda p: -worth[p]):
         there = replace(how, quadratic=(*how.quadratic, part))
-        if worth[part] >= WORTH and looks.size(there)[1] <= most:
+        if worth[part] >= WORTH and looks.size(there)[1] <= ROOM * most:
             how = there
     return how, looks.moved(how, every)
 
@@ -279,7 +299,8 @@ def _looked_further(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> _W
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:
     """Of the ways that may be halved and leave about as much as the worst of them, the one with the fewest unknowns."""
-    sizes = {way: looks.size(how.along(way, 0.5))[1] for way, kelvins in left.items() if kelvins > 0.0}
+    idle = IDLE * sum(left.values())
+    sizes = {way: looks.size(how.along(way, 0.5))[1] for way, kelvins in left.items() if kelvins > idle}
     fits = {way: size for way, size in sizes.items() if size <= most}
     worst = max((left[way] for way in fits), default=0.0)
     return min(
@@ -310,7 +331,7 @@ def counts_of(machine: Machine, how: Meshing) -> Counts:
     parts = {}
     for k, part in enumerate(mesh.parts):
         points, tets = renumbered(mesh.tets[mesh.region == k], len(mesh.points))
-        parts[part] = len(points), len(Elements.on(tets, mesh.points[points], True).kept)
+        parts[part] = len(points), len(Elements.on(tets, mesh.points[points], True).middles)
     return len(mesh.points), parts
 
 

@@ -131,6 +131,6 @@ def test_diagonals_of_upright_rectangles_follow_from_their_sides(both):
     ends = np.stack([quadratic.edges // m, quadratic.edges % m])
     where = np.vstack([corners, corners[ends].mean(axis=0)])
     assert np.abs(quadratic.nodes @ parabola(quadratic.xyz) - parabola(where)).max() < 1e-14
-    kept = np.abs(np.diff(corners[np.stack([quadratic.kept // m, quadratic.kept % m])], axis=0)[0])
-    assert not ((kept[:, :2].max(axis=1) > 1e-9) & (kept[:, 2] > 1e-9)).any()
-    assert len(quadratic.kept) < 0.65 * len(quadratic.edges)
+    step = np.abs(np.diff(corners[np.stack([quadratic.middles // m, quadratic.middles % m])], axis=0)[0])
+    assert not ((step[:, :2].max(axis=1) > 1e-9) & (step[:, 2] > 1e-9)).any()
+    assert len(quadratic.middles) < 0.65 * len(quadratic.edges)
