@@ -4,7 +4,6 @@ import gc
 
 import numpy as np
 
-from lumped.integration import signals
 from lumped.integration.signals import Signals
 from lumped.model.once import once
 from lumped.transfer.laws import InputPower
@@ -39,8 +38,8 @@ def test_what_has_gone_is_not_mistaken_for_what_took_its_place():
 
 
 def test_laws_of_the_same_input_share_how_it_runs_between_the_samples(monkeypatch):
-    looked, moving = [], signals.moving
-    monkeypatch.setattr(signals, "moving", lambda inputs, nt: looked.append(nt) or moving(inputs, nt))
+    looked, moves = [], Signals._moves
+    monkeypatch.setattr(Signals, "_moves", lambda given, names: looked.append(given.nt) or moves(given, names))
     time = np.linspace(0.0, 1.0, 50)
     given = Signals({"current_A": 10.0 + 90.0 * time, "speed_rpm": 100.0 * time}, time.size)
     squares = [InputPower(watts, (("current_A", 10.0, 2.0),)) for watts in (1.0, 3.0)]

@@ -1,0 +1,72 @@
+"""What `model build` needs, and what its mesh leaves: each machine in a process of its own, with nothing kept before.
+
+    python benchmarks/condensed/builds.py [MACHINE ...] [--json FILE [--page]]
+
+Time is that of the processor, one core; a build takes as long on a machine that has nothing else to do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from scripts.published import publish
+
+PAGE = Path("docs/condensation.md")
+HEAD = ("machine", "unknowns", "mesh leaves (%)", "at", "states", "CPU (s)", "memory (GB)", "exit code")
+
+
+def row(machine: str) -> dict[str, Any]:
+    """One build at the default accuracy."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "thermoscope", "model", "build", machine, "--out", folder]
+        begun = time.monotonic()
+        process = subprocess.Popen(command, env={**os.environ, "THERMOSCOPE_CACHE": f"{folder}/cache"})
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        sizes = json.loads((Path(folder) / "crosscheck.json").read_text(encoding="utf-8"))["sizes"]
+    return {
+        "machine": machine,
+        "exit": process.returncode,
+        "cpu_s": round(used.ru_utime + used.ru_stime, 1),
+        "wall_s": round(time.monotonic() - begun, 1),
+        "memory_GB": round(used.ru_maxrss * 1024 / 1e9, 2),
+        "states": sizes["states"],
+        **{key: sizes["mesh"][key] for key in ("unknowns", "worst", "worst_part")},
+    }
+
+
+def table(found: Sequence[Mapping[str, Any]]) -> str:
+    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
+    for r in sorted(found, key=lambda r: r["machine"]):
+        numbers = f"{r['unknowns']:,} | {r['worst']:.1f} | {r['worst_part']} | {r['states']:,} | {r['cpu_s']:.0f}"
+        lines.append(f"| {r['machine']} | {numbers} | {r['memory_GB']:.1f} | {r['exit']} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
+    parser.add_argument("--page", action="store_true", help="put the table of FILE into docs/condensation.md")
+    given = parser.parse_args()
+    found = json.loads(given.json.read_text()) if given.json and given.json.exists() else []
+    for machine in given.machines:
+        found = [*(r for r in found if r["machine"] != machine), row(machine)]
+        print(found[-1], flush=True)
+        if given.json:
+            given.json.write_text(json.dumps(found, indent=1))
+    if given.page:
+        publish(PAGE, "builds", table(found))
+
+
+if __name__ == "__main__":
+    main()
