@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from geom import load_machine
-from lumped.build import mesh_choice
+from lumped.build import mesh_choice, network_size
 from lumped.build.mesh_choice import LARGEST_SHARE, SHARE, chosen_mesh
 from lumped.build.pipeline import Meshing, silent
 
@@ -173,3 +173,16 @@ def test_a_machine_is_looked_at_once(monkeypatch):
     assert 0.0 < found.worst < 50.0
     monkeypatch.setattr(mesh_choice, "meshed", None)
     assert chosen_mesh(MACHINE, 100.0, FIRST, silent) == found
+
+
+@pytest.mark.parametrize(("worst", "met", "left"), [(0.6, True, 1.4), (1.5, True, 0.5), (4.0, False, 1.0)])
+def test_the_condensation_may_use_what_the_mesh_leaves(monkeypatch, worst, met, left):
+    """Half of the wish where a mesh that misses it leaves nothing."""
+    asked = []
+    choice = mesh_choice.MeshChoice(FIRST, {"winding": worst}, 1000, 2000, met)
+    size = network_size.NetworkSize(None, None, network_size.accuracy_of(2.0), (), None)
+    monkeypatch.setattr(network_size, "size_of", lambda machine, how: (1000, 2000))
+    monkeypatch.setattr(network_size, "chosen_mesh", lambda *of: choice)
+    monkeypatch.setattr(network_size, "smallest_network", lambda machine, left, **how: asked.append(left) or size)
+    network_size.accurate_network(MACHINE, 2.0)
+    assert asked == [pytest.approx(left)]
