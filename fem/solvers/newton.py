@@ -22,6 +22,7 @@ from geom.errors import InputError
 Floats = NDArray[np.float64]
 START = 20.0  # degC
 ENOUGH = 1e-9  # K
+POLISH = 1e-6  # K; far below what any thermocouple tells, far above rounding in 16 digits
 ROUNDS = 40  # of a method that doubles its digits a round; what takes more has no solution or a poor start
 
 
@@ -82,8 +83,9 @@ def even(J: sp.csr_array) -> sp.csr_array:
 def _done(steps: list[float]) -> bool:
     if len(steps) > ROUNDS or (steps and not np.isfinite(steps[-1])):
         raise InputError("no steady temperature was found", "newton", "losses that the cooling can carry (no runaway)")
-    # The last step only polishes: Newton's error is the square of the step before.
-    return len(steps) > 1 and steps[-1] < ENOUGH
+    # The last step only polishes: Newton's error is the square of the step before. A step below POLISH that falls no
+    # more is rounding, which layers of hundredths of a millimetre make larger than ENOUGH.
+    return len(steps) > 1 and (steps[-1] < ENOUGH or 0.5 * steps[-2] < steps[-1] < POLISH)
 
 
 def _linear(solver: Solve, J: sp.csr_array, B: Floats, G: Floats) -> Callable[[Floats], Floats]:

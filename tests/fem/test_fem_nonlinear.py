@@ -14,6 +14,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
 from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
+from fem.solvers import newton
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Iterative, Solver, only_fixed
 from fem.solvers.transient import transient
@@ -231,3 +232,17 @@ def test_a_body_cools_by_radiation_alone():
     assert fall > 300
     assert fine < 2e-4 * fall
     assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("steps", "done"),
+    [
+        ([30.0, 1e-2, 8e-7], False),
+        ([30.0, 1e-2, 8e-7, 7e-9], False),
+        ([30.0, 8e-7, 7e-9, 5e-9], True),
+        ([2.0, 1.5], False),
+    ],
+)
+def test_steps_that_fall_no_more_below_what_rounding_makes_are_the_last(steps, done):
+    """As in a pole whose thinnest layer is 0.05 mm."""
+    assert newton._done(steps) is done
