@@ -194,13 +194,13 @@ def _ratio(before: float, after: float) -> float:
 
 
 def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
-    how, linear = _curved(looks, looks.first, most)
-    plain = how
+    how = _curved(looks, looks.first, most)
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
     while True:
         ways = {way: _looked_further(looks, how, way, halvings) for way, halvings in ways.items()}
+        linear = looks.moved(replace(looks.first, quadratic=how.quadratic), looks.every)
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)
@@ -210,8 +210,7 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         plane = max(ways[w].left(worst) for w in IN_PLANE)
         most_left = max(halvings.left(worst) for halvings in ways.values())
         if linear[worst] > most_left and (part := _part_to_bend(looks, how, worst, most)):
-            how, plain = (replace(mesh, quadratic=(*mesh.quadratic, part)) for mesh in (how, plain))
-            linear = looks.moved(plain, looks.every)
+            how = replace(how, quadratic=(*how.quadratic, part))
         elif (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
@@ -230,7 +229,7 @@ def _part_to_bend(looks: _Looks, how: Meshing, worst: str, most: int) -> str | N
     """The part whose linear elements cost the worst hot spot most for each unknown that quadratic ones would add."""
     column, here = list(looks.hot(how)).index(worst), looks.size(how)[1]
     worth = {}
-    for part in set(_linear(looks.machine)) - set(how.quadratic):
+    for part in set(looks.every.quadratic) - set(how.quadratic):
         there = looks.size(replace(how, quadratic=(*how.quadratic, part)))[1]
         if (loss := float(looks.losses[part][:, column].sum())) >= NOTABLE and there <= most:
             worth[part] = loss / (there - here)
@@ -266,21 +265,20 @@ def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
     return how
 
 
-def _curved(looks: _Looks, how: Meshing, most: int) -> tuple[Meshing, Kelvins]:
-    """Quadratic elements in every part that is worth its unknowns; and how far the hot spots stay from those with
-    quadratic elements in all parts."""
+def _curved(looks: _Looks, how: Meshing, most: int) -> Meshing:
+    """Quadratic elements in every part that is worth its unknowns, after a look at all parts with them."""
     bare = looks.size(how)[1]
     added = {part: looks.size(replace(how, quadratic=(part,)))[1] - bare for part in _linear(looks.machine)}
     while bare + sum(added.values()) > MOST_QUADRATIC and added:
         del added[max(added, key=lambda p: added[p])]
-    looks.every = every = replace(how, quadratic=tuple(added))
-    looks.lose(every)
+    looks.every = replace(how, quadratic=tuple(added))
+    looks.lose(looks.every)
     worth = {p: looks.losses[p].sum(axis=0).max() * bare / added[p] for p in added}
     for part in sorted(added, key=lambda p: -worth[p]):
         there = replace(how, quadratic=(*how.quadratic, part))
         if worth[part] >= WORTH and looks.size(there)[1] <= ROOM * most:
             how = there
-    return how, looks.moved(how, every)
+    return how
 
 
 def _linear(machine: Machine) -> list[str]:

@@ -79,7 +79,7 @@ def forcing(
     # first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is
     first, share = np.empty(knots.size + 1, np.int64), np.empty(time.size)
     placed(time, knots, indices, np.flatnonzero(sample >= 0), first, share)
-    return Forcing(knots, u, factor, bulge, arch, renew, *(first, share))
+    return Forcing(knots, u, factor, bulge, arch, renew, first, share)
 
 
 def _needed(

@@ -68,10 +68,8 @@ class Session:
     def take(self, rows: Rows) -> None:
         if self.one is None:
             readings = np.array([rows.readings[c.name][0] for c in self.sensors])
-            self.one, self.start_s = (
-                self.design.started(self.sensors, readings, {n: float(u[0]) for n, u in rows.boundaries.items()}),
-                float(rows.time[0]),
-            )
+            around = {name: float(u[0]) for name, u in rows.boundaries.items()}
+            self.one, self.start_s = self.design.started(self.sensors, readings, around), float(rows.time[0])
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
             initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
             self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())

@@ -88,7 +88,7 @@ class _Run:
         P, s = np.zeros((self.n + self.w.size,) * 2), self.process.slow.size
         P[:s, :s], P[s : self.n, s : self.n] = np.diag(sd**2), of.noise.covariance
         P[self.n :, self.n :] = self.of.P
-        self.x, self.P = (np.asarray(x, float), P)
+        self.x, self.P = np.asarray(x, float), P
         self.along = self.process.slow_only
         self.lagged = np.zeros(len(test.channels))
 
