@@ -144,8 +144,7 @@ def imported_table(file: Path) -> DataTable:
     InputError where nothing in it says how far its rows are apart.
     """
     source, clock = read_timed(file)
-    if clock.invented:
-        raise InputError(clock.doubt.partition(":")[0], str(file), f"a column {TIME}, or one of instants")
+    clock.check(file)
     doubt = (f"{file.name}: {clock.doubt}",) if clock.doubt else ()
     return DataTable.of(readings(source, clock).items(), file, notes=doubt)
 

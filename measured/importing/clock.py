@@ -77,6 +77,11 @@ class Clock:
         """The last instant; rows after it may have no time of their own."""
         return float(np.nanmax(self.seconds))
 
+    def check(self, where: object) -> None:
+        """InputError where the clock is invented."""
+        if self.invented:
+            raise InputError(self.doubt.partition(":")[0], str(where), f"a column {TIME}, or one of instants")
+
 
 def clock_of(source: Source, period_s: float | None = None) -> Clock:
     """period_s : time between rows, where the file has no clock. InputError for times that run back."""

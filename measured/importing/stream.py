@@ -99,8 +99,7 @@ class Stream:
         columns = [list(column) for column in zip(*(cells for _, cells in rows), strict=True)]
         source = source_of_table(Path(self.where), self.plan, columns, ())
         clock = clock_of(source)
-        if clock.invented:
-            raise InputError(clock.doubt.partition(":")[0], self.where, f"a column {TIME}, or one of instants")
+        clock.check(self.where)
         return source, clock
 
     def _numbers(self, source: Source, clock: Clock, seconds: Array, line: int) -> DataTable:
