@@ -140,6 +140,17 @@ def short(channel: str) -> str:
     return channel.removeprefix("T_").removesuffix("_degC").removesuffix("_C").replace("_", " ")
 
 
+UNITS = {"rpm": "1/min", "mps": "m/s", "m3h": "m³/h", "l_min": "l/min", "Nm": "N m", "percent": "%", "degC": "°C"}
+UNITS |= {unit: unit for unit in ("A", "W", "V", "Hz")}  # what an input's name may end in
+
+
+def input_title(name: str) -> str:
+    """An input's name with its unit as an axis has it: 'vehicle_speed_mps' -> 'vehicle speed (m/s)'."""
+    stems = {unit: name.removesuffix(f"_{end}") for end, unit in UNITS.items()}
+    unit, stem = min(stems.items(), key=lambda x: len(x[1]))
+    return stem.replace("_", " ") + f" ({unit})" * (stem != name)
+
+
 def late_mean(residual: Array) -> float | None:
     """Mean (K) of the last fifth of a test, where the machine is warm; None where nothing was read then."""
     late = residual[int(0.8 * len(residual)) :]

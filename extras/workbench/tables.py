@@ -77,7 +77,7 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
     return [
         {
             "effect": c["effect"],
-            "title": c.get("title", ""),
+            "words": c.get("words", ""),
             "score": odds(c["probability"]),
             "width": percent(c["probability"], 1.0),
             "amplitude": amplitude(c),

@@ -49,11 +49,11 @@ def with_motor(path: Path) -> Folder:
 
 def main() -> None:
     from extras.workbench.access_control import AccessControl
-    from extras.workbench.serve import application, serve
+    from extras.workbench.serve import application, serve_until_stopped
 
     case, access = small_case(Path(sys.argv[1])), AccessControl("127.0.0.1", os.environ.get("THERMOSCOPE_TOKEN", ""))
     app = application(with_motor(case), access)
-    serve(app, access, 0, lambda url: print(url, flush=True))
+    serve_until_stopped(app, access, 0, lambda url: print(url, flush=True))
 
 
 if __name__ == "__main__":

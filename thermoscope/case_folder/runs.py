@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -212,13 +212,19 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
     ]
 
 
+def added_words(case: Case, names: Iterable[str]) -> str:
+    """Effects as an engineer says them: "forced convection by vehicle wind at flange.right"."""
+    from validation.effects import effect
+
+    return " and ".join(effect(name, scene_of(case)).statement for name in names)
+
+
 def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     """In one sentence what was found and is in the model, what it did to the error, and the largest that it leaves.
 
     The error before is that of the calibrated model without it on the same tests: the held-out ones, else all.
     errors : a `compare` document of the model.  Empty where nothing was added.
     """
-    from validation.effects import effect
     from validation.revision.revise import TOGETHER
     from viz.data import short
 
@@ -235,7 +241,7 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     n = [sum(c["n"] for c in t["channels"]) for t in unseen or tests]
     pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in unseen or tests])
     was, now = np.sqrt(np.average(pairs**2, axis=0, weights=n))
-    words = " and ".join(effect(name, scene_of(folder.case)).statement for name in names)
+    words = added_words(folder.case, names)
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
     verb, on = "Found" if now < was else "Added", "Held out" if unseen else "Error"

@@ -13,7 +13,7 @@ import numpy as np
 from geom.errors import InputError
 from validation.comparison.uncertainty import RULE
 from viz.colours import LIGHT, ORANGE, VERDICT
-from viz.data import Comparison, short
+from viz.data import Comparison, input_title, short
 from viz.figures import paper
 from viz.labels import Dash, end_labels
 
@@ -45,7 +45,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
     for ax, (name, values) in zip(axes[above:], inputs, strict=False):
         ax.fill_between(t[thin], 0.0, values[thin], color=LIGHT.faint, alpha=0.35, lw=0)
         ax.plot(t[thin], values[thin], color=LIGHT.ink, lw=0.9)
-        ax.set_title(short(name))
+        ax.set_title(input_title(name))
         ax.margins(x=0)
     names = comparison.temperatures(channels[0])
     for i, curve in enumerate(sorted(names, key=lambda c: c.dashed)):  # once, top left, in the colour of their lines

@@ -49,10 +49,14 @@ class Marked:
         for label in labels[n:]:
             dot(p, label, PLAIN)
         says = [note] if note else []
+        says += [SIDES[v] for v in SIDES if any(s.verdict == v for s in sensors)]
         says += ["hollow dots lie inside or behind"] if self.hidden.any() else []
         says += [f"{len(self.others)} without a label"] if self.others else []
         if says:
             scene.footnote(p, "; ".join(says), theme)
+
+
+SIDES = {"hot": "orange: hotter than the model", "cold": "blue: colder than the model"}  # of what is over
 
 
 def frame_points(surface: Surface, sensors: Sequence[Sensor]) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from math import isfinite
@@ -16,6 +16,9 @@ from viz.labels import minus
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+SHORT = 28  # letters of a cell that is not broken: an interval, a name of a test
 
 
 def page(title: str, body: Iterable[str]) -> str:
@@ -56,10 +59,14 @@ def inner_page(page: str, title: str) -> str:
     return f'<iframe {inside} srcdoc="{escape(page, quote=True)}"></iframe>{_caption(title)}\n'
 
 
-def table(content: Table) -> str:
-    """Numbers to the right, words to the left; rows with a marked word are strong, empty columns left out."""
+def table(content: Table, words: Mapping[str, str] | None = None, without: Sequence[str] = ()) -> str:
+    """Numbers to the right, words to the left; rows with a marked word are strong, empty columns left out.
+
+    words : of a code in the first column, which then stands small below them;  without : columns to leave out
+    """
     rows, empty = content.rows, ("", "-", None)
-    columns = [i for i in range(len(content.columns)) if i == 0 or any(row[i] not in empty for row in rows)]
+    places = [i for i, name in enumerate(content.columns) if name not in without]
+    columns = [i for i in places if i == 0 or any(row[i] not in empty for row in rows)]
     if not rows:
         return ""
     style = [
@@ -68,7 +75,7 @@ def table(content: Table) -> str:
     top = "".join(f"<th{s}>{escape(content.columns[i])}</th>" for i, s in zip(columns, style, strict=True))
     lines = [
         f"<tr{' class=strong' if any(cell(value) in content.marked for value in row) else ''}>"
-        + "".join(f"<td{s}>{_cell(row[i])}</td>" for i, s in zip(columns, style, strict=True))
+        + "".join(f"<td{s}>{_cell(row[i], words or {})}</td>" for i, s in zip(columns, style, strict=True))
         + "</tr>"
         for row in rows
     ]
@@ -94,11 +101,14 @@ def _caption(caption: str) -> str:
     return f"<figcaption>{escape(caption)}</figcaption>"
 
 
-def _cell(value: Any) -> str:
+def _cell(value: Any, words: Mapping[str, str]) -> str:
+    if isinstance(value, str) and value in words:
+        return f'{escape(words[value])}<br><code class="code">{escape(value)}</code>'
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
     word = cell(value).replace("->", "→").replace(" ... ", " … ").replace(" %", "\u00a0%")
     if word in ("", "-"):
         return "–"
     css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
+    css = css or ("short" if len(word) <= SHORT else "")
     return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)

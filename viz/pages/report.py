@@ -24,6 +24,7 @@ from viz.machine.missing import placed
 from viz.pages import html, words
 
 Document = Mapping[str, Any]
+DETAIL = ("detectable", "log odds", "threshold")  # columns of candidates that open on a click
 
 
 @dataclass(frozen=True)
@@ -143,8 +144,8 @@ def _missing(r: Report) -> str:
     bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     parts = [
         html.plot(bars, "odds", "Each leading cause and its odds; pale: with something else.") if bars else "",
-        html.table(tables.candidates_table(by_score[:12])),
-        html.more("Evidence of each by itself", evidence),
+        html.table(tables.candidates_table(by_score[:12]), {c["effect"]: c.get("words", "") for c in by_score}, DETAIL),
+        html.more("Evidence of each by itself", evidence, html.table(tables.candidates_table(by_score[:12]))),
         html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]
@@ -184,13 +185,24 @@ def _hidden(r: Report) -> str:
 
 
 def _values(r: Report) -> str:
-    """What the data fix is in sight; what they leave as it was expected opens on a click."""
+    """What the data fix of the model is in sight; of readings, and what they do not fix, opens on a click."""
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
-    left = tables.parameters_table("", [p for p in r.parameters if p not in fixed])
-    rest = html.more(f"{len(left.rows)} values that the data do not fix", html.table(left)) if left.rows else ""
+    model = [p for p in fixed if not p.get("of_measurement")]
+    groups = {
+        "corrections of readings, clocks and starts": [p for p in fixed if p.get("of_measurement")],
+        "values that the data do not fix": [p for p in r.parameters if p not in fixed],
+    }
     priors = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
-    sizes = html.plot(intervals(priors), "sizes", "Values on the scale of what was expected of them.") if priors else ""
-    return html.section("Calibrated values", sizes, html.table(tables.parameters_table("", fixed)), rest)
+    return html.section(
+        "Calibrated values",
+        html.plot(intervals(priors), "sizes", "Values on the scale of what was expected of them.") if priors else "",
+        html.table(tables.parameters_table("", model)),
+        *(
+            html.more(f"{len(group)} {name}", html.table(tables.parameters_table("", group)))
+            for name, group in groups.items()
+            if group
+        ),
+    )
 
 
 def _sensors(r: Report) -> str:
@@ -207,7 +219,7 @@ def _sensors_of(test: Document, curves_of: Comparison | None) -> str:
     side = {c.name: f"over ({curves_of.sensor(c).verdict})" for c in curves_of.channels} if curves_of else {}
     rows = [{**c, "verdict": side.get(c["channel"], "over")} if c["verdict"] == "over" else c for c in test["channels"]]
     table = replace(tables.sensors_table("", [{**test, "channels": rows}]), marked=["over", *side.values()])
-    return html.more(name, html.table(table), expanded=test["role"] == "hold-out")
+    return html.more(name, html.table(table, without=("test",)), expanded=test["role"] == "hold-out")
 
 
 def _numerical(r: Report) -> str:

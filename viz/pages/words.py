@@ -17,7 +17,7 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
     if diagnosis is None:
         return _agreement(comparison)
     code = diagnosis["verdict"]
-    names = [c["effect"] for c in diagnosis["candidates"] if c["decision"] in ("named", "group")]
+    names = [c.get("words") or c["effect"] for c in diagnosis["candidates"] if c["decision"] in ("named", "group")]
     sentences = {
         "adequate": "The model agrees with the measurements; nothing is found missing.",
         "named": f"Missing from the model: {spoken(names[:1])}.",
@@ -47,7 +47,7 @@ def detail(diagnosis: Document | None) -> str:
     best = next((c for c in (diagnosis or {}).get("candidates", []) if c["decision"] == "named"), None)
     if best is None:
         return ""
-    name = spoken([best["effect"]])
+    name = spoken([best.get("words") or best["effect"]])
     return f"{name[0].upper()}{name[1:]}: {amplitude(best)}. {gain_words(best)}".rstrip()
 
 

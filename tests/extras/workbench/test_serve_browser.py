@@ -109,7 +109,7 @@ def test_the_whole_loop(root, page, served):
     page.wait_for_selector("#sensor-T_yoke.chosen")
     page.wait_for_selector("#job:visible, #verdict:visible")  # answered during a calculation of some seconds
     page.wait_for_selector("#verdict")
-    assert "convection at flange" in page.inner_text("#verdict")
+    assert "forced convection by vehicle wind at flange" in page.inner_text("#verdict")
     kept(root, page, "3-diagnosed")
 
     page.click("#report")
@@ -130,7 +130,7 @@ def test_the_whole_loop(root, page, served):
     page.wait_for_function("document.querySelector('#revision').innerText === 'revision 2'")
     same = pytest.approx(start)
     assert eventually(page, lambda: error(page, "town"), lambda e: e == same) == same
-    page.wait_for_selector("#verdict:has-text('convection at flange')")  # the diagnosis of this very model is back
+    page.wait_for_selector("#verdict:has-text('vehicle wind at flange')")  # the diagnosis of this very model is back
     kept(root, page, "5-undone")
 
     page.reload()

@@ -85,7 +85,7 @@ DRAW = {
 SHOWS = {
     "intervals": ["link.a-b", "1.2 (1.1 … 1.3)", "how sure they are"],
     "predicted": ["yoke", "± 1.7 K", "armature", "no sensor", "± 11.4 K", "road-1", "95 % band (°C)"],
-    "curves": ["flange.right", "earlier model", "measured and modelled (°C)", "fan flow mps"],
+    "curves": ["flange.right", "earlier model", "measured and modelled (°C)", "fan flow (m/s)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
     "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import before_last, by_interest, fields, instant_words, readings, temperature_range
+from thermoscope.case_folder.runs import (
+    added_words,
+    before_last,
+    by_interest,
+    fields,
+    instant_words,
+    readings,
+    temperature_range,
+)
 from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json
@@ -72,14 +80,23 @@ def film(
 
 def before(folder: Folder) -> str:
     """The model before its last step, in words."""
-    last = folder.history.last
-    return f"without {last.effect}" if last.action == "add" else "the model before its last step"
+    added = step_words(folder)
+    return f"without {added}" if added else "the model before its last step"
 
 
 def now(folder: Folder) -> str:
     """The model as it is, in words."""
-    last = folder.history.last
-    return f"with {last.effect}" if folder.history.revisions and last.action == "add" else "the model now"
+    added = step_words(folder)
+    return f"with {added}" if added else "the model now"
+
+
+def step_words(folder: Folder) -> str:
+    """What the last step added, as an engineer says it; empty where it added nothing."""
+    from validation.revision.revise import TOGETHER
+
+    if not folder.history.revisions or folder.history.last.action != "add":
+        return ""
+    return added_words(folder.case, folder.history.last.effect.split(TOGETHER))
 
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
