@@ -64,9 +64,9 @@ def memory(pid: int) -> int:
 def table(found: Sequence[Mapping[str, Any]]) -> str:
     lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
     for r in sorted(found, key=lambda r: r["machine"]):
-        found_mesh = f"{r['unknowns']:,} | {r['worst']:.1f} | {r['worst_part']} | {r['states']:,}"
-        used = f"{r['cpu_s']:.0f} | {r['wall_s']:.0f} | {r['memory_GB']:.1f} | {r['exit']}"
-        lines.append(f"| {r['machine']} | {found_mesh} | {used} |")
+        of_mesh = f"{r['unknowns']:,} | {r['worst']:.1f} | {r['worst_part']} | {r['states']:,}"
+        cost = f"{r['cpu_s']:.0f} | {r['wall_s']:.0f} | {r['memory_GB']:.1f} | {r['exit']}"
+        lines.append(f"| {r['machine']} | {of_mesh} | {cost} |")
     return "\n".join(lines)
 
 

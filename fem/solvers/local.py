@@ -47,8 +47,8 @@ def local_solutions(
             fields[part] = np.hstack([near, of_unit_energy(inverse(units[part]), A)])
         return fields
 
-    found = in_two_processes(solved, draws, field.n)
-    return {part: np.hstack([fields[part] for fields in found]) for part in field.blocks}
+    solutions = in_two_processes(solved, draws, field.n)
+    return {part: np.hstack([fields[part] for fields in solutions]) for part in field.blocks}
 
 
 def _unit_loads(field: FieldModel, loads: Floats, part: str) -> Floats:

@@ -103,8 +103,8 @@ def snapshots(
         h, g = recipe.other_films(films, rng), random_coefficients(contacts, recipe.spread, rng)
         points.append((h, g, 0.0, both if recipe.flux_points else loads))
     for factor in recipe.joined_contacts:
-        joined = {name: factor * g for name, g in contacts.items()}
-        points += [(films, joined, shift, loads) for shift in (0.0, *recipe.shifts)]
+        larger = {name: factor * g for name, g in contacts.items()}
+        points += [(films, larger, shift, loads) for shift in (0.0, *recipe.shifts)]
 
     def solved(point: tuple[Mapping[str, float], Mapping[str, float], float, Floats]) -> Floats:
         h, g, shift, heat = point

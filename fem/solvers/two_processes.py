@@ -22,43 +22,43 @@ def in_two_processes(work: Callable[[A], B], items: Sequence[A], unknowns: int) 
     """
     if len(items) < 2 or unknowns < LEAST or not _room(BYTES * unknowns):
         return [work(item) for item in items]
-    turns, given_out = os.pipe()  # a byte is the number of an item: whoever is free reads the next
-    os.write(given_out, bytes(range(len(items))))
-    os.close(given_out)
-    back, results = os.pipe()
+    turns, numbers = os.pipe()  # a byte is the number of an item: whoever is free reads the next
+    os.write(numbers, bytes(range(len(items))))
+    os.close(numbers)
+    back, forth = os.pipe()
     parent, child = os.getpid(), os.fork()
     if child == 0:
         try:
             os.close(back)
-            with os.fdopen(results, "wb") as out:
-                pickle.dump(_taken(work, items, turns, parent), out, protocol=5)
+            with os.fdopen(forth, "wb") as out:
+                pickle.dump(_share(work, items, turns, parent), out, protocol=5)
         except BaseException:  # its parent does what is missing, and meets the same
             os._exit(1)
         os._exit(0)
-    os.close(results)
+    os.close(forth)
     try:
         with os.fdopen(back, "rb") as source:
-            found = {**_taken(work, items, turns, os.getppid()), **_received(source)}
+            results = {**_share(work, items, turns, os.getppid()), **_received(source)}
     finally:
         os.close(turns)
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
-    return [found[k] if k in found else work(item) for k, item in enumerate(items)]
+    return [results[k] if k in results else work(item) for k, item in enumerate(items)]
 
 
-def _taken(work: Callable[[A], B], items: Sequence[A], turns: int, parent: int) -> dict[int, B]:
-    found = {}
+def _share(work: Callable[[A], B], items: Sequence[A], turns: int, parent: int) -> dict[int, B]:
+    results = {}
     while os.getppid() == parent and (turn := os.read(turns, 1)):
-        found[turn[0]] = work(items[turn[0]])
-    return found
+        results[turn[0]] = work(items[turn[0]])
+    return results
 
 
 def _received(source: BinaryIO) -> dict[int, B]:
     try:
-        found: dict[int, B] = pickle.load(source)
+        results: dict[int, B] = pickle.load(source)
     except (EOFError, pickle.UnpicklingError):  # it was killed, or failed
         return {}
-    return found
+    return results
 
 
 def _room(needed: int) -> bool:

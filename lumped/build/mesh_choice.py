@@ -154,9 +154,9 @@ class _Looks:
         self.solve([how])
         return self.rises[how]
 
-    def solve(self, wanted: Iterable[Meshing]) -> None:
+    def solve(self, meshes: Iterable[Meshing]) -> None:
         """Look at those that were not, two at a time where both are small enough."""
-        new = sorted({how for how in wanted if how not in self.rises}, key=lambda how: -self.size(how)[1])
+        new = sorted({how for how in meshes if how not in self.rises}, key=lambda how: -self.size(how)[1])
         large = [how for how in new if self.size(how)[1] > MOST_BESIDE]
         point = self.point  # before processes part
 
@@ -313,8 +313,8 @@ def _other(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> Meshing | N
     return None if halvings.moves else how.along(way, 2.0)
 
 
-def _looked_further(halvings: _Way, finer: bool, moved: Kelvins) -> _Way:
-    return replace(halvings, moves=(*halvings.moves, moved)) if finer else _Way((moved,), 1)
+def _looked_further(halvings: _Way, finer: bool, move: Kelvins) -> _Way:
+    return replace(halvings, moves=(*halvings.moves, move)) if finer else _Way((move,), 1)
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:

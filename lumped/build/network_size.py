@@ -118,9 +118,9 @@ def smallest_network(
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
-    asked = [reduction.random_point(k) for k in range(points_each)]
-    asked += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
-    full = reduction.solved(asked + [reduction.joined_point(factor) for factor in contact_factors])
+    at_points = [reduction.random_point(k) for k in range(points_each)]
+    at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
+    full = reduction.solved(at_points + [reduction.joined_point(factor) for factor in contact_factors])
     guides, points = full[:points_each], full[points_each:]
     table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
