@@ -7,39 +7,48 @@ few of their combinations; here each part is solved for by itself at many more, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
-from fem.solvers.multifrontal import Symbolic, analyse, factorise
+from fem.solvers.multifrontal import analyse, factorise
+from fem.solvers.two_processes import in_two_processes
 
 Floats = NDArray[np.float64]
+Point = tuple[Mapping[str, float], Mapping[str, float]]  # films and contacts (W/m2/K)
 
 
 def local_solutions(
-    field: FieldModel, S: Floats, loads: Floats, points: Iterable[sp.csr_array], width: int, rng: np.random.Generator
+    field: FieldModel, S: Floats, loads: Floats, points: Iterable[Point], width: int, rng: np.random.Generator
 ) -> dict[str, Floats]:
     """part -> (n_part, k) fields of the part, at each point as strong as a whole-machine solution of unit energy.
 
     S (n, n_snapshot) : whole-machine solutions of unit energy; `width` random sums of them are the neighbours' states
     loads (n, n_zone) : 1 W in every zone; those of the part join, and 1 W through each of its faces
-    points : matrices (n, n) of the machine at other coefficients
+    points : films and contacts of the machine at other coefficients
     """
-    solutions = {part: [np.zeros((block.n, 0))] for part, block in field.blocks.items()}
+    draws = [(*point, rng.standard_normal((S.shape[1], width)) / np.sqrt(S.shape[1])) for point in points]
+    if not draws:
+        return {part: np.zeros((block.n, 0)) for part, block in field.blocks.items()}
     units = {part: _unit_loads(field, loads, part) for part in field.blocks}
-    order: dict[str, Symbolic] = {}
-    for K in points:
-        state = S @ (rng.standard_normal((S.shape[1], width)) / np.sqrt(S.shape[1]))
+    pattern = field.stiffness(*draws[0][:2])
+    order = {part: analyse(sp.csr_array(pattern[b.dofs][:, b.dofs]), b.xyz) for part, b in field.blocks.items()}
+
+    def solved(draw: tuple[Mapping[str, float], Mapping[str, float], Floats]) -> dict[str, Floats]:
+        K, state, fields = field.stiffness(*draw[:2]), S @ draw[2], {}
         for part, block in field.blocks.items():
             rows = K[block.dofs]
             A = sp.csr_array(rows[:, block.dofs])
-            order[part] = order.get(part) or analyse(A, block.xyz)
             inverse = factorise(A, order[part])
-            solutions[part] += [inverse(A @ state[block.dofs] - rows @ state), of_unit_energy(inverse(units[part]), A)]
-    return {part: np.hstack(fields) for part, fields in solutions.items()}
+            near = inverse(A @ state[block.dofs] - rows @ state)
+            fields[part] = np.hstack([near, of_unit_energy(inverse(units[part]), A)])
+        return fields
+
+    solutions = in_two_processes(solved, draws, field.n)
+    return {part: np.hstack([fields[part] for fields in solutions]) for part in field.blocks}
 
 
 def _unit_loads(field: FieldModel, loads: Floats, part: str) -> Floats:

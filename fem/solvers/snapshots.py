@@ -94,18 +94,24 @@ def snapshots(
     solver = solver or Solver(field)
     nominal = field.stiffness(films, contacts)
     fluxes = np.column_stack([field.flux(face) for face in field.films])
-    out = [solver.factor(nominal)(np.column_stack([loads, fluxes, *_dipoles(field)]))]
-    out += [solver.factor(nominal, shift)(loads) for shift in recipe.shifts]
-    out += [solver.factor(nominal, shift)(fluxes) for shift in recipe.flux_shifts]
+    both = np.column_stack([loads, fluxes])
+    points = [(films, contacts, 0.0, np.column_stack([both, *_dipoles(field)]))]
+    points += [(films, contacts, shift, loads) for shift in recipe.shifts]
+    points += [(films, contacts, shift, fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
     for _ in range(recipe.random_points):
         h, g = recipe.other_films(films, rng), random_coefficients(contacts, recipe.spread, rng)
-        out.append(
-            solver.factor(field.stiffness(h, g))(np.column_stack([loads, fluxes]) if recipe.flux_points else loads)
-        )
+        points.append((h, g, 0.0, both if recipe.flux_points else loads))
     for factor in recipe.joined_contacts:
-        other = field.stiffness(films, {name: factor * g for name, g in contacts.items()})
-        out += [solver.factor(other, shift)(loads) for shift in (0.0, *recipe.shifts)]
+        larger = {name: factor * g for name, g in contacts.items()}
+        points += [(films, larger, shift, loads) for shift in (0.0, *recipe.shifts)]
+
+    def solved(point: tuple[Mapping[str, float], Mapping[str, float], float, Floats]) -> Floats:
+        h, g, shift, heat = point
+        return solver.factor(field.stiffness(h, g), shift)(heat)
+
+    # Another solver may have threads of its own, which a fork would leave behind.
+    out = solver.each(solved, points) if isinstance(solver, Solver) else [solved(point) for point in points]
     return of_unit_energy(np.column_stack(out), nominal)
 
 
@@ -142,9 +148,7 @@ def isolated_part(
     """part -> (n_part, k) fields of the part by itself at the recipe's local points; none: (n_part, 0)."""
     rng = np.random.default_rng([recipe.seed, 2])
     points = (
-        field.stiffness(
-            random_coefficients(films, recipe.spread, rng), random_coefficients(contacts, recipe.spread, rng)
-        )
+        (random_coefficients(films, recipe.spread, rng), random_coefficients(contacts, recipe.spread, rng))
         for _ in range(recipe.local_points)
     )
     return local_solutions(field, S, loads, points, recipe.local_states, rng)

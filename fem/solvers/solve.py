@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.multifrontal import Factor, Symbolic, analyse, factorise
+from fem.solvers.two_processes import in_two_processes
 from geom.errors import InputError
 
 Floats = NDArray[np.float64]
 Inverse = Callable[[Floats], Floats]
+A = TypeVar("A")
+B = TypeVar("B")
 
 
 class Solve(Protocol):
@@ -81,6 +84,10 @@ class Solver:
     def factor(self, K: sp.csr_array, shift: float = 0.0) -> Factor:
         """Cholesky factor of K + shift M, shift in 1/s."""
         return factorise(sp.csr_array(K + shift * self.field.M) if shift else K, self.symbolic)
+
+    def each(self, work: Callable[[A], B], items: Sequence[A]) -> list[B]:
+        """work(item) of every item, each with a factor of its own, in two processes where there is room."""
+        return in_two_processes(work, items, len(self.symbolic.tree.order))
 
 
 @dataclass(frozen=True)

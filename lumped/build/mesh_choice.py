@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,7 @@ from fem.matrices.assembly import FieldModel
 from fem.matrices.block import renumbered
 from fem.matrices.elements import Elements
 from fem.solvers.linear_losses import linear_losses
+from fem.solvers.two_processes import in_two_processes
 from geom import Machine
 from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
@@ -32,9 +33,9 @@ from lumped.machine.bases import on_every_base
 from lumped.machine.shapes import laminated, wound
 from lumped.model.network import Array
 
-SHARE = 0.5  # of the wish that the mesh may use up: the rest is left to the condensation
+SHARE = 0.6  # of the wish that the mesh may use up: of 5 % the condensation, which costs less, has 2
 LARGEST_SHARE = 0.75  # of a mesh beyond CHEAP, or where nothing finer fits: the condensation can do with a quarter
-CHEAP = 90_000  # unknowns that are condensed within two minutes of a core
+CHEAP = 90_000  # unknowns that are condensed within a minute of two cores
 ORDER = 2.0  # of the means and the hottest points of linear elements; windings, quadratic, converge faster
 SAFETY = 1.25  # Roache's factor where the order is known (1994, J. Fluids Eng. 116, 405)
 UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is assumed: left is what halving moved
@@ -42,6 +43,7 @@ SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothin
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the choice some 3 min of a core
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
+MOST_BESIDE = 180_000  # of two that are solved at once: together 3.5 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
 ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
 IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
@@ -104,7 +106,7 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, IDLE, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, IDLE, ALIKE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
@@ -149,9 +151,21 @@ class _Looks:
 
     def hot(self, how: Meshing) -> Kelvins:
         """Heated part -> its largest rise (K) at the rated point."""
-        if how not in self.rises:
-            self.rises[how] = _hot_spots(self.point, self.ready(how).field)
+        self.solve([how])
         return self.rises[how]
+
+    def solve(self, meshes: Iterable[Meshing]) -> None:
+        """Look at those that were not, two at a time where both are small enough."""
+        new = sorted({how for how in meshes if how not in self.rises}, key=lambda how: -self.size(how)[1])
+        large = [how for how in new if self.size(how)[1] > MOST_BESIDE]
+        point = self.point  # before processes part
+
+        def hot_spots(how: Meshing) -> Kelvins:
+            return _hot_spots(point, self.ready(how).field)
+
+        for group in (*([how] for how in large), new[len(large) :]):
+            hot = in_two_processes(hot_spots, group, max((self.size(how)[1] for how in group), default=0))
+            self.rises.update(zip(group, hot, strict=True))
 
     def lose(self, how: Meshing) -> None:
         """Find out what every hot spot would lose, in the first order, if the elements of a part were linear ones."""
@@ -199,8 +213,12 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
     while True:
-        ways = {way: _looked_further(looks, how, way, halvings) for way, halvings in ways.items()}
-        linear = looks.moved(replace(looks.first, quadratic=how.quadratic), looks.every)
+        first = replace(looks.first, quadratic=how.quadratic)
+        others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
+        looks.solve([how, first, *others.values()])
+        for way, other in others.items():
+            ways[way] = _looked_further(ways[way], other == how.along(way, 0.5), looks.moved(how, other))
+        linear = looks.moved(first, looks.every)
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)
@@ -209,7 +227,7 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
             return MeshChoice(how, percent, *looks.size(how), True)
         plane = max(ways[w].left(worst) for w in IN_PLANE)
         most_left = max(halvings.left(worst) for halvings in ways.values())
-        if linear[worst] > most_left and (part := _part_to_bend(looks, how, worst, most)):
+        if linear[worst] > ALIKE * most_left and (part := _part_to_bend(looks, how, worst, most)):
             how = replace(how, quadratic=(*how.quadratic, part))
         elif (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
@@ -285,14 +303,18 @@ def _linear(machine: Machine) -> list[str]:
     return [part.name for part in machine.parts if not wound(machine, part.name)]
 
 
-def _looked_further(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> _Way:
-    """With one more halving where that tells more and can be solved; where none can be, one coarser instead."""
+def _other(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> Meshing | None:
+    """One halving more where that tells more and can be solved; where none can be, one coarser instead."""
     if not halvings.unsure:
-        return halvings
+        return None
     there = how.along(way, 0.5)
     if looks.size(there)[1] <= MOST_SOLVED or way not in WAYS:  # towards ends there is nothing coarser to look at
-        return replace(halvings, moves=(*halvings.moves, looks.moved(how, there)))
-    return halvings if halvings.moves else _Way((looks.moved(how.along(way, 2.0), how),), 1)
+        return there
+    return None if halvings.moves else how.along(way, 2.0)
+
+
+def _looked_further(halvings: _Way, finer: bool, move: Kelvins) -> _Way:
+    return replace(halvings, moves=(*halvings.moves, move)) if finer else _Way((move,), 1)
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:

@@ -28,6 +28,7 @@ BYTES = 18_500  # per unknown: snapshots, factor and the points that are learned
 SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
 FIRST_AXIAL = 1.5  # thickest layer over the size of a triangle: quadratic elements are as good as two linear ones each
 MISSED = 0.5  # of the wish, asked of the condensation where the mesh has used it up: the table says no in any case
+CONDENSED = 2.0  # percent that the condensation may add at most, whatever the mesh leaves: films and contacts change it
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def accurate_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
 ) -> NetworkSize:
     """Mesh and condensation together within `accuracy` percent of a part's own rise: what the mesh leaves of it, the
-    condensation may use.  size_m : of the triangles of the first mesh that is looked at (m)
+    condensation may use, CONDENSED at most.  size_m : of the triangles of the first mesh that is looked at (m)
 
     say : how large the meshes are and what they need, before they are solved
     """
@@ -84,7 +85,7 @@ def accurate_network(
     if not mesh.met:
         say(f"no finer mesh is condensed: within {accuracy:g} % no network will be, and the exit code is 1")
     left = accuracy - mesh.worst if mesh.met else MISSED * accuracy
-    return replace(smallest_network(machine, left, progress=progress, how=mesh.meshing), mesh=mesh)
+    return replace(smallest_network(machine, min(left, CONDENSED), progress=progress, how=mesh.meshing), mesh=mesh)
 
 
 def needs(unknowns: int) -> str:
@@ -117,9 +118,10 @@ def smallest_network(
     reduction = reduced(ready, recipe, motor_zones(machine))
     cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
     progress("error against number of states")
-    guides = [reduction.random_point(k) for k in range(points_each)]
-    points = [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
-    points += [reduction.joined_point(factor) for factor in contact_factors]
+    at_points = [reduction.random_point(k) for k in range(points_each)]
+    at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
+    full = reduction.solved(at_points + [reduction.joined_point(factor) for factor in contact_factors])
+    guides, points = full[:points_each], full[points_each:]
     table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
     enrichment = None if good else enrich(reduction, cases, limit, rounds, points, guides, tell=progress)

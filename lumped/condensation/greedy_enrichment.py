@@ -97,19 +97,19 @@ def enrich(
     fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
-    learned, first = list(points) or [reduction.nominal_point()], len(points) + len(guides)
+    learned, first = list(points) or reduction.solved([reduction.nominal_point()]), len(points) + len(guides)
     # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
     reduction = reduction.enriched(learned) if points else reduction
     history: list[Round] = []
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, accuracy, weights)
-        new = [reduction.random_point(first + fresh * k + j) for j in range(fresh)]
+        new = reduction.solved([reduction.random_point(first + fresh * k + j) for j in range(fresh)])
         errors = merged([point_error(network, point, cases) for point in new])
         history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
         tell(f"{len(network.states)} states: {errors}")
         if history[-1].met or k == rounds - 1:
             break
-        fuller = [*guides, reduction.extreme_point(first + k)]
+        fuller = [*guides, *reduction.solved([reduction.extreme_point(first + k)])]
         learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
     return Enrichment(reduction, network, dict(weights), tuple(history))
 

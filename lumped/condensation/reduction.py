@@ -36,6 +36,8 @@ from lumped.model.network import Array, Network
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]
 
+Point = tuple[str, Mapping[str, float], Mapping[str, float]]  # name, films and contacts (W/m2/K)
+
 
 @dataclass(frozen=True)
 class FullPoint:
@@ -94,34 +96,40 @@ class Reduction:
         whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
         return network_in(self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name)
 
-    def at(self, name: str, films: Mapping[str, float], contacts: Mapping[str, float]) -> FullPoint:
-        """Solve the whole field at other coefficients."""
-        factor = self.solver.factor(self.field.stiffness(films, contacts))
-        heated = film_columns(self.field, films, self.washing)[0]
-        return FullPoint(name, films, contacts, factor(np.column_stack([*self.loads.values(), heated])))
+    def solved(self, points: Sequence[Point]) -> list[FullPoint]:
+        """The whole field at other coefficients."""
+        loads = np.column_stack([*self.loads.values()])
 
-    def nominal_point(self) -> FullPoint:
-        return self.at("nominal", self.films, self.contacts)
+        def full(point: Point) -> FullPoint:
+            name, films, contacts = point
+            factor = self.solver.factor(self.field.stiffness(films, contacts))
+            heated = film_columns(self.field, films, self.washing)[0]
+            return FullPoint(name, films, contacts, factor(np.column_stack([loads, heated])))
 
-    def random_point(self, seed: int) -> FullPoint:
+        return self.solver.each(full, points)
+
+    def nominal_point(self) -> Point:
+        return "nominal", self.films, self.contacts
+
+    def random_point(self, seed: int) -> Point:
         """Every film and contact times spread ** U(-1, 1)."""
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
-        return self.at(
+        return (
             f"random {seed}",
             random_coefficients(self.films, spread, rng),
             random_coefficients(self.contacts, spread, rng),
         )
 
-    def joined_point(self, factor: float) -> FullPoint:
+    def joined_point(self, factor: float) -> Point:
         """All contacts times a factor."""
-        return self.at(f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()})
+        return f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()}
 
-    def extreme_point(self, seed: int) -> FullPoint:
+    def extreme_point(self, seed: int) -> Point:
         """A third of the films x10, a third of the contacts x5 and a third x0.2: what one change alone can reach."""
         rng = np.random.default_rng([self.recipe.seed, seed, 1])
         films = {face: h * rng.choice([1.0, 1.0, 10.0]) for face, h in self.films.items()}
         contacts = {name: g * rng.choice([1.0, 5.0, 0.2]) for name, g in self.contacts.items()}
-        return self.at(f"extreme {seed}", films, contacts)
+        return f"extreme {seed}", films, contacts
 
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""

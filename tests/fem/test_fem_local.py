@@ -34,7 +34,7 @@ def films(field):
 def test_between_neighbours_of_a_solution_a_part_without_loss_is_that_solution(field, films):
     K = field.stiffness(films, CONTACTS)
     T = Solver(field).factor(K)(field.load("core"))[:, None]
-    found = local_solutions(field, T, np.zeros((field.n, 0)), [K], 1, np.random.default_rng(0))["yoke"]
+    found = local_solutions(field, T, np.zeros((field.n, 0)), [(films, CONTACTS)], 1, np.random.default_rng(0))["yoke"]
     drawn_factor = np.random.default_rng(0).standard_normal()
     assert found[:, 0] == pytest.approx(drawn_factor * T[field.block("yoke").dofs, 0], rel=1e-9)
 
@@ -43,7 +43,7 @@ def test_every_field_of_own_loads_has_unit_energy(field, films):
     K = field.stiffness(films, CONTACTS)
     S = of_unit_energy(Solver(field).factor(K)(np.column_stack([field.load("core"), field.load("yoke")])), K)
     loads = np.column_stack([field.load("core"), field.load("yoke")])
-    found = local_solutions(field, S, loads, [K], 3, np.random.default_rng(0))["yoke"][:, 3:]
+    found = local_solutions(field, S, loads, [(films, CONTACTS)], 3, np.random.default_rng(0))["yoke"][:, 3:]
     dofs = field.block("yoke").dofs
     faces = [face for face, film in field.films.items() if film.trace.part == "yoke"]
     assert found.shape[1] == 1 + len(faces)

@@ -66,7 +66,7 @@ def cases(found):
 
 def test_error_falls_with_the_number_of_states(field):
     found = reduction(field)
-    points = [found.nominal_point(), found.random_point(0)]
+    points = found.solved([found.nominal_point(), found.random_point(0)])
     sizes = [Size.of(found, n, points, cases(found), Accuracy()) for n in (0, 10, 25)]
     assert len(sizes[0].network.states) == len(field.blocks) + 2
     assert sizes[0].nominal.mean > sizes[1].nominal.mean > sizes[2].nominal.mean
@@ -79,7 +79,7 @@ def test_guard_learns_until_unseen_points_are_met(field):
     learned = enrich(found, cases(found), wish, rounds=4)
     assert not learned.rounds[0].met
     assert learned.met
-    unseen = found.random_point(99)
+    (unseen,) = found.solved([found.random_point(99)])
     own = point_errors(learned.network, unseen.films, unseen.contacts, unseen.X, cases(found))
     before = point_errors(found.network(), unseen.films, unseen.contacts, unseen.X, cases(found))
     assert excess(own, wish) < 0.2 * excess(before, wish)
@@ -116,7 +116,7 @@ def test_a_changed_coefficient_costs_no_solve(mesh, field, tmp_path, monkeypatch
     assert contacts == change.get("contacts", CONTACTS)
     assert all(again.films[face] == h for face, h in change.get("changed", {}).items())
     with pytest.raises(TypeError):  # the counter is no factor
-        again.nominal_point()
+        again.solved([again.nominal_point()])
     assert solves
 
 
@@ -136,7 +136,7 @@ def test_shapes_of_another_centre_still_reproduce_the_field(field, tmp_path):
     """Found around one contact, used at another: same mesh, both contacts inside the spread."""
     reduction(field, tmp_path, random_points=4)
     moved = reduction(field, tmp_path, {"coil|core": 900.0, "coil|yoke": 800.0}, random_points=4)
-    point = moved.nominal_point()
+    (point,) = moved.solved([moved.nominal_point()])
     found = point_errors(moved.network(tolerance=0.003), point.films, point.contacts, point.X, cases(moved))
     assert found.mean < 0.2
     assert max(found.hot, found.point) < 2.0

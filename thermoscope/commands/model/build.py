@@ -13,7 +13,7 @@ from geom.plugins import plugins
 from geom.table import Table
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.commands.model import crosscheck
-from thermoscope.console.options import Accuracy, Json, Machine, Out
+from thermoscope.console.options import ACCURACY, Accuracy, Json, Machine, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 NETWORKS = {0: "means only", None: "learned", "mesh": "the mesh"}  # rows of the table that no number of states names
 
 
-def build(machine: Machine, out: Out = None, target: Json = None, accuracy: Accuracy = 2.0) -> int:
+def build(machine: Machine, out: Out = None, target: Json = None, accuracy: Accuracy = ACCURACY) -> int:
     """Solids (STEP, STL, GLB), mesh and the smallest network that is accurate enough. Exit code 1 if none is."""
     return build_machine(machine, out, target, accuracy)
 

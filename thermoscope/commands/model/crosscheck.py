@@ -13,7 +13,7 @@ from geom.escapes import csv_lines
 from geom.storage import write_whole
 from geom.table import Table
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.console.options import Accuracy, Json, Machine, Out
+from thermoscope.console.options import ACCURACY, Accuracy, Json, Machine, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, plain, progress
 
@@ -26,7 +26,7 @@ HOT = 200.0  # degC, what insulation bears
 MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 
-def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = 2.0, target: Json = None) -> int:
+def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = ACCURACY, target: Json = None) -> int:
     """Where network and field disagree, which link is responsible, and the hand formula beside the field's value."""
     from lumped.build.network_size import accurate_network
 
