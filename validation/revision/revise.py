@@ -28,6 +28,7 @@ from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.input_terms import law_words
 from validation.effects.time_window import checked, lasts
+from validation.inference.repeated_events import repeated_events
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
     Check,
@@ -235,7 +236,8 @@ def _revised(
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
     new = replace(new, intervals={p.name: p.ci95 for p in rows})
-    why = "; ".join([why, *law_words(effects, fits[-1].network, new.values, ci95)])
+    again = repeated_events(replace(case, model=new)) if action == "add" and accepted else ()
+    why = "; ".join([why, *(x.sentence for x in again), *law_words(effects, fits[-1].network, new.values, ci95)])
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
 
