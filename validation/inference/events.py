@@ -26,8 +26,9 @@ from measured.sensors.blocks import groups
 from validation.calibration.calibrate import Fit
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
-from validation.effects.during import During, gated
-from validation.effects.time_window import Event, Span, lasts
+from validation.effects.build import Shaped
+from validation.effects.during import During
+from validation.effects.time_window import Event, Span, TimeWindow, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
 from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
@@ -325,8 +326,8 @@ def with_condition(network: Network, old: str, new: str) -> Network:
     """The network with what held while one condition holds while another does in its place."""
 
     def changed(law: Law) -> Law:
-        if gated(law) and law.shape.name == old:  # type: ignore[attr-defined]
-            return replace(law, shape=replace(law.shape, name=new))  # type: ignore[attr-defined]
+        if isinstance(law, Shaped) and isinstance(law.shape, TimeWindow) and law.shape.name == old:
+            return replace(law, shape=replace(law.shape, name=new))
         return replace(law, base=changed(law.base)) if isinstance(law, Wrapped) else law
 
     def instead(x: Any) -> Any:

@@ -28,7 +28,6 @@ from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.input_terms import law_words
 from validation.effects.time_window import checked, lasts
-from validation.inference.repeated_events import repeated_events
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
     Check,
@@ -44,6 +43,7 @@ from validation.revision.acceptance import (
     squares,
     telling_tests,
 )
+from validation.revision.repeated_events import repeated_events
 from validation.tables import revision_tables
 
 Progress = Callable[[str], None]
@@ -322,12 +322,12 @@ def _as_read(case: Case, changes: Sequence[Change]) -> tuple[float, float, int]:
     return squares(segments(standing(case), tests, physical(case)), Fold((), tests))
 
 
-def _no_change(found: Mapping[str, Sequence[tuple[float, float, int]]], sigma: float) -> Check:
+def _no_change(sums: Mapping[str, Sequence[tuple[float, float, int]]], sigma: float) -> Check:
     """Of what a guess of no change predicts better than a fit by most, or nearly does.
 
-    found : what was predicted -> sums of squared errors of the fit and of that guess (K2), of how many
+    sums : what was predicted -> sums of squared errors of the fit and of that guess (K2), of how many
     """
-    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(n for *_, n in rows)) for what, rows in found.items()}
+    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(n for *_, n in rows)) for what, rows in sums.items()}
     what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
     words = f"{what}: {error:.2f} K where a guess of no change leaves {none:.2f} K"
     return Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words)

@@ -106,7 +106,7 @@ def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
     """Events of the model that are found in held-out tests, too; a model without any is spared what looks for them."""
     if not any(IN in e.place for e in case.model.effects):
         return []
-    from validation.inference.repeated_events import repeated_events
+    from validation.revision.repeated_events import repeated_events
 
     return [x.document() for x in repeated_events(case)]
 

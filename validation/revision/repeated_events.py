@@ -23,13 +23,13 @@ from validation.effects.during import During
 from validation.effects.time_window import AND, Event, Span, share
 from validation.inference.events import closest_span, finer_blocks, sample_step, with_condition
 from validation.inference.hypotheses import LENGTHS, stretch_count
-from validation.inference.say import LESS
 from validation.noise import first_noise
 from validation.parameters.unknowns import effects_of, standing
 
 Array = NDArray[np.float64]
 MOST_KNOTS = 96  # instants at which it may begin at first: each is a column of one run
-TRIED = 4  # stretches that tangents like best are run
+FIRST_RUNS = 4  # stretches that tangents like best are run
+LESS = 0.7  # of the error outside the stretch: what the event must bring it to, to be the explanation
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class RepeatedEvent:
         )
 
     def document(self) -> dict:
-        found = {"test": self.test, **self.event.document(), "words": self.sentence}
-        return found | {"rmse_K": self.rmse_K, "elsewhere_rmse_K": self.elsewhere_K}
+        errors = {"rmse_K": self.rmse_K, "elsewhere_rmse_K": self.elsewhere_K}
+        return {"test": self.test, **self.event.document(), "words": self.sentence, **errors}
 
 
 def repeated_events(case: Case) -> tuple[RepeatedEvent, ...]:
@@ -164,6 +164,6 @@ def _first_spans(
     gain = part * pull - 0.5 * part**2 * felt
     free = (j > i) & np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
     free &= short | (np.abs(length - usual) < LENGTHS * usual + spacing)
-    order = [k for k in np.argsort(-np.where(free, gain, -np.inf)) if free[k] and gain[k] > 0.0][:TRIED]
+    order = [k for k in np.argsort(-np.where(free, gain, -np.inf)) if free[k] and gain[k] > 0.0][:FIRST_RUNS]
     middle, half = 0.5 * (knots[i] + knots[j]), 0.5 * np.where(short, usual, length)
     return float(spacing), [(float(middle[k] - half[k]), float(middle[k] + half[k])) for k in order]

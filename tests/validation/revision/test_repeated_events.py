@@ -8,7 +8,7 @@ from two_bodies import bench
 
 from measured.case import AddedEffect
 from validation.comparison.compare import errors
-from validation.inference.repeated_events import repeated_events
+from validation.revision.repeated_events import repeated_events
 from validation.revision.revise import add
 
 NAME = "convection.constant@body in noon:2000-2600s"
