@@ -19,14 +19,16 @@ from scipy.special import logsumexp
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
+from lumped.transfer.laws import Law, Wrapped
 from measured.case import Test
 from measured.doubt import USUAL
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import Fit
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
-from validation.effects.during import During, gated
-from validation.effects.time_window import Event, Span, lasts
+from validation.effects.build import Shaped
+from validation.effects.during import During
+from validation.effects.time_window import Event, Span, TimeWindow, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
 from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
@@ -125,16 +127,9 @@ def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values
 
     values : of what is not calibrated
     """
-    n, step = test.time.size, sample_step(test)
-    start, fine = groups(n), max(round(next_reach(reach_s) / step), 1)
-    if test.blocks is not None or 2 * fine > start[min(1, start.size - 1)]:
+    near = finer_blocks(test, span, reach_s)
+    if near is test:
         return fit, test
-    first = np.zeros(n, bool)
-    first[start] = True
-    for at in span:
-        low, high = np.searchsorted(test.time, [at - reach_s, at + reach_s])
-        first[low:high:fine] = True
-    near = replace(test, blocks=np.flatnonzero(first))
     state = {**parameter_values(fit.network, values), **fit.values}
     new = {s.channel: s for s in segments(fit.network, [near], state, fit.unknowns.parameters)}
     old = {s.channel: s for s in fit.parts if s.test == test.name}
@@ -147,6 +142,20 @@ def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values
         error = replace(error, columns={**error.columns, **columns})
     parts = tuple(new.get(s.channel, s) if s.test == test.name else s for s in fit.parts)
     return replace(fit, parts=parts, error=error), near
+
+
+def finer_blocks(test: Test, span: Span, reach_s: float) -> Test:
+    """The test with its readings there in such blocks; itself, where they are short enough."""
+    n, step = test.time.size, sample_step(test)
+    start, fine = groups(n), max(round(next_reach(reach_s) / step), 1)
+    if test.blocks is not None or 2 * fine > start[min(1, start.size - 1)]:
+        return test
+    first = np.zeros(n, bool)
+    first[start] = True
+    for at in span:
+        low, high = np.searchsorted(test.time, [at - reach_s, at + reach_s])
+        first[low:high:fine] = True
+    return replace(test, blocks=np.flatnonzero(first))
 
 
 def pulse_scores(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[Array, Array]:
@@ -269,22 +278,39 @@ def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach
 
 
 def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
-    """Begin and end of the i-th of an event's spans in a test that fit best: first some instants around them, then
-    others around the best of these, and so on to every sample.
+    """Begin and end of the i-th of an event's spans in a test that fit best."""
+    others = [*spans[:i], *spans[i + 1 :]]
 
-    Each is run: what is open and has cooled a part down to the room shows no tangent of being open longer.
-    """
-    best, others = spans[i], [*spans[:i], *spans[i + 1 :]]
-    while reach_s >= 0.5 * sample_step(test):
+    def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, results = Misfit.create(closer, near, effect.name), dict[Span, float]()
+        misfit = Misfit.create(closer, near, effect.name)
 
-        def misfit_of(span: Span, results: dict[Span, float] = results, misfit: Misfit = misfit) -> float:
+        def of(span: Span) -> float:
+            now = Event.of({test.name: [*others, span]}).name
+            return misfit.of(with_condition(fit.network, effect.condition, now))
+
+        return of
+
+    return closest_span(test, spans[i], reach_s, misfits)
+
+
+def closest_span(
+    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]]
+) -> Span:
+    """Begin and end that fit best: first some instants around them, then others around the best of these, and so on to
+    every sample.
+
+    misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
+        a part down to the room shows no tangent of being open longer
+    """
+    while reach_s >= 0.5 * sample_step(test):
+        misfit, results = misfits(best, reach_s), dict[Span, float]()
+
+        def misfit_of(
+            span: Span, results: dict[Span, float] = results, misfit: Callable[[Span], float] = misfit
+        ) -> float:
             if span not in results:
-                now = Event.of({test.name: [*others, span]}).name
-                results[span] = (
-                    misfit.of(with_condition(fit.network, effect.condition, now)) if span[0] < span[1] else np.inf
-                )
+                results[span] = misfit(span) if span[0] < span[1] else np.inf
             return results[span]
 
         for moves in DIRECTIONS * 2:
@@ -299,10 +325,13 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 def with_condition(network: Network, old: str, new: str) -> Network:
     """The network with what held while one condition holds while another does in its place."""
 
+    def changed(law: Law) -> Law:
+        if isinstance(law, Shaped) and isinstance(law.shape, TimeWindow) and law.shape.name == old:
+            return replace(law, shape=replace(law.shape, name=new))
+        return replace(law, base=changed(law.base)) if isinstance(law, Wrapped) else law
+
     def instead(x: Any) -> Any:
-        if not gated(x.law) or x.law.shape.name != old:
-            return x
-        return replace(x, law=replace(x.law, shape=replace(x.law.shape, name=new)))
+        return x if (law := changed(x.law)) == x.law else replace(x, law=law)
 
     return replace(network, links=tuple(map(instead, network.links)), sources=tuple(map(instead, network.sources)))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 
@@ -22,7 +22,7 @@ from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
-from validation.comparison.compare import Comparison, errors
+from validation.comparison.compare import Comparison, errors, physical
 from validation.comparison.linearisation import segments
 from validation.effects import Effect, effect
 from validation.effects.during import During
@@ -31,6 +31,7 @@ from validation.effects.time_window import checked, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
     Check,
+    Fold,
     FoldPrediction,
     bound_check,
     failures,
@@ -42,6 +43,7 @@ from validation.revision.acceptance import (
     squares,
     telling_tests,
 )
+from validation.revision.repeated_events import repeated_events
 from validation.tables import revision_tables
 
 Progress = Callable[[str], None]
@@ -234,7 +236,8 @@ def _revised(
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
     effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
     new = replace(new, intervals={p.name: p.ci95 for p in rows})
-    why = "; ".join([why, *law_words(effects, fits[-1].network, new.values, ci95)])
+    again = repeated_events(replace(case, model=new)) if action == "add" and accepted else ()
+    why = "; ".join([why, *(x.sentence for x in again), *law_words(effects, fits[-1].network, new.values, ci95)])
     converged = all(fit.converged for fit in fits)
     return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
 
@@ -277,37 +280,57 @@ def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
 
 
 def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> tuple[Check, ...]:
-    """Does a calibration lower the error of its own tests, and leave others as well predicted as they were before?
+    """Does a calibration lower the error of its own tests, leave others as well predicted as they were before, and
+    predict none worse than a guess of no change does?
 
-    The others are the tests that a fit may use and this one did not, and each of its own left out in turn, if the
-    model as it stood had not seen it either.
+    The others are the tests that a fit may use and this one did not, and each of its own left out in turn; before and
+    after are compared of those that the model as it stood had not seen either.
     """
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
-    for fold in folds(fitted, ()):
+    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, ())]
+    for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)
-            square += np.array([was, fold_prediction(fit, fold, values).square_K2])
+            square += np.array([was, now.square_K2])
             count += n
-    mine = {t.name for t in fitted} | previous
-    others = [c for c in changes if c.role in TRAINING and c.name not in mine and isfinite(c.before)]
+    changed = [c for c in changes if c.role in TRAINING and isfinite(c.before)]
+    mine = [c for c in changed if c.name in {t.name for t in fitted}]
+    unseen = [c for c in changed if c not in mine and c.name not in previous]
+    groups = {kind: some for kind, some in (("unseen", unseen), (FITTED, mine)) if some}
     pairs = {"left out": np.sqrt(square / count)} if count else {}
-    if others:
-        pairs["unseen"] = np.array([mean_square(others, "before"), mean_square(others, "after")])
+    pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
-    mine_too = [c for c in changes if c.name in {t.name for t in fitted} and isfinite(c.before)]
-    if mine_too:
-        pairs[FITTED] = np.array([mean_square(mine_too, "before"), mean_square(mine_too, "after")])
     which = {
         "left out": "each of its tests predicted from the rest",
-        "unseen": ", ".join(c.name for c in others),
+        "unseen": ", ".join(c.name for c in unseen),
         FITTED: "the tests it was fitted to",
     }
-    return tuple(
+    checks = [
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()
-    )
+    ]
+    sums = {which["left out"]: [(now.square_K2, now.no_change_K2, now.count) for _, now in blind]}
+    sums |= {which[kind]: [_as_read(replace(case, model=new), some)] for kind, some in groups.items()}
+    return (*checks, _no_change(sums, sigma))
+
+
+def _as_read(case: Case, changes: Sequence[Change]) -> tuple[float, float, int]:
+    """Sum of squared errors (K2) of some tests, sensors as they read; the same where nothing changes; of how many."""
+    tests = tuple(t for t in case.usable if t.name in {c.name for c in changes})
+    return squares(segments(standing(case), tests, physical(case)), Fold((), tests))
+
+
+def _no_change(sums: Mapping[str, Sequence[tuple[float, float, int]]], sigma: float) -> Check:
+    """Of what a guess of no change predicts better than a fit by most, or nearly does.
+
+    sums : what was predicted -> sums of squared errors of the fit and of that guess (K2), of how many
+    """
+    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(n for *_, n in rows)) for what, rows in sums.items()}
+    what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
+    words = f"{what}: {error:.2f} K where a guess of no change leaves {none:.2f} K"
+    return Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words)
 
 
 def _plain(tests: Sequence[Test]) -> list[Test]:

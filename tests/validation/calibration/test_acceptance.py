@@ -109,6 +109,22 @@ def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
     assert done.why.startswith("kept for the fitted tests only: usual: ")
 
 
+def test_a_calibration_that_predicts_worse_than_no_change_is_said_so():
+    """A fifth of the declared loss, and a film that may at most double: 20 K off before, 7.5 after, where the readings
+    themselves rise by 5 K."""
+    film = replace(FILM, low=0.5, high=2.0)
+    done = calibrate(Case("one", Model(one_node(film)), (measured("one", loss=0.2), measured("two", loss=0.2))))
+    (check,) = [c for c in done.checks if not c.passed]
+    rise = measured(loss=0.2).channels[0].y - 20.0
+    assert check.check == "no change"
+    assert check.limit == pytest.approx(np.sqrt(np.mean(rise**2)), rel=0.01)
+    assert check.value == pytest.approx(done.tests[0].after, rel=0.01)
+    assert (done.accepted, done.worth_keeping) == (False, True)
+    assert done.why.startswith(
+        f"kept for the fitted tests only: the tests it was fitted to: {check.value:.2f} K where "
+    )
+
+
 def test_the_hold_out_has_no_say():
     """The same words whatever the held-out test reads, but for the sentence about it."""
 

@@ -17,9 +17,11 @@ from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.files import STOPPED
 from validation.comparison.uncertainty import RULE
+from validation.effects.time_window import IN
 from validation.tables import comparison_tables, contradiction_table, sensors_table
 
 if TYPE_CHECKING:
+    from measured.case import Case as MeasuredCase
     from thermoscope.case_folder.folder import Folder
     from validation.comparison.compare import Comparison
 
@@ -91,12 +93,22 @@ def compared(
     return result, {
         **result.document(),
         "strained": strain_words(folder.case),
+        "repeated_events": repeated(folder.case),
         **more,
         "error_budget": documents(budgets),
         **sampling(folder),
         **bands,
         **yardstick_document(folder.yardstick, result, folder.case),
     }
+
+
+def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
+    """Events of the model that are found in held-out tests, too; a model without any is spared what looks for them."""
+    if not any(IN in e.place for e in case.model.effects):
+        return []
+    from validation.revision.repeated_events import repeated_events
+
+    return [x.document() for x in repeated_events(case)]
 
 
 def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "") -> Summary:
@@ -111,6 +123,7 @@ def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "
     first, *rest = comparison_tables(document)
     parts = [
         f"{plain['sentence']} {lacking_words(document)}".strip(),
+        *(f"Again: {x['words']}." for x in document.get("repeated_events", ())),
         *(_reasons(document) if "patterns" in document else []),
         sensors_table("Over: error is measured - model", tests, "over"),
         first,
