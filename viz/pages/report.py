@@ -189,7 +189,7 @@ def _values(r: Report) -> str:
     fixed = [p for p in r.parameters if p.get("identified", True) or "@" in p["name"]]
     model = [p for p in fixed if not p.get("of_measurement")]
     groups = {
-        "corrections of readings, clocks and starts": [p for p in fixed if p.get("of_measurement")],
+        "values of readings, clocks and starts": [p for p in fixed if p.get("of_measurement")],
         "values that the data do not fix": [p for p in r.parameters if p not in fixed],
     }
     priors = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
