@@ -166,6 +166,7 @@ from measured.importing.draft import (
 )
 from measured.importing.case_files import imported_table as imported_table, read_timed as read_timed
 from measured.importing.guess import assigned as assigned, guesses as guesses
+from measured.importing.source import BINARY as BINARY
 from measured.importing.stream import Stream as Stream
 from measured.importing.target import Target as Target, target_of as target_of
 from measured.recordings.data_table import (

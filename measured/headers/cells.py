@@ -43,6 +43,7 @@ OTHER = frozenset(VOCABULARY["other_units"]["all"].split())
 DEGREES = re.compile(
     r"(?:deg(?:ree)?s?|grad|grd|gr|â?[°º˚⁰*'’o]|\?|\ufffd|&deg;)?\.?_?(?:(c)(?:el(?:sius)?)?|(f)(?:ahrenheit)?|(k)(?:elvin)?)°?|(℃)|(℉)"
 )
+RELATIVE = re.compile(r"(?:%|percent|pct)_?(?:of|i|n|m|p|fla|load|rated|max|fs)[\w.()]*")  # % of nominal, %In, % load
 
 
 def number(cell: object) -> float:
@@ -131,7 +132,7 @@ def unit_of(text: str) -> str:
     if match := DEGREES.fullmatch(plain):
         c, _, k, celsius, _ = match.groups()
         return "degC" if c or celsius else "K" if k else "degF"
-    return SPELLED.get(plain, "")
+    return "%" if RELATIVE.fullmatch(plain) else SPELLED.get(plain) or SPELLED.get(re.sub("[.*·⋅]", "", plain), "")
 
 
 def is_unit(text: str) -> bool:
@@ -164,7 +165,12 @@ def split_unit(header: str) -> tuple[str, str]:
         return before[2], unit_of(before[1]) or before[1]
     if (inner := INNER.match(header)) and is_unit(inner[2]):
         return f"{inner[1]} {SERIAL.sub('', inner[3])}", unit_of(inner[2]) or inner[2]
-    if (last := TRAILING.match(header)) and last[1] and _surely(last[2]) and last[1].count("(") == last[1].count(")"):
+    if (
+        (last := TRAILING.match(header))
+        and last[1]
+        and _surely(last[2])
+        and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
+    ):
         return last[1].strip(), unit_of(last[2])
     return header.strip(), ""
 

@@ -171,7 +171,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
             settings = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
             if (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
                 continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5
-            while i and len(rows[i - 1]) == len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
+            while i and len(rows[i - 1]) >= len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 i -= 1  # a remark behind the readings of a first row
             return i
     raise InputError("fewer than three rows of readings: it is no record", where, "at least 3 rows of numbers")

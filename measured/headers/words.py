@@ -21,9 +21,22 @@ def _words(text: str) -> frozenset[str]:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER = (
+SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, MEAN = (
     _words(VOCABULARY["words"][name])
-    for name in ("setpoint", "read", "modelled", "inlet", "nothing", "difference", "clock", "loss", "outer")
+    for name in (
+        "setpoint",
+        "read",
+        "modelled",
+        "inlet",
+        "nothing",
+        "difference",
+        "clock",
+        "loss",
+        "outer",
+        "channels",
+        "extreme",
+        "mean",
+    )
 )
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads

@@ -20,10 +20,10 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
-from measured.importing.clock import Clock, clock_of, in_time_order
+from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
-from measured.importing.source import Source, read_source
+from measured.importing.source import Source, read_source, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
@@ -112,11 +112,13 @@ def _file(draft: Draft, i: int) -> str:
 
 
 def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock]:
-    """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock
+    """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock"""
+    return with_clock(read_source(file), period_s)
 
-    InputError for times that run back, and for more than a year.
-    """
-    source = read_source(file)
+
+def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:
+    """With its clock, as read_timed.  InputError for times that run back, and for more than a year."""
+    source = on_one_clock(source)
     try:
         clock = clock_of(source, period_s)
     except InputError:
@@ -124,7 +126,8 @@ def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock
         clock = clock_of(source, period_s)
     span = float(np.nanmax(clock.seconds) - np.nanmin(clock.seconds))
     if span > LONGEST_S:
-        raise InputError(f"its rows span {span:.3g} s", str(file), "at most a year: the clock in seconds, or --period")
+        what = f"its rows span {span:.3g} s"
+        raise InputError(what, str(source.file), "at most a year: the clock in seconds, or --period")
     return source, clock
 
 
@@ -138,12 +141,13 @@ def readings(source: Source, clock: Clock) -> dict[str, NDArray[np.float64]]:
     return {TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}}
 
 
-def imported_table(file: Path) -> DataTable:
+def imported_table(file: Path, whole: DataTable | None = None) -> DataTable:
     """A recorder's own file as the tests of a case have it: time_s, and columns of numbers under their names.
 
-    InputError where nothing in it says how far its rows are apart.
+    whole : what read_recording gave of it, where it has been read.  InputError where nothing in it says how far its
+    rows are apart.
     """
-    source, clock = read_timed(file)
+    source, clock = with_clock(source_of_recording(file, whole) if whole else read_source(file))
     clock.check(file)
     doubt = (f"{file.name}: {clock.doubt}",) if clock.doubt else ()
     return DataTable.of(readings(source, clock).items(), file, notes=doubt)

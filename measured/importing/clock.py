@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +17,7 @@ from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
 from measured.headers.words import CLOCKS, VOCABULARY, is_time, tokens
 from measured.importing.source import BINARY, UNNAMED, Source
-from measured.recordings.formats import EPOCH, TIME
+from measured.recordings.formats import EPOCH, TIME, joined
 from measured.recordings.units import QUANTITIES
 
 Array = NDArray[np.float64]
@@ -97,6 +98,39 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
         start = source.start if clock is None else clock.start
         return Clock(seconds, start, columns, f"{still}: rows {step:g} s apart", doubt, bool(doubt))
     return checked(clock, source)
+
+
+def on_one_clock(source: Source) -> Source:
+    """With every reading at its own instant where each signal stands behind a clock of its own, and a note; to the end
+    of the one that ends first.
+
+    As it is where the clocks are one, or begin apart: those are two clocks of one row.
+    """
+    names = list(source.cells)
+    at = [i for i, name in enumerate(names) if is_second_clock(source, name)]
+    groups = [names[a:b] for a, b in itertools.pairwise([*at, len(names)])]
+    if len(groups) < 2 or at[0] or any(len(group) < 2 for group in groups):
+        return source
+    clocks = [_guessed_clock(replace(source, cells={name: source.cells[name] for name in group})) for group in groups]
+    seconds = [c.seconds + (c.start or 0.0) for c in clocks if c is not None]
+    begins = [s[np.isfinite(s)][:2] for s in seconds]
+    if len(begins) < len(groups) or any(b.size < 2 for b in begins):
+        return source
+    step = max(float(b[1] - b[0]) for b in begins)
+    one = all(np.allclose(s, seconds[0], rtol=0.0, atol=0.5 * step, equal_nan=True) for s in seconds)
+    if one or any(abs(b[0] - begins[0][0]) > 2 * step for b in begins):
+        return source
+    end = min(float(np.nanmax(s)) for s in seconds)
+    signals = [
+        (name, t[(good := t <= end)], source.numbers(name)[good])
+        for group, t in zip(groups, seconds, strict=True)
+        for name in group[1:]
+        if source.is_numeric(name)
+    ]
+    note = f"{source.file.name}: each of {len(groups)} signals has a clock of its own; it ends with the first of them"
+    units, labels = {**source.units, TIME: "s"}, {**source.labels, TIME: TIME}
+    cells = {str(name): readings for name, readings in joined(signals)}
+    return replace(source, cells=cells, units=units, labels=labels, notes=(*source.notes, note), values={})
 
 
 def in_time_order(source: Source) -> Source:

@@ -15,8 +15,10 @@ from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import unit_of
 from measured.headers.words import (
     DIFFERENCE,
+    EXTREME,
     INLET,
     LETTERED,
+    MEAN,
     MODELLED,
     NOTHING,
     PATH,
@@ -59,6 +61,10 @@ FIRST = (
 ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
+ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
+NUMBERED = "place by its number only"
+UNKNOWN = "unknown"
+RELATIVE = "relative to a nominal"
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -99,7 +105,15 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 
 
 def _read(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the temperatures of parts that a model made, where others were read."""
+    """Without the temperatures of parts that a model made, and extremes, where others were read."""
+    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
+    means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
+    every = [
+        g.without("an extreme beside the reading")
+        if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
+        else g
+        for g in every
+    ]
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])} and roles_of(label)}
     if len(models) == len(hot):
@@ -116,13 +130,16 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
+    values = source.numbers(column)
+    worded = unit_text or "temperature" in quantities_of(label)
+    if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
+        return Guess(column, "", doubt="counts the rows")
     unit, assumed = _unit(source, column, quantity, unit)
-    if not unit_text and (match := FOREIGN.search(label)) and quantity != "temperature":
-        assumed = f"unit '{match[1]}' unknown: {unit} assumed"
+    if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
+        assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
     if quantity not in SWITCHED and source.is_switch(column):
         return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
-    values = source.numbers(column)
     codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
     if quantity != "temperature" and codes.size:
         base = replace(base, doubt=f"is {codes[0]:g} a reading, or a logger's code?")
@@ -203,6 +220,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     both = [q for q in by_name if q in of_unit]
     if unit == "1" and not both:
         return "", "", ""  # a state or a counter as well as a share
+    if unit == "%" and by_name and not {"share", "temperature"} & {*by_name}:
+        return "share", "unit", f"{RELATIVE} {by_name[0].replace('_', ' ')} that is not given: a share"
     if of_unit:
         unsure = len(of_unit) > 1 and not both
         return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""
@@ -262,7 +281,7 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
         return base.without("no place of the model fits its name")
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
-    doubt = f"or {other}" if other else "place by its number only" if weak else base.doubt
+    doubt = f"or {other}" if other else NUMBERED if weak else base.doubt
     return replace(base, place=place, doubt=doubt)
 
 

@@ -8,12 +8,14 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from geom.description.roles import Role
 from measured.headers.cells import is_date, is_reading, number
 from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
 LEAST = 3  # readings of a signal, on average
+BOUNDARIES = ([Role.AMBIENT], [Role.COOLANT])
 
 
 def side_by_side(
@@ -22,7 +24,7 @@ def side_by_side(
     """The time and a column for every signal of such a table, and doubts; empty for a table of any other kind.
 
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
-    temperatures go on between them.
+    temperatures of parts go on between them.
     """
     key = next((j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])), None)
     if key is None:
@@ -47,9 +49,12 @@ def side_by_side(
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         instants = _in_order(dict.fromkeys(clocks))
-        notes = [f"{Path(where).name}: {what}; all but temperatures hold until the next reading of their signal"]
+        notes = [
+            f"{Path(where).name}: {what}; all but temperatures of parts hold until the next reading of their signal"
+        ]
         for signal, readings in series.items():
-            if roles_of(signal) or "temperature" in quantities_of(signal):
+            roles = roles_of(signal)
+            if roles[:1] not in BOUNDARIES and (roles or "temperature" in quantities_of(signal)):
                 continue
             last = None
             for instant in instants:

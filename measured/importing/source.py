@@ -105,8 +105,16 @@ def read_source(file: Path) -> Source:
         return source_of_table(file, plan, columns, _formulas(file))
     if suffix not in BINARY:
         return source_of_table(file, *text_table(file))
-    table = read_recording(file)
+    return source_of_recording(file, read_recording(file))
+
+
+def source_of_recording(file: Path, table: DataTable) -> Source:
+    """Of a binary file, whose signals have names."""
     names = _once(_plain(table.columns))
+    if any(column.dtype.kind in "OUT" for column in table.cells.values()):
+        columns = [c.astype("M8[us]").tolist() if c.dtype.kind == "M" else c.tolist() for c in table.cells.values()]
+        if (beside := side_by_side(names, columns, str(file)))[0]:
+            return _source(file, [*beside[0]], [*beside[0].values()], {}, (*beside[1], *table.notes), table.start)
     units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
     return _source(file, names, [*table.cells.values()], units, table.notes, table.start)
 

@@ -17,9 +17,9 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
-from measured.headers.words import LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
+from measured.headers.words import CHANNELS, LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 from measured.importing.draft import Draft
-from measured.importing.guess import AXES, ELSE, Array, Guess, in_memory
+from measured.importing.guess import AXES, ELSE, NUMBERED, RELATIVE, UNKNOWN, Array, Guess, in_memory
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -27,6 +27,7 @@ ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
 MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
+STIRS = {"speed", "vehicle_speed", "air_flow", "water_flow"}  # what a share of does not heat
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
@@ -143,6 +144,13 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
+        for doubt in (UNKNOWN, RELATIVE):
+            if loud := [g for _, g in columns if g.feeds and doubt in g.doubt]:
+                out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
+        if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
+            many = f"'{plain[0]}'" if len(plain) == 1 else f"'{plain[0]}' to '{plain[-1]}'"
+            how = f"{'is' if len(plain) == 1 else 'are'} placed by number only; --place {quote(f'{plain[0]}=PLACE')}"
+            out.setdefault(NUMBERED, f"{many} {how}")
         odd = [g for _, g in columns if g.place and ELSE in g.doubt]
         if odd and len(odd) == sum(bool(g.place) for _, g in columns):
             out.setdefault("unit", f"'{odd[0].column}' {odd[0].doubt}")
@@ -177,7 +185,8 @@ def place_of(g: Guess, label: str) -> str:
         return ""
     words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
     role = next(iter(roles_of(label)), None)
-    name = "-".join(words) if any(not w.isdigit() for w in words) else "-".join(["part", *words])
+    numbers = [w for w in words if w.isdigit()]
+    name = "-".join(words if {*words} - {*numbers} - CHANNELS else ["part", *numbers])
     return BOUNDARIES.get(role, name) if role is not None else name
 
 
@@ -216,7 +225,7 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     """
     candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
-        return candidates
+        return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
     kinds = {g.quantity for _, g in columns if g.feeds}
     lost = [(s, g) for s, g in candidates if LOSS & set(tokens(g.column))]
     candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)

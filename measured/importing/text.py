@@ -20,13 +20,13 @@ BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have si
 SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
-PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949")
+PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949", "cp1254")
 WORDS = {
     "cp1251": re.compile("[А-яё]{4,}"),
     "cp949": re.compile("온도|시간|전류|권선|주위|전압|속도|환경|하우징|베어링"),
 }
 LETTERS = re.compile(
-    r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšž℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
+    r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšžğış℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
 )
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
@@ -34,6 +34,7 @@ INTERVAL = re.compile(
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
+LOGGED = re.compile(r"^(\d\S*[ T]\d\d:\S+)\s[^=\n]*?((?:\s[^\W\d]\w*=[^\s=]+)+)\s*$", re.MULTILINE)  # of a program
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
@@ -49,6 +50,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     text, notes = decoded(b"".join(chunks(file)), file), list[str]()
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
+    if len(LOGGED.findall(text[:10_000])) > 9:
+        text = "".join("\t".join([time, *pairs.split()]) + "\n" for time, pairs in LOGGED.findall(text))
     if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
         return *table, notes, None
     lines = text.splitlines(keepends=True)
@@ -93,6 +96,10 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
             every = [json.loads(t) for t in text.splitlines() if t.strip()]
         except (ValueError, RecursionError):
             return None
+    outer = dict[str, Any]()  # also what fields with numbers are called
+    if isinstance(every, dict):
+        outer = {path: one for path, one in _flat(every).items() if isinstance(one, str)}
+        every = _frame(every)
     if isinstance(every, dict):
         inside = {name: one for name, one in _flat(every).items() if isinstance(one, list)}
         most, _ = Counter(map(len, inside.values())).most_common(1)[0] if inside else (0, 0)
@@ -101,7 +108,26 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
         every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
     rows = [_flat(one) for one in every]
     names = tuple(dict.fromkeys(name for row in rows for name in row))
-    return Layout(names, ("",) * len(names), 0, len(names)), [[row.get(name) for row in rows] for name in names]
+    titles = {path.rpartition(".")[2]: title for path, title in outer.items() if path[-1:].isdigit() and title}
+    return Layout(tuple(str(titles.get(name, name)) for name in names), ("",) * len(names), 0, len(names)), [
+        [row.get(name) for row in rows] for name in names
+    ]
+
+
+def _frame(one: dict[str, Any]) -> Any:
+    """A data frame as pandas writes it: rows beside their names and index, or an object for each column or row, with
+    the index or the names as its keys. Any other object as it is."""
+    data, names = one.get("data"), one.get("columns")
+    if isinstance(data, list) and isinstance(names, list):
+        if all(isinstance(row, list) and len(row) == len(names) for row in data):
+            return {"time": one.get("index"), **dict(zip(map(str, names), map(list, zip(*data))))}
+        return one
+    keys = {tuple(inner) if isinstance(inner, dict) else () for inner in one.values()}
+    if len(keys) != 1 or not (index := keys.pop()):
+        return one
+    if len(index) < len(one):
+        return [{"time": time, **row} for time, row in one.items()]
+    return {"time": [*index], **{name: [*column.values()] for name, column in one.items()}}
 
 
 def _flat(one: Any, name: str = "") -> dict[str, Any]:

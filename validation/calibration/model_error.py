@@ -32,6 +32,7 @@ from validation.threads import side_by_side
 Array = NDArray[np.float64]
 SQUARED = ("current", "torque")  # quantities whose square makes heat
 SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
+LEAST_W_K = 1e-9  # of a link that heat passes: what doubts are shares of
 
 
 LOGARITHM = Table(KNOTS, tuple(np.log(np.clip(np.array(KNOTS) / REFERENCE_RISE_K, 0.1, 10.0))))
@@ -200,7 +201,9 @@ def stars(network: Network) -> dict[str, dict[str, float]]:
     heavy = {p.name for p in network.places.values() if p.kind == "node" and network.C[p.states[0]] > 0}
     out: dict[str, dict[str, float]] = {}
     for link in network.links:
-        if isinstance(link.law, Fixed) and link.law.temperature == CONSTANT and link.kind != "stream":
+        if link.kind == "stream" or not isinstance(link.law, Fixed):
+            continue
+        if link.law.temperature == CONSTANT and link.law.value > LEAST_W_K:
             for node, other in (link.places, link.places[::-1]):
                 if node in heavy and other in heavy:
                     ends = out.setdefault(node, {})

@@ -13,6 +13,7 @@ import numpy as np
 
 from thermoscope import InputError, Network
 from thermoscope.plugin import (
+    BINARY,
     Array,
     Column,
     DataTable,
@@ -21,6 +22,7 @@ from thermoscope.plugin import (
     imported_table,
     notes,
     numbers,
+    read_recording,
     recording_pieces,
     seconds_of,
     suggestion,
@@ -160,6 +162,9 @@ def _readers(follow: str, most: int, worksheet: str) -> tuple[Callable[[], Itera
     file = Path(follow)
     if not file.is_file():
         raise InputError("no such file", follow, "a recording, or - for rows from a pipe")
+    if file.suffix.lower() in BINARY:  # read once for both
+        whole = read_recording(file, worksheet, 0)
+        return partial(whole.cut, most), lambda: imported_table(file, whole).cut(most)
     return partial(recording_pieces, file, most, worksheet), lambda: imported_table(file).cut(most)
 
 

@@ -13,9 +13,10 @@ from logger_formats import signals
 
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import split_unit
+from measured.headers.cells import split_unit, unit_of
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, longest_part
+from measured.importing.case_files import read_timed
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
@@ -80,6 +81,16 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
         ("Time,T_winding [°C],I [A]", "tWI", "No unit of 'Time': seconds are assumed, 5 s from row to row."),
         ("t [s],I [A],T_winding [°C],T_CELL [°C]", "tIWA", "'T_CELL [°C]' hardly warms: is it the room? --place"),
+        ("t [s],I [A],T1 [°C],TC 2 [°C]", "tIWH", "'T1 [°C]' to 'TC 2 [°C]' are placed by number only; --place"),
+        ("t [s],I [A],Ch 1 [°C],room [°C]", "tIWA", "'Ch 1 [°C]' is placed by number only; --place"),
+        (
+            "t [s],Current [% of nominal],T_winding [°C]",
+            "tIW",
+            "'Current [% of nominal]': relative to a nominal current",
+        ),
+        ("t [s],Torque [%],T_winding [°C]", "tMW", "'Torque [%]': relative to a nominal torque that is not given: a"),
+        ("t [s],Current [p.u.],T_winding [°C]", "tIW", "The only heat was left out: 'Current [p.u.]'"),
+        ("t [s],Current (x!),T_winding [°C]", "tIW", "'Current (x!)': unit 'x!' unknown: A assumed."),
         ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone."),
     ],
 )
@@ -282,7 +293,7 @@ def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
     rows += [f"{stamp(s)},I_motor,{value}" for s, value in ((1, 0), (51, 9), (121, 2))]
     (tmp_path / "a.csv").write_text("\n".join(["time,sensor,value", *rows]) + "\n")
     source = read_source(tmp_path / "a.csv")
-    assert "each at its own times; all but temperatures hold until the next reading" in " ".join(source.notes)
+    assert "each at its own times; all but temperatures of parts hold until the next reading" in " ".join(source.notes)
     t, current = clock_of(source).seconds, source.numbers("I_motor")
     assert t[[0, 1, 2, -1]] == pytest.approx([0, 1, 5, 145])
     assert np.array_equal(current[1:], np.select([t[1:] < 51, t[1:] < 121], [0.0, 9.0], 2.0))
@@ -375,6 +386,36 @@ def test_the_same_clock_beside_every_signal_is_the_clock(tmp_path):
     assert "ms are assumed" in clock.doubt
 
 
+@pytest.mark.parametrize("stamp", [lambda s: f"{s}", lambda s: f"28.03.2026 12:{s // 60:02d}:{s % 60:02d}"])
+def test_clocks_that_differ_are_each_their_own_signals(tmp_path, stamp):
+    """Of one rate they would be one clock; the room is read half as often, and its recorder goes on for longer."""
+    rows = [f"{stamp(5 * k)};{20 + k};{stamp(10 * k)};{50 - k}" for k in range(60)]
+    (tmp_path / "a.csv").write_text("\n".join(["Time;T_winding [°C];Time;T_room [°C]", *rows]) + "\n")
+    source, clock = read_timed(tmp_path / "a.csv")
+    read = source.numbers("T_room [°C]")
+    assert clock.end_s == 295.0  # where the first of them ends
+    assert clock.seconds[np.isfinite(read)] == pytest.approx(np.arange(0.0, 295.0, 10.0))
+    assert read[np.isfinite(read)] == pytest.approx(50 - np.arange(30.0))
+    assert "each of 2 signals has a clock of its own" in " ".join(source.notes)
+
+
+def test_a_row_for_every_reading_in_a_parquet_file(tmp_path):
+    import pyarrow
+    from pyarrow.parquet import write_table
+
+    stamps = np.datetime64("2026-03-17T14:22:35") + np.arange(30) * np.timedelta64(10, "s")
+    tags = np.repeat(["T_winding", "T_room", "current"], 30)
+    columns = {"ts": np.tile(stamps, 3), "tag": tags, "value": np.arange(90.0)}
+    write_table(pyarrow.table(columns), tmp_path / "a.parquet")
+    source, clock = read_timed(tmp_path / "a.parquet")
+    assert clock.seconds == pytest.approx(10.0 * np.arange(30))
+    assert source.numbers("T_room") == pytest.approx(30.0 + np.arange(30))
+
+
+def test_tenths_of_degrees_are_no_degrees():
+    assert unit_of(split_unit("T_winding [0.1 degC]")[1]) == ""
+
+
 def test_vectors_in_structs_of_matlab(tmp_path):
     from scipy.io import savemat
 
@@ -404,6 +445,7 @@ def of(names, letters, sep=","):
     return table(sep.join(names), *(S[c] for c in letters), sep=sep)
 
 
+S["f"] = 1.0 + np.arange(len(S["t"]))
 PLAIN = ("t [s]", "T_winding [C]", "T_frame [C]", "T_amb [C]", "I [A]")
 LABELLED = "Name:\tTime\tWinding\tFrame\tRoom\tCurrent\nUnit:\ts\t°C\t°C\t°C\tA\nStep:\t5\t5\t5\t5\t5\n"
 SHORT = "No.;;T winding;T frame;T room;Current\nUnit:;;°C;°C;°C;A\nDate;Time;;;;\n"
@@ -437,6 +479,37 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         for k in range(len(S["t"]))
         for c, topic in zip("WHAI", ("motor/winding", "motor/frame", "hall/ambient", "motor/current"))
     ),
+    "fields that are called elsewhere": json.dumps(
+        {
+            "about": {"field1": "Winding", "field2": "Frame", "field3": "Room", "field4": "Current", "id": "x"},
+            "feeds": [
+                dict(zip(("time_s", "field1", "field2", "field3", "field4", "id"), map(str, row)))
+                for row in zip(*(S[c] for c in "tWHAI"), range(len(S["t"])))
+            ],
+        }
+    ),
+    "lines of a program": "".join(
+        f"2026-03-17 14:{k // 12:02d}:{5 * k % 60:02d},250 INFO: winding={w:.2f} frame={h:.2f} room={a:.2f} I={i:.2f}\n"
+        for k, (w, h, a, i) in enumerate(zip(S["W"], S["H"], S["A"], S["I"]))
+    ),
+    "a data frame": json.dumps(
+        {n: dict(zip(map(str, S["t"]), S[c])) for n, c in zip(("winding_C", "frame_C", "room_C", "I_A"), "WHAI")}
+    ),
+    "rows of a data frame": json.dumps(
+        {
+            "columns": ["winding_C", "frame_C", "room_C", "I_A"],
+            "index": [*S["t"]],
+            "data": [[S[c][k] for c in "WHAI"] for k in range(len(S["t"]))],
+        }
+    ),
+    "extremes beside readings": of((*PLAIN, "T_winding max [C]", "T_winding min [C]"), "tWHAIHB"),
+    "Turkish": of(("Zaman (s)", "Sargı (°C)", "Gövde (°C)", "Ortam sıcaklığı (°C)", "Akım (A)"), "tWHAI").encode(
+        "cp1254"
+    ),
+    "a serial number behind the first row": of((*PLAIN, "serial"), "tWHAI")
+    .replace("\n", ",4711\n", 2)
+    .replace(",4711", "", 1),
+    "a camera that counts its frames": of(("Frame", *PLAIN), "ftWHAI"),
     "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
 }
 

@@ -57,6 +57,16 @@ def test_doubts_of_a_record_are_bounded_in_sum_and_scaled_together(case):
             np.testing.assert_allclose(scaled * total_sd(whole), whole * total_sd(scaled), atol=1e-9)
 
 
+@pytest.mark.parametrize("nothing", [0.0, 1e-300])
+def test_no_doubt_is_a_share_of_a_link_without_heat(nothing):
+    net = bare_network("a row", dict.fromkeys(("left", "part", "right"), 100.0), ("air",))
+    links = [node_link(net, "joint", "link", "left", "part", Fixed(nothing))]
+    links += [node_link(net, "seat", "link", "part", "right", Fixed(2.0))]
+    links += [node_link(net, "film", "film", "part", "air", Fixed(1.0))]
+    _, doubts = with_doubts(replace(net, links=links), USUAL)
+    assert all(p.prior_sd > 0.0 for p in doubts)
+
+
 def test_what_a_parameter_moves_is_doubted_once_also_where_its_exponents_are_free(case):
     """The exponents that a fit may bend come as copies that the same parameter moves."""
     net, _ = working(case)

@@ -1,9 +1,13 @@
 """A simulated fleet, by physics of its own: the fouled jacket, the loose joint, the drift, and what differs."""
 
+import gzip
+import os
+import re
 import tracemalloc
 from dataclasses import replace
 
 import numpy as np
+import openpyxl
 import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
@@ -11,6 +15,8 @@ from scipy.io import savemat
 
 from extras.monitor.fleet import Statistics, UnitHistory, population
 from extras.monitor.rows.fleet import Reader, Recording
+from geom.errors import InputError
+from measured.recordings import formats
 from measured.recordings.sheet import load_sheet
 from simulated.fleet import DRIFT_YEAR, written
 from thermoscope.case_folder.folder import load_case
@@ -162,3 +168,31 @@ def test_a_motor_in_any_format_is_the_same_motor(made, tmp_path, ending):
     found, plain = (reader_of(case).statistics(Recording(f, "m", 0.0)) for f in (file, tmp_path / "a.csv"))
     assert found.samples == plain.samples > 30
     assert_allclose(found.H, plain.H, rtol=1e-6)
+
+
+def test_a_binary_file_is_read_once(made, tmp_path, monkeypatch):
+    """Though the first of two readers refuses it, for the name of its clock."""
+    case, fleet = made
+    table = pd.read_csv(fleet / "motor-001@2025-01.csv").head(400).rename(columns={"time_s": "Time [s]"})
+    table.to_parquet(tmp_path / "a.parquet")
+    files, read = [], formats._parquet
+    monkeypatch.setattr(formats, "_parquet", lambda file: files.append(file) or read(file))
+    assert reader_of(case).statistics(Recording(tmp_path / "a.parquet", "m", 0.0)).samples > 30
+    assert files == [tmp_path / "a.parquet"]
+
+
+def test_hostile_files_are_one_message(made, tmp_path):
+    """Noise under every ending, zero bytes, a packed gigabyte, a workbook of charts alone, a pipe."""
+    case, _ = made
+    noise = {".csv": b"\0" * 999, ".txt": b"\xff\xfe\0", ".csv.gz": gzip.compress(bytes(10**9), 1)}
+    noise |= {ending: b"PK\x03\x04" + bytes(range(256)) for ending in (".xlsx", ".mat", ".tdms", ".mf4", ".parquet")}
+    book = openpyxl.Workbook()
+    book.create_chartsheet("chart")
+    book.remove(book["Sheet"])
+    os.mkfifo(tmp_path / "pipe.csv")
+    book.save(tmp_path / "charts.xlsx")
+    for ending, content in noise.items():
+        (tmp_path / f"noise{ending}").write_bytes(content)
+    for file in tmp_path.iterdir():
+        with pytest.raises(InputError, match=re.escape(file.name)):
+            reader_of(case).statistics(Recording(file, "m", 0.0))
