@@ -229,10 +229,12 @@ from viz.figures.candidates import amplitude as amplitude, matrix as matrix
 from viz.live.curves import confusion as confusion, sensor as sensor
 from viz.live.style import as_text as as_text, figure as figure
 from viz.machine.animation import WRITERS as WRITERS, Pulses as Pulses
+from viz.machine.field import machine_row as machine_row
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed
-from viz.rendering.nodes import SplitMesh as SplitMesh, on_nodes as on_nodes
+from viz.rendering.gl import require_gl as require_gl
+from viz.rendering.nodes import SplitMesh as SplitMesh, on_nodes as on_nodes, split as split
 from viz.rendering.scale import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
 from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers

@@ -9,7 +9,7 @@ _MODULES = {
     "rendering.nodes": "SplitMesh,split",
     "rendering.gl": "require_gl,off_screen_window",
     "rendering.cut": "Wedge,HALF,QUARTER",
-    "machine.field": "cutaway,pair,difference,uncertainty",
+    "machine.field": "cutaway,pair,machine_row,difference,uncertainty",
     "machine.parts": "regions,exploded",
     "machine.missing": "missing_in_machine",
     "machine.arrows": "flux_arrows",

@@ -97,6 +97,9 @@ def compare_designs(
     limit: HotLimit = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="For all of them.")] = None,
     bands: Sure = None,
+    picture: Annotated[
+        Path | None, typer.Option("--picture", metavar="FILE", help="A PNG of all at rest, on one scale.")
+    ] = None,
     json: Json = None,
 ) -> int:
     """Designs side by side: dimensions that differ, hottest points, continuous ratings, masses, pump and fan power."""
@@ -105,7 +108,7 @@ def compare_designs(
     from thermoscope.plugin import give, notes, read_limits
 
     with once() as messages:
-        document = compared_designs(names, read_limits(limit or ()), read_at(at or ()), bands)
+        document = compared_designs(names, read_limits(limit or ()), read_at(at or ()), bands, picture)
     notes(messages)
     give(document, json, lambda: designs_summary(document))
     return 0

@@ -153,6 +153,35 @@ def pair(
     return scene.save(p, png)
 
 
+def machine_row(
+    machines: Sequence[tuple[SplitMesh, Array, str]],
+    *,
+    wedge: Wedge | None = QUARTER,
+    view: View | None = None,
+    theme: Theme = LIGHT,
+    png: str | Path | None = None,
+) -> pyvista.Plotter:
+    """Machines side by side, as large as each other and on one colour scale (degC).
+
+    machines : each with a temperature per node of every part (n_nodes,), and a title
+    """
+    view, surfaces = view or View(), [cut_away(nodes, wedge) for nodes, _, _ in machines]
+    fields = [on_nodes(nodes, T) for nodes, T, _ in machines]
+    ends = min(T.min() for T in fields), max(T.max() for T in fields)
+    width, height = PANELS[0] // 3 * len(machines), PANELS[1]
+    middles = [0.5 * (s.framed.min(axis=0) + s.framed.max(axis=0)) for s in surfaces]
+    reach = np.concatenate([s.framed - middle for s, middle in zip(surfaces, middles, strict=True)])
+    p = scene.plotter(theme, (width, height), (1, len(machines)))
+    for i, (surface, T, (_, _, words)) in enumerate(zip(surfaces, fields, machines, strict=True)):
+        p.subplot(0, i)
+        scene.look(p, middles[i] + reach, view, Room(0.02, 0.2, TITLE, NOTE))
+        paint(p, surface, T, ends, theme)
+        if i == len(machines) - 1:
+            scene.colour_bar(p, UNIT, theme, position_x=0.86, width=0.034)
+        scene.headline(p, words, theme, max(len(w) for _, _, w in machines))
+    return scene.save(p, png)
+
+
 def paint(
     p: pyvista.Plotter,
     surface: Surface,

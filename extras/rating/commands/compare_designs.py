@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from extras.rating.operation import coolant_boundaries
 from extras.rating.optimisation.auxiliaries import auxiliary_power
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import row
-from thermoscope import InputError
+from thermoscope import InputError, ThermoscopeError, steady
 from thermoscope.plugin import GEOMETRY_UNITS as UNITS
 from thermoscope.plugin import (
     Folder,
@@ -27,9 +28,12 @@ from thermoscope.plugin import (
     bands_requested,
     cell,
     families,
+    machine_row,
     named_rows,
     posterior_of,
     progress,
+    require_gl,
+    split,
 )
 from thermoscope.plugin import MachineDescription as Machine
 
@@ -52,12 +56,19 @@ class Design:
 
 
 def compared_designs(
-    names: Sequence[str], limits: Mapping[str, float], around: Mapping[str, float], sure: bool | None
+    names: Sequence[str],
+    limits: Mapping[str, float],
+    around: Mapping[str, float],
+    sure: bool | None,
+    picture: Path | None = None,
 ) -> dict[str, Any]:
     """Two to six machines, or cases of machines, side by side.
 
     limits : place -> degC;  around : boundaries (degC) and inputs of all;  sure : whether ratings have bands
+    picture : a PNG of all at rest under their rated loads, as large as each other and on one colour scale
     """
+    if picture is not None and picture.suffix != ".png":
+        raise InputError("is not the name of a picture", f"--picture {picture}", "a file NAME.png")
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
     with progress() as tell:
@@ -66,12 +77,34 @@ def compared_designs(
             folder = case_or_machine(name, tell)
             conditions = {**(designs[0].it.op.boundaries if designs else {}), **around}
             designs.append(design(folder, limits, conditions))
+        if picture is not None:
+            tell("drawing the designs")
+            _drawn(designs, picture)
         tell("ratings")
         return {
             "designs": [_described(one, limits, sure, tell) for one in designs],
             "dimensions": dimensions([one.machine for one in designs]),
             "boundaries": {n: T for one in reversed(designs) for n, T in one.it.op.boundaries.items()},
         }
+
+
+def _drawn(designs: Sequence[Design], picture: Path) -> None:
+    """Every design that settles at its rated load, cut open."""
+    require_gl()
+    rows = []
+    for one in designs:
+        network, op = one.it.model.network, one.it.op
+        with suppress(ThermoscopeError):  # one that does not settle has no picture; the first sentence names it
+            z = steady(network, op.at(1.0, None), op.boundaries, one.it.model.values).z[: len(network.states)]
+            assert one.folder.built is not None
+            nodes = split(one.folder.built.mesh)
+            T = network.on_parts(nodes.parts, z)
+            rows.append((nodes, T, f"{one.machine.name}: {T.max():.0f} °C at most"))
+    if not rows:
+        raise InputError(
+            "no design settles at its rated load", f"--picture {picture}", "a smaller load: --at NAME=VALUE"
+        )
+    machine_row(rows, png=picture)
 
 
 class Designs(TableResult):
@@ -91,13 +124,20 @@ class Designs(TableResult):
 
 
 def compare_designs(
-    *machines: str | Path, limits: Mapping[str, float] | None = None, bands: bool = False, **around: float
+    *machines: str | Path,
+    limits: Mapping[str, float] | None = None,
+    bands: bool = False,
+    picture: str | Path | None = None,
+    **around: float,
 ) -> Designs:
     """Two to six machine files, names or cases side by side: dimensions that differ, hottest points, ratings, masses.
 
-    limits : place -> degC, for ratings;  around : boundaries (degC) and inputs of all, such as ambient=40.0
+    limits : place -> degC, for ratings;  picture : a PNG of all on one scale
+    around : boundaries (degC) and inputs of all, such as ambient=40.0
     """
-    return Designs(compared_designs([str(one) for one in machines], limits or {}, around, bands))
+    return Designs(
+        compared_designs([str(one) for one in machines], limits or {}, around, bands, picture and Path(picture))
+    )
 
 
 def design(folder: Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:
@@ -185,7 +225,7 @@ def designs_summary(document: Mapping[str, Any]) -> Summary:
             Table("What differs in the files", ["key", *names], differ, keep=names),
             Table("Mass by material (kg)", ["material", *names], materials, keep=names),
         ],
-        "--limit PLACE=DEGC for ratings; --at ambient=DEGC for all; --json FILE; thermoscope show picture CASE",
+        "--limit PLACE=DEGC for ratings; --at ambient=DEGC for all; --json FILE; --picture FILE.png",
     )
 
 

@@ -63,6 +63,12 @@ def test_one_design_is_nothing_to_compare(thermoscope, names):
     assert "two to 6" in refused.err
 
 
+def test_a_picture_has_a_name_that_ends_in_png(thermoscope):
+    refused = thermoscope("use", "compare-designs", FREE, "pmsm-m2-no-base", "--picture", "designs.jpg")
+    assert refused.code == 2
+    assert "NAME.png" in refused.err
+
+
 @pytest.mark.nightly
 def test_two_motors_side_by_side(thermoscope):
     """The longer stack loses less heat per volume; what surrounds them is the same."""

@@ -1,5 +1,7 @@
 """Pictures are real: they show something, follow the field, and share a scale in pairs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fictional import POSITIONS, comparison
@@ -8,7 +10,7 @@ from small_motor import motor
 
 import viz.rendering.gl
 from geom.errors import MissingDependency
-from viz import cutaway, pair, sensors, split
+from viz import cutaway, machine_row, pair, sensors, split
 from viz.colours import VERDICT, heat
 
 NODES = split(motor(24))
@@ -51,6 +53,18 @@ def test_pair_of_equal_fields_is_equal_and_of_unequal_ones_is_not(tmp_path):
     same, other = pixels(tmp_path / "same.png")[80:], pixels(tmp_path / "other.png")[80:]
     assert np.abs(same[:, :530] - same[:, 640:1170]).mean() < 1.0
     assert np.abs(other[:, :530] - other[:, 640:1170]).mean() > 5.0
+
+
+def test_machines_in_a_row_are_as_large_as_each_other_and_on_one_scale(tmp_path):
+    """A machine of half the size is half as wide, and one that is colder is painted colder."""
+    half = replace(NODES, points=0.5 * NODES.points)
+    machine_row([(NODES, FIELD, "whole"), (half, FIELD - 30.0, "half")], png=tmp_path / "row.png").close()
+    panels = np.split(pixels(tmp_path / "row.png")[80:, :1280], 2, axis=1)
+    machines = [panel[:, :520].min(axis=2) < 250 for panel in panels]
+    widths = [np.ptp(np.flatnonzero(m.any(axis=0))) for m in machines]
+    assert widths[1] / widths[0] == pytest.approx(0.5, abs=0.03)
+    red = [panel[:, :520][m][:, 0].mean() for panel, m in zip(panels, machines, strict=True)]
+    assert red[0] > red[1] + 20
 
 
 def test_sensors_are_marked_in_the_colour_of_their_residual(tmp_path):
