@@ -62,6 +62,7 @@ ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
+IN_HEADER = "in its header,"  # another unit than by its values
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 RELATIVE = "relative to a nominal"
@@ -200,7 +201,7 @@ def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
     if not beside_room:
         return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
     if source.units[g.column]:
-        return replace(g, doubt=f"{source.units[g.column]} in its header, Fahrenheit by its values?")
+        return replace(g, doubt=f"{source.units[g.column]} {IN_HEADER} Fahrenheit by its values?")
     return replace(g, unit="degF", doubt="no unit: degF by its values")
 
 
@@ -260,7 +261,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         if kelvin and not unit and first > ROOM_K[0]:  # below it are tenths of a room's degrees, rather
             return "K", "no unit: by its values"
         if unit == "degC" and kelvin and ROOM_K[0] < first < ROOM_K[1]:
-            return "K", f"{source.units[column]} in its header, but K by its values"
+            return "K", f"{source.units[column]} {IN_HEADER} but K by its values"
         unit = unit or "degC"
         hot = unit == "degC" and first > ROOM_C[1]
         return unit, f"starts at {first:.4g} degC: {ELSE}" if hot else ""

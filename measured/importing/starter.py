@@ -19,7 +19,7 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from measured.headers.words import CHANNELS, LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 from measured.importing.draft import Draft
-from measured.importing.guess import AXES, ELSE, NUMBERED, RELATIVE, UNKNOWN, Array, Guess, in_memory
+from measured.importing.guess import AXES, ELSE, IN_HEADER, NUMBERED, RELATIVE, UNKNOWN, Array, Guess, in_memory
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -144,8 +144,8 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
-        for doubt in (UNKNOWN, RELATIVE):
-            if loud := [g for _, g in columns if g.feeds and doubt in g.doubt]:
+        for doubt in (UNKNOWN, RELATIVE, IN_HEADER):
+            if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
         if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
             many = f"'{plain[0]}'" if len(plain) == 1 else f"'{plain[0]}' to '{plain[-1]}'"

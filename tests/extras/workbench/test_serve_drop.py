@@ -1,9 +1,12 @@
 """Recordings dropped on the workbench: guessed, dragged to parts, made a case that compare runs."""
 
 import asyncio
+import gzip
+import zipfile
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pytest
 from aiohttp import ClientSession, CookieJar, FormData
 from small_case import small_case
@@ -201,3 +204,19 @@ def test_a_drop_that_is_too_large_is_refused(case):
     status, seen = upload(case, [("a.csv", b"x" * 100)], largest_drop=10)
     assert status == 413
     assert seen == []
+
+
+def test_what_no_reader_likes_is_one_message_with_its_name(case, tmp_path):
+    """A workbook of charts alone, one packed and one unpacked beyond all measure, zero bytes."""
+    book = openpyxl.Workbook()
+    book.create_chartsheet("chart")
+    book.remove(book["Sheet"])
+    book.save(tmp_path / "charts.xlsx")
+    (tmp_path / "packed.csv.gz").write_bytes(gzip.compress(b"1,2\n" * 10**7, 1))
+    (tmp_path / "zero.csv").write_bytes(b"t,T\n0,\0\n" * 9)
+    with zipfile.ZipFile(tmp_path / "bomb.xlsx", "w", zipfile.ZIP_DEFLATED) as bomb:
+        bomb.writestr("xl/worksheets/sheet1.xml", bytes(6 * 10**8))
+    network = load_case(case).case.model.network
+    for name in ("charts.xlsx", "packed.csv.gz", "zero.csv", "bomb.xlsx"):
+        with pytest.raises(InputError, match=name):
+            read([tmp_path / name], network, lambda message: None)

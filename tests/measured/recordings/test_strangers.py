@@ -30,6 +30,7 @@ from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
 
 S = signals(5.0)
+S["K"] = S["W"] + 273.15
 ROOM = f"{22:.2f}"
 NAMES = ("Winding U", "Ambient", "Current")
 
@@ -87,6 +88,11 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
             "t [s],Current [% of nominal],T_winding [°C]",
             "tIW",
             "'Current [% of nominal]': relative to a nominal current",
+        ),
+        (
+            "t [s],I [A],T_winding [°C],T_room [°C]",
+            "tIKK",
+            "'T_winding [°C]': degC in its header, but K by its values.",
         ),
         ("t [s],Torque [%],T_winding [°C]", "tMW", "'Torque [%]': relative to a nominal torque that is not given: a"),
         ("t [s],Current [p.u.],T_winding [°C]", "tIW", "The only heat was left out: 'Current [p.u.]'"),
