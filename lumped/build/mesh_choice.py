@@ -212,6 +212,7 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
+    stale: set[str] = set()  # ways looked at before another step was taken, which may have done some of theirs
     while True:
         first = replace(looks.first, quadratic=how.quadratic)
         others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
@@ -226,9 +227,13 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         if percent[worst] <= enough * accuracy:
             return MeshChoice(how, percent, *looks.size(how), True)
         plane = max(ways[w].left(worst) for w in IN_PLANE)
-        most_left = max(halvings.left(worst) for halvings in ways.values())
-        if linear[worst] > ALIKE * most_left and (part := _part_to_bend(looks, how, worst, most)):
-            how = replace(how, quadratic=(*how.quadratic, part))
+        way_left = max(ways, key=lambda w: ways[w].left(worst))
+        most_left = ways[way_left].left(worst)
+        if stale and (way is None or way_left in stale):
+            again = stale if way is None else {way_left}
+            ways, stale = {**ways, **dict.fromkeys(again, _Way())}, stale - again
+        elif linear[worst] > ALIKE * most_left and (part := _part_to_bend(looks, how, worst, most)):
+            how, stale = replace(how, quadratic=(*how.quadratic, part)), _not_refined(ways)
         elif (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
@@ -241,6 +246,12 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
                 halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
             )
             how, ways[way] = there, _Way(moves, halvings.level + 1)
+            stale |= _not_refined(ways) - set(IN_PLANE if way not in IN_PLANE else ways)  # ends and axis overlap
+
+
+def _not_refined(ways: Mapping[str, _Way]) -> set[str]:
+    """Those refined know the order that they show, and keep it."""
+    return {way for way, halvings in ways.items() if halvings.level == 0}
 
 
 def _part_to_bend(looks: _Looks, how: Meshing, worst: str, most: int) -> str | None:

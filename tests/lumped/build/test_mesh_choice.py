@@ -130,6 +130,20 @@ def test_layers_towards_the_ends_of_one_part_are_a_way(second_order, monkeypatch
     assert replace(found.meshing, ends=()) == FIRST
 
 
+def test_what_thinner_ends_have_mended_is_not_left_along_the_axis(second_order, monkeypatch):
+    """Where either does the same, and only ends may become finer, the axis is looked at again on the mesh at hand."""
+
+    def hot(point, how):
+        low = 0.05 * min(0.2 ** len(how.ends), halved(how, "axial_m") ** -2.0)
+        return {p: T * (1.0 - low) for p, T in EXACT.items()}
+
+    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    found = chosen_mesh(MACHINE, 5.0, FIRST, silent, most=2000)
+    assert found.met
+    assert found.meshing.ends
+    assert found.meshing.axial_m == FIRST.axial_m
+
+
 def test_triangles_of_the_one_part_that_moves_the_hot_spot_are_smaller(second_order, monkeypatch):
     """Where they alone do what smaller ones everywhere would, the others stay as they are."""
 
