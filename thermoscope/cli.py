@@ -135,6 +135,8 @@ def main() -> None:
             code = narrowed_app(arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
     except typer.Abort:
         raise SystemExit(1) from None
+    except KeyboardInterrupt:  # while the command's modules are loaded
+        code = STOPPED
     except Exception as fault:
         if "--debug" in sys.argv:
             raise

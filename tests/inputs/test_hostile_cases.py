@@ -201,6 +201,16 @@ def test_a_fault_nobody_foresaw_is_one_line(monkeypatch):
         answered("test", "quantities", "--debug")
 
 
+def test_ctrl_c_while_a_command_is_loaded_is_one_line(monkeypatch):
+    def stopped(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("thermoscope.cli.narrowed_app", stopped)
+    done = answered("explain", "effects")
+    assert done.code == 130
+    assert done.err.startswith("stopped: inputs are as they were")
+
+
 def test_json_makes_no_folders(tmp_path):
     done = answered("test", "quantities", "--json", tmp_path / "no" / "q.json")
     assert done.code == 2
