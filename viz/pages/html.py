@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-SHORT = 28  # letters of a cell that is not broken: an interval, a name of a test
-
-
 def page(title: str, body: Iterable[str]) -> str:
     """A whole page that needs nothing but itself."""
     css = files("viz.pages").joinpath("page.css").read_text(encoding="utf-8")
@@ -106,9 +103,8 @@ def _cell(value: Any, words: Mapping[str, str]) -> str:
         return f'{escape(words[value])}<br><code class="code">{escape(value)}</code>'
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
-    word = cell(value).replace("->", "→").replace(" ... ", " … ").replace(" %", "\u00a0%")
+    word = cell(value).replace("->", "→").replace(" ... ", "\u00a0…\u00a0").replace(" (", "\u00a0(").replace(" %", "\u00a0%")
     if word in ("", "-"):
         return "–"
     css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
-    css = css or ("short" if len(word) <= SHORT else "")
     return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)

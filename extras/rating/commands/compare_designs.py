@@ -79,7 +79,7 @@ def compared_designs(
             designs.append(design(folder, limits, conditions))
         if picture is not None:
             tell("drawing the designs")
-            _drawn(designs, picture)
+            _draw_designs(designs, picture)
         tell("ratings")
         return {
             "designs": [_described(one, limits, sure, tell) for one in designs],
@@ -88,7 +88,7 @@ def compared_designs(
         }
 
 
-def _drawn(designs: Sequence[Design], picture: Path) -> None:
+def _draw_designs(designs: Sequence[Design], picture: Path) -> None:
     """Every design that settles at its rated load, cut open."""
     require_gl()
     rows = []
@@ -136,7 +136,9 @@ def compare_designs(
     around : boundaries (degC) and inputs of all, such as ambient=40.0
     """
     return Designs(
-        compared_designs([str(one) for one in machines], limits or {}, around, bands, picture and Path(picture))
+        compared_designs(
+            [str(one) for one in machines], limits or {}, around, bands, None if picture is None else Path(picture)
+        )
     )
 
 
