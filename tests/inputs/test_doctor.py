@@ -73,6 +73,19 @@ def test_a_sound_case_has_only_the_input_that_no_law_reads(tmp_path):
     assert [(f["where"], f["remark"]) for f in found["doubts"]] == [("vehicle_speed_mps", True)]
 
 
+def test_hot_water_beside_rooms_that_differ_is_not_taken_for_fahrenheit(tmp_path):
+    """55 is 12.8 degC as Fahrenheit: half-way between a room and the cold outside it, by chance."""
+    case = case_of(tmp_path)
+
+    def house(table):
+        for name, start in (("T_flange", 55.0), ("T_winding", 3.0), ("T_yoke", 294.0), ("air", 12.0)):
+            table[name] += start - table[name].iloc[0]
+
+    changed(case, "stand", house)
+    _, found = asked(case)
+    assert [f for f in found["doubts"] if "Fahrenheit" in f["what"]] == []
+
+
 def test_milliseconds_in_one_test_are_found_by_its_rows(tmp_path):
     case = case_of(tmp_path)
     changed(case, "stand", lambda table: table.__setitem__("time_s", 60.0 * table["time_s"]))

@@ -69,7 +69,7 @@ def first_readings(p: Patient) -> dict[str, float]:
 
 
 def _units(p: Patient) -> Iterator[Finding]:
-    """A column that starts where the others would in kelvin or Fahrenheit."""
+    """A column that starts where the others would in kelvin or Fahrenheit; the latter only beside others at rest."""
     starts = first_readings(p)
     for name, start in starts.items():
         others = [s for n, s in starts.items() if n != name]
@@ -78,7 +78,7 @@ def _units(p: Patient) -> Iterator[Finding]:
             continue
         if abs(start - ZERO_C - usual) < OFF_K:
             yield p.finding(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
-        elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3:
+        elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3 and np.ptp(others or [usual]) < OFFSET_K:
             yield p.finding(
                 name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"'
             )
