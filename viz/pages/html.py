@@ -103,13 +103,7 @@ def _cell(value: Any, words: Mapping[str, str]) -> str:
         return f'{escape(words[value])}<br><code class="code">{escape(value)}</code>'
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
-    word = (
-        cell(value)
-        .replace("->", "→")
-        .replace(" ... ", "\u00a0…\u00a0")
-        .replace(" (", "\u00a0(")
-        .replace(" %", "\u00a0%")
-    )
+    word = cell(value).replace("->", "→").replace(" ... ", "\u00a0…\u00a0").replace(" %", "\u00a0%")
     if word in ("", "-"):
         return "–"
     css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
