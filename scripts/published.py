@@ -41,6 +41,15 @@ def demo_table(stages: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def machine_arguments(description: str | None) -> argparse.Namespace:
+    """MACHINE ... --json FILE --page, of a benchmark that keeps rows by machine and publishes them on a page."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
+    parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
+    return parser.parse_args()
+
+
 def publish(page: Path, marker: str, table: str) -> None:
     page.write_text(between(page.read_text(encoding="utf-8"), marker, table), encoding="utf-8")
 

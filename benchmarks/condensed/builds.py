@@ -7,7 +7,6 @@ CPU time and memory are those of all its processes together; what they share cou
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import resource
@@ -19,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scripts.published import publish
+from scripts.published import machine_arguments, publish
 
 PAGE = Path("docs/condensation.md")
 HEAD = ("machine", "unknowns", "mesh leaves (%)", "at", "states", "CPU (s)", "wall (s)", "memory (GB)", "exit code")
@@ -71,11 +70,7 @@ def table(found: Sequence[Mapping[str, Any]]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
-    parser.add_argument("--page", action="store_true", help="put the table of FILE into docs/condensation.md")
-    given = parser.parse_args()
+    given = machine_arguments(__doc__)
     found = json.loads(given.json.read_text()) if given.json and given.json.exists() else []
     for machine in given.machines:
         found = [*(r for r in found if r["machine"] != machine), row(machine)]

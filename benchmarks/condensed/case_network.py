@@ -9,7 +9,6 @@ from 30 s to two hours, in percent of the machine's largest rise at that time. R
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import platform
@@ -25,7 +24,7 @@ from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
 from lumped.model.network import Array, Network
-from scripts.published import publish
+from scripts.published import machine_arguments, publish
 from thermoscope.case_folder.folder import load_machine_file
 
 PAGE = Path("docs/condensation.md")
@@ -97,11 +96,7 @@ def rows(machine: str) -> Iterator[dict[str, Any]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
-    parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
-    given = parser.parse_args()
+    given = machine_arguments(__doc__)
     old = json.loads(given.json.read_text())["rows"] if given.json and given.json.exists() else []
     found = [row for row in old if row["machine"] not in given.machines]
     for machine in given.machines:

@@ -62,8 +62,11 @@ def table(content: Table, words: Mapping[str, str] | None = None, without: Seque
     words : of a code in the first column, which then stands small below them;  without : columns to leave out
     """
     rows, empty = content.rows, ("", "-", None)
-    places = [i for i, name in enumerate(content.columns) if name not in without]
-    columns = [i for i in places if i == 0 or any(row[i] not in empty for row in rows)]
+    columns = [
+        i
+        for i, name in enumerate(content.columns)
+        if name not in without and (i == 0 or any(row[i] not in empty for row in rows))
+    ]
     if not rows:
         return ""
     style = [

@@ -141,11 +141,12 @@ def _missing(r: Report) -> str:
         return ""
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
+    table = tables.candidates_table(by_score[:12])
     bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     parts = [
         html.plot(bars, "odds", "Each leading cause and its odds; pale: with something else.") if bars else "",
-        html.table(tables.candidates_table(by_score[:12]), {c["effect"]: c.get("words", "") for c in by_score}, DETAIL),
-        html.more("Evidence of each by itself", evidence, html.table(tables.candidates_table(by_score[:12]))),
+        html.table(table, {c["effect"]: c["words"] for c in by_score if c.get("words")}, DETAIL),
+        html.more("Evidence of each by itself", evidence, html.table(table)),
         html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -69,6 +68,8 @@ def compared_designs(
     """
     if picture is not None and picture.suffix != ".png":
         raise InputError("is not the name of a picture", f"--picture {picture}", "a file NAME.png")
+    if picture is not None:
+        require_gl()  # before anything is built
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
     with progress() as tell:
@@ -90,16 +91,17 @@ def compared_designs(
 
 def _draw_designs(designs: Sequence[Design], picture: Path) -> None:
     """Every design that settles at its rated load, cut open."""
-    require_gl()
     rows = []
     for one in designs:
         network, op = one.it.model.network, one.it.op
-        with suppress(ThermoscopeError):  # one that does not settle has no picture; the first sentence names it
+        try:
             z = steady(network, op.at(1.0, None), op.boundaries, one.it.model.values).z[: len(network.states)]
-            assert one.folder.built is not None
-            nodes = split(one.folder.built.mesh)
-            T = network.on_parts(nodes.parts, z)
-            rows.append((nodes, T, f"{one.machine.name}: {T.max():.0f} °C at most"))
+        except ThermoscopeError:  # one that does not settle has no picture; the first sentence names it
+            continue
+        assert one.folder.built is not None
+        nodes = split(one.folder.built.mesh)
+        T = network.on_parts(nodes.parts, z)
+        rows.append((nodes, T, f"{one.machine.name}: {T.max():.0f} °C at most"))
     if not rows:
         raise InputError(
             "no design settles at its rated load", f"--picture {picture}", "a smaller load: --at NAME=VALUE"

@@ -94,9 +94,8 @@ def step_words(folder: Folder) -> str:
     """What the last step added, as an engineer says it; empty where it added nothing."""
     from validation.revision.revise import TOGETHER
 
-    if not folder.history.revisions or folder.history.last.action != "add":
-        return ""
-    return added_words(folder.case, folder.history.last.effect.split(TOGETHER))
+    last = folder.history.last
+    return added_words(folder.case, last.effect.split(TOGETHER)) if last.action == "add" else ""
 
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
