@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from viz.data import Comparison
     from viz.rendering.nodes import SplitMesh
 
-Array = NDArray[np.float64]
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they tell of a model
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
