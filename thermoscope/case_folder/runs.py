@@ -134,11 +134,6 @@ def instant_words(test: Test, time: float) -> str:
     return f"{test.name} at {time / 60:.0f} min"
 
 
-def end_words(test: Test) -> str:
-    """The same of its end."""
-    return instant_words(test, test.time[-1])
-
-
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
     """Coldest and hottest temperature (degC) of all tests, with the model now and before its last step.
 

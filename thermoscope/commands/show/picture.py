@@ -85,7 +85,7 @@ class Subject:
 
     @property
     def when(self) -> str:
-        return runs.end_words(self.test)
+        return runs.instant_words(self.test, self.test.time[-1])
 
     @property
     def built(self) -> Built:
