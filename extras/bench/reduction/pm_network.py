@@ -8,7 +8,7 @@ Films: Churchill and Chu, McAdams; end space: Schubert; slot: a heated bundle, l
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,16 +38,6 @@ BANDS = 5  # of a base plate, from foot to rim; chosen
 
 
 @dataclass(frozen=True)
-class Base:
-    """One of several bases of a network: that of `machine`, coupled while the input `switch` is 1."""
-
-    name: str
-    machine: Machine
-    emissivity: float
-    switch: str
-
-
-@dataclass(frozen=True)
 class PmSettings:
     """What table I of the paper varies, and what table II sets.
 
@@ -74,14 +64,7 @@ class PmSettings:
 
 def pm_network(machine: Machine, settings: PmSettings, rows: Rows | None = None) -> Network:
     """The network of a machine with magnets in open laminations.  rows : its table of parts, if already made"""
-    return read_network(pm_document(machine, settings, rows), machine.name)
-
-
-def pm_document(
-    machine: Machine, settings: PmSettings, rows: Rows | None = None, bases: Sequence[Base] = ()
-) -> dict[str, Any]:
-    """The same as the tables of a network.toml; `bases` instead of the machine's own one."""
-    return _Builder(machine, settings, rows or table_of(machine)).document(bases)
+    return read_network(_Builder(machine, settings, rows or table_of(machine)).document(), machine.name)
 
 
 def table_of(machine: Machine) -> Rows:
@@ -110,7 +93,7 @@ class _Builder:
         self.surfaces: dict[str, Any] = {}
         self.parameters: dict[str, Any] = {}
 
-    def document(self, bases: Sequence[Base]) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         self._nodes()
         self._winding()
         for side in ("left", "right"):
@@ -124,10 +107,8 @@ class _Builder:
         for cap in ("endcap.left", "endcap.right"):
             self._film(cap, "vertical plate", diameter, rows[cap].faces[f"{cap}.outer"])
         self._film("shaft", "horizontal cylinder", self.g.shaft.diameter, rows["shaft"].faces["shaft.outer"])
-        for base in bases:
-            self._base(f"base.{base.name}", base.emissivity, base.switch, base.machine)
-        if not bases and self.settings.base is not None and "base" in self.rows:
-            self._base("base", self.settings.base, "")
+        if self.settings.base is not None and "base" in self.rows:
+            self._base(self.settings.base)
         self._shared()
         return {
             "network": {"name": self.machine.name, "boundaries": ["ambient"]},
@@ -211,30 +192,21 @@ class _Builder:
             return {"h_W_m2K": self.settings.convection}
         return {"natural": {"surface": surface, "size_m": size}}
 
-    def _base(self, name: str, emissivity: float, switch: str, of: Machine | None = None) -> None:
-        """Foot, and a plate as a chain of bands along its length; `switch` is the input that couples it, "" always."""
-        machine = of or self.machine
-        b, foot, rows = machine.dimensions.base, machine.dimensions.foot, self.rows if of is None else table_of(of)
-        k = machine.conductivity("base")[0] * b.thickness
-        post = foot.height / (machine.conductivity("foot")[0] * rows["foot"].contacts["base"])
+    def _base(self, emissivity: float) -> None:
+        """Foot, and a plate as a chain of bands along its length."""
+        b, foot, rows = self.g.base, self.g.foot, self.rows
+        k = self.machine.conductivity("base")[0] * b.thickness
+        post = foot.height / (self.machine.conductivity("foot")[0] * rows["foot"].contacts["base"])
         spread = math.log(max(b.width / (foot.width + foot.length), 1.05)) / (2 * math.pi * k)
-        R = sum(
-            (
-                1 / (JOINTS["foot"] * rows["foot"].contacts["stator.core"]),
-                post,
-                1 / (JOINTS["base"] * rows["foot"].contacts["base"]),
-                spread,
-            )
-        )
-        self.link("stator.core", f"{name}.0", R_K_W=R, prior_sd=0.4)
-        if switch:
-            self.links[f"stator.core-{name}.0"]["of"] = {"input": switch, "at": 1, "exponent": 1}
+        above = 1 / (JOINTS["foot"] * rows["foot"].contacts["stator.core"])
+        below = 1 / (JOINTS["base"] * rows["foot"].contacts["base"])
+        self.link("stator.core", "base.0", R_K_W=above + post + below + spread, prior_sd=0.4)
         half = b.length / 2
         edges = [0.0, *(foot.length / 2 + (half - foot.length / 2) * i / (BANDS - 1) for i in range(BANDS))]
-        capacity = rows["base"].mass * machine.material_of("base").cp
+        capacity, foot_capacity = self._capacity("base"), self._capacity("foot")
         for i in range(BANDS):
-            node, share = f"{name}.{i}", (edges[i + 1] - edges[i]) / half
-            self.nodes[node] = {"C_J_K": capacity * share + (self._foot_capacity(machine, rows) if i == 0 else 0.0)}
+            node, share = f"base.{i}", (edges[i + 1] - edges[i]) / half
+            self.nodes[node] = {"C_J_K": capacity * share + (foot_capacity if i == 0 else 0.0)}
             one, size = b.length * b.width * share, b.length * b.width / (2 * (b.length + b.width))
             self._film(node, "plate facing up", size, one, emissivity)
             under = self._still("plate facing down", size)
@@ -246,10 +218,7 @@ class _Builder:
             }
             if i:
                 step = (edges[i + 1] - edges[i - 1]) / 2
-                self.link(f"{name}.{i - 1}", node, G_W_K=2 * k * b.width / step)
-
-    def _foot_capacity(self, machine: Machine, rows: Rows) -> float:
-        return rows["foot"].mass * machine.material_of("foot").cp
+                self.link(f"base.{i - 1}", node, G_W_K=2 * k * b.width / step)
 
     def _means(self) -> dict[str, Any]:
         volume = {p: fill * self.rows[p].volume for p, fill in COPPER_SHARE.items()}
@@ -294,10 +263,10 @@ class _Builder:
         ends = [n for n, v in self.links.items() if v["between"][1].startswith("air.")]
         both = [f"link:{n}{m}" for n in ends for m in ("", ":forced")]
         self._parameter("end space", both, 0.4, "published sets differ by 2 to 3")
-        for base in dict.fromkeys(n.rsplit(".", 1)[0] for n in self.nodes if n.startswith("base")):
-            base_films = [n for n in films if n.startswith(f"{base}.")]
-            acts = [f"link:{n}{m}" for n in base_films for m in (still, ":radiation")]
-            self._parameter(f"{base} films", acts, 0.4, "published plates facing up and down differ by a factor of 2")
+        if "base.0" in self.nodes:
+            base_films = [f"link:{n}{m}" for n in films if n.startswith("base.") for m in (still, ":radiation")]
+            words = "published plates facing up and down differ by a factor of 2"
+            self._parameter("base films", base_films, 0.4, words)
         self._parameter(
             "capacity", [f"capacity:{n}" for n in self.nodes if "C_J_K" in self.nodes[n]], 0.05, "fill factors"
         )
