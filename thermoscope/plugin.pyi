@@ -33,7 +33,12 @@ from lumped.drives.drive import (
     drive_cycle as drive_cycle,
 )
 from lumped.drives.duty import s3 as s3
-from lumped.integration.assembly import Assembly as Assembly, assembly as assembly, input_sizes as input_sizes
+from lumped.integration.assembly import (
+    Assembly as Assembly,
+    assembly as assembly,
+    input_sizes as input_sizes,
+    starts as starts,
+)
 from lumped.integration.compiled import (
     Compiled as Compiled,
     READINGS as READINGS,

@@ -26,6 +26,7 @@ from thermoscope.plugin import (
     STEP_K,
     c_comment,
     stages,
+    starts,
 )
 
 RUNTIME = Path(__file__).resolve().parent / "runtime"
@@ -77,7 +78,6 @@ def data(model: Model) -> str:
     signals = [s.name for s in model.signals]
     T, F = model.terms, flat(model.factors, signals)
     rows = [o.row for o in model.outputs]
-    starts = np.concatenate([[0], np.cumsum([r.index.size for r in rows])]).astype(int)
     parts = [
         reals("C", model.C),
         _matrix("K0", model.K0),
@@ -102,7 +102,7 @@ def data(model: Model) -> str:
         ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
         reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
         *_functions(F),
-        ints("OUTPUT_START", starts),
+        ints("OUTPUT_START", starts([r.index for r in rows])),
         ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)),
         f"#define FILMS {FILMS}",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum
-from thermoscope.plugin import Array, Ints
+from thermoscope.plugin import Array, Ints, starts
 
 POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED = range(5)
 
@@ -36,21 +36,17 @@ def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
     functions = [f for p in products for f in p.functions]
     xs = [_points(f)[0] for f in functions]
     ys = [_points(f)[1] for f in functions]
-    at_x, at_y = _starts(xs), _starts(ys)
+    at_x, at_y = starts(xs), starts(ys)
     table = [_integers(f, signals, at_x[i], at_y[i]) for i, f in enumerate(functions)]
     return Flat(
-        _starts(factors),
+        starts(factors),
         np.array([p.coefficient for p in products]),
-        _starts([p.functions for p in products]),
+        starts([p.functions for p in products]),
         np.array(table, np.int64).reshape(-1, 8),
         np.array([_numbers(f) for f in functions], float).reshape(-1, 2),
         np.concatenate([np.empty(0), *xs]),
         np.concatenate([np.empty(0), *ys]),
     )
-
-
-def _starts(parts: Sequence[Sequence]) -> Ints:
-    return np.concatenate([[0], np.cumsum([len(p) for p in parts])]).astype(np.int64)
 
 
 def _points(f: Function) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extras.export.expansion import Unknown, expanded
+from extras.export.expansion import expanded
 from extras.export.products import Mapped, Product, Sum, Tabulated
 from thermoscope import InputError
 from thermoscope.plugin import FARTHEST, Array, ExponentError, Inputs, Law, within_silence
@@ -37,7 +37,7 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
         turn = _line(name, ExponentRatio(law), law.input, {law.input: saturated(law, *ranges[law.input])})
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
     expansion = expanded(law)
-    return _table(name, law, ranges) if isinstance(expansion, Unknown) else expansion
+    return _table(name, law, ranges) if expansion is None else expansion
 
 
 def saturated(law: ExponentError, low: float, high: float) -> tuple[float, float]:
