@@ -58,20 +58,7 @@ MACHINE_BYTES = Limit("machine_bytes", 2**24, "bytes", "of a machine file of ano
 STEP_BYTES = Limit("step_bytes", 2**27, "bytes", "of a STEP file: a machine with all its screws is a third of that")
 MESH_POINTS = Limit("mesh_points", 400_000, "points", "of a mesh: to condense a machine of 338,000 takes 12 GB")
 CACHE_BYTES = Limit("cache_bytes", 2_000_000_000, "bytes", "of all cached results: some ten machines, meshes and all")
-LIMITS = (
-    BYTES,
-    ROWS,
-    COLUMNS,
-    CELLS,
-    SECONDS,
-    INSTANTS,
-    DROP_BYTES,
-    TOML_BYTES,
-    MACHINE_BYTES,
-    STEP_BYTES,
-    MESH_POINTS,
-    CACHE_BYTES,
-)
+LIMITS = tuple(limit for limit in list(globals().values()) if isinstance(limit, Limit))
 
 
 class ReadingTime:

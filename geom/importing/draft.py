@@ -62,7 +62,7 @@ class Draft:
 
     def draw(self, name: str, source: str, copies: int, loops: Iterable[Loop]) -> None:
         """Shapes (m) around the axis, for [[outlines.name]]."""
-        points = [[[round(1e3 * x, 9), round(1e3 * y, 9), *([b] if b else [])] for x, y, b in loop] for loop in loops]
+        points = [[[in_mm(x), in_mm(y), *([b] if b else [])] for x, y, b in loop] for loop in loops]
         if points:
             self.take(f"[outlines.{name}]", source, copies=copies, loops_mm=points)
 
@@ -145,6 +145,10 @@ def number(values: Mapping[str, Any], key: str, where: str, low: float = -1e9, h
     if isinstance(value, bool) or not low <= size <= high:
         raise InputError(f"{key} = {str(value)[:40]} is not possible", where, f"a number from {low:g} to {high:g}")
     return size
+
+
+def in_mm(length: float) -> float:
+    return round(1e3 * length, 9)
 
 
 def one_line(text: str) -> str:

@@ -13,7 +13,7 @@ from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
-from geom.importing.draft import Draft, new_draft, number, one_line, read_text
+from geom.importing.draft import Draft, in_mm, new_draft, number, one_line, read_text
 from geom.importing.plane import Place, Point, Slot, arc, loop_through, mirror, unite
 from geom.importing.slots import magnet_of
 
@@ -216,8 +216,8 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     )
     straight = file.length("Wdg_Extension_[F]", 5e-3)
     end = max(file.length("EWdg_Overhang_[F]", 30e-3) - straight, 2e-3)
-    draft.take("geometry.winding", "Wdg_Extension_[F]", straight_mm=_mm(max(straight, 0.5e-3)))
-    draft.take("geometry.winding", "EWdg_Overhang_[F] less Wdg_Extension_[F]", end_mm=_mm(end))
+    draft.take("geometry.winding", "Wdg_Extension_[F]", straight_mm=in_mm(max(straight, 0.5e-3)))
+    draft.take("geometry.winding", "EWdg_Overhang_[F] less Wdg_Extension_[F]", end_mm=in_mm(end))
     reach = radii((Outline(slots, wire),))
     middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
     turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
@@ -283,7 +283,7 @@ def _surface_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
     core = Place(place.radius - thick, -1, place.half)
     sizes = {"H0": 0.0, "Hmag": thick, "W0": arc_, "Wmag": arc_}
     draft.draw("magnets", "Magnet_Thickness, Magnet_Arc_[ED]", poles, magnet_of("SlotM11", core, sizes).filled)
-    draft.take("geometry.rotor", "Stator_Bore, Airgap, Magnet_Thickness", core_diameter_mm=_mm(2 * core.radius))
+    draft.take("geometry.rotor", "Stator_Bore, Airgap, Magnet_Thickness", core_diameter_mm=in_mm(2 * core.radius))
 
 
 ROTORS: dict[str, Callable[[Draft, File, Place, int], None]] = {
@@ -300,14 +300,14 @@ def _frame(draft: Draft, file: File, family_template: str) -> None:
         inner, high = file.length("WJ_Channel-Lam"), file.length("WJ_Channel_Height")
         wide, rib = file.number("WJ_Channel_Width"), file.number("WJ_Channel_Spacing")
         turns = max(round((stack - rib) / max(wide + rib, 1e-6)), 1)
-        values = {"kind": "spiral", "thickness_mm": _mm(inner), "channel_mm": _mm(high)}
+        values = {"kind": "spiral", "thickness_mm": in_mm(inner), "channel_mm": in_mm(high)}
         draft.take("geometry.housing", "Housing_Type, WJ_Channel-Lam, WJ_Channel_Height", **values)
-        draft.take("geometry.housing", "Housing_Dia less all below", wall_mm=_mm(wall - inner - high))
+        draft.take("geometry.housing", "Housing_Dia less all below", wall_mm=in_mm(wall - inner - high))
         draft.take("geometry.housing", "WJ_Channel_Width and WJ_Channel_Spacing over the stack", turns=turns)
         even = (stack - turns * wide) / (turns + 1)
         draft.assume("geometry.housing", "ribs that leave WJ_Channel_Width to each turn", rib_mm=round(even, 6))
     elif wall > 1e-3 and not file.number("Fin_Number_[Total]", usual=0.0) > 1:
-        draft.take("geometry.housing", "Housing_Dia, Stator_Lam_Dia", kind="plain", thickness_mm=_mm(wall))
+        draft.take("geometry.housing", "Housing_Dia, Stator_Lam_Dia", kind="plain", thickness_mm=in_mm(wall))
     else:
         draft.leave("Housing_Type", kind, "this housing is not read: a template stands for it")
         assumptions.template(draft, family_template)
@@ -396,7 +396,3 @@ def _zero(text: str) -> bool:
 
 
 _MATTERS = {"Stator_Lam_Dia", "Stator_Bore", "Stator_Lam_Length", "Slot_Depth", "Tooth_Width", "Airgap", "Shaft_Dia"}
-
-
-def _mm(length: float) -> float:
-    return round(1e3 * length, 9)

@@ -15,7 +15,7 @@ from geom.description.outlines import NOTHING, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
-from geom.importing.draft import Draft, new_draft, number, one_line, read_text
+from geom.importing.draft import Draft, in_mm, new_draft, number, one_line, read_text
 from geom.importing.holes import HOLES, Hole
 from geom.importing.plane import Place, Slot, arc, loop_through, rotate, unite, vertices
 from geom.importing.slots import CURVED, MAGNETS, STEPS, magnet_of, slot_of
@@ -295,9 +295,9 @@ def _fill(draft: Draft, lamination: Lamination, name: str, copies: int, room: fl
 
 def _stator(draft: Draft, stator: Lamination) -> None:
     slot, copies, kind = _slot(stator)
-    draft.take("geometry.stator", "stator.Rext", outer_diameter_mm=_mm(2 * stator.outer))
-    draft.take("geometry.stator", "stator.Rint", bore_diameter_mm=_mm(2 * stator.inner))
-    draft.take("geometry.stator", "stator.L1", stack_length_mm=_mm(stator.length))
+    draft.take("geometry.stator", "stator.Rext", outer_diameter_mm=in_mm(2 * stator.outer))
+    draft.take("geometry.stator", "stator.Rint", bore_diameter_mm=in_mm(2 * stator.inner))
+    draft.take("geometry.stator", "stator.L1", stack_length_mm=in_mm(stator.length))
     draft.take("geometry.stator", "stator.slot.Zs", slots=copies)
     draft.draw("slots", f"stator.slot, {kind}", copies, [slot.path])
     draft.draw("wires", f"stator.slot, {kind}: what the winding fills", copies, slot.filled)
@@ -314,9 +314,9 @@ def _stator(draft: Draft, stator: Lamination) -> None:
     assumptions.end_windings(draft, 2 * min(reach), max(reach) - min(reach), copies, span, fill * room, fill)
     straight = winding.get("Lewout")
     if isinstance(straight, int | float) and 0.5e-3 <= straight <= 0.1:
-        draft.take("geometry.winding", "stator.winding.Lewout", straight_mm=_mm(straight))
+        draft.take("geometry.winding", "stator.winding.Lewout", straight_mm=in_mm(straight))
     else:
-        straight = max(_mm(0.06 * stator.inner), 0.5)
+        straight = max(in_mm(0.06 * stator.inner), 0.5)
         draft.assume("geometry.winding", "in proportion to the bore", straight_mm=straight)
     _stacking(draft, stator, "stator")
 
@@ -379,11 +379,11 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     if not 0.2e-3 <= gap <= 20e-3:
         right = f"stator.Rint = {stator.inner:g} m at least 0.2 mm and at most 20 mm beyond it"
         raise InputError(f"the rotor ends at {top:.6g} m", rotor.where, right)
-    draft.take("geometry.stator", "stator.Rint less the rotor's outermost point", air_gap_mm=_mm(gap))
+    draft.take("geometry.stator", "stator.Rint less the rotor's outermost point", air_gap_mm=in_mm(gap))
     if top > rotor.outer + 1e-9:
-        draft.take("geometry.rotor", "rotor.Rext", core_diameter_mm=_mm(2 * rotor.outer))
+        draft.take("geometry.rotor", "rotor.Rext", core_diameter_mm=in_mm(2 * rotor.outer))
     if abs(rotor.length - stator.length) > 1e-6:
-        draft.take("geometry.rotor", "rotor.L1", stack_length_mm=_mm(rotor.length))
+        draft.take("geometry.rotor", "rotor.L1", stack_length_mm=in_mm(rotor.length))
     _stacking(draft, rotor, "rotor")
 
 
@@ -434,12 +434,12 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
     reach = radii((Outline(copies, slot.filled),))
     ring, high = number(rotor.node, "Lscr", where, 1e-4, 1.0), number(rotor.node, "Hscr", where, 1e-4, 1.0)
     most = 0.95 * (max(reach) - max(rotor.inner, 0.3 * rotor.outer))
-    draft.take("geometry.rotor", "rotor.Lscr", end_mm=_mm(min(ring, 0.3)))
+    draft.take("geometry.rotor", "rotor.Lscr", end_mm=in_mm(min(ring, 0.3)))
     if high < most:
-        draft.take("geometry.rotor", "rotor.Hscr", ring_mm=_mm(high))
+        draft.take("geometry.rotor", "rotor.Hscr", ring_mm=in_mm(high))
     else:
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
-        draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=_mm(min(max(reach) - min(reach), most)))
+        draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=in_mm(min(max(reach) - min(reach), most)))
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
     name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
     draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": name})
@@ -451,7 +451,7 @@ def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, 
     fill, count, section = _fill(draft, rotor, "rotor", copies, room)
     words = f"rotor.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
     draft.take("geometry.rotor", words, fill=float(f"{fill:.9g}"))
-    draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=_mm(0.1 * 2 * rotor.outer))
+    draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=in_mm(0.1 * 2 * rotor.outer))
 
 
 def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
@@ -459,16 +459,16 @@ def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
     diameter = shaft.get("Drsh")
     diameter = diameter if isinstance(diameter, int | float) and diameter > 0 else None
     if rotor.inner > 0:
-        draft.take("geometry.shaft", "rotor.Rint", diameter_mm=_mm(2 * rotor.inner))
+        draft.take("geometry.shaft", "rotor.Rint", diameter_mm=in_mm(2 * rotor.inner))
         if diameter and abs(diameter - 2 * rotor.inner) > 1e-6:
             words = f"contradicts rotor.Rint = {rotor.inner:g} m, which the shaft fills here"
             draft.leave("shaft.Drsh", diameter, words)
         return
     draft.take("geometry.rotor", "rotor.Rint = 0", inside="solid")
     if diameter:
-        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=_mm(diameter))
+        draft.take("geometry.shaft", "shaft.Drsh", diameter_mm=in_mm(diameter))
     else:
-        diameter = max(_mm(0.6 * rotor.outer), 5.0)
+        diameter = max(in_mm(0.6 * rotor.outer), 5.0)
         draft.assume("geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=diameter)
 
 
@@ -478,7 +478,7 @@ def _frame(draft: Draft, document: Node, stator: Lamination, family_template: st
     inner, outer = node.get("Rint"), node.get("Rext")
     housed = family_template != "open"
     if housed and isinstance(inner, int | float) and isinstance(outer, int | float) and outer > inner:
-        draft.take("geometry.housing", "frame.Rext - frame.Rint", thickness_mm=_mm(outer - inner))
+        draft.take("geometry.housing", "frame.Rext - frame.Rint", thickness_mm=in_mm(outer - inner))
         if abs(inner - stator.outer) > 1e-5:
             words = f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"
             draft.leave("frame.Rint", inner, words)
@@ -486,7 +486,3 @@ def _frame(draft: Draft, document: Node, stator: Lamination, family_template: st
     ends = max(ends, draft.value("geometry.rotor", "end_mm") or 0.0) * 1e-3
     stack = max(stator.length, (draft.value("geometry.rotor", "stack_length_mm") or 0.0) * 1e-3)
     assumptions.frame(draft, stack, ends, 2 * stator.outer, 1e-3 * draft.value("geometry.shaft", "diameter_mm"))
-
-
-def _mm(length: float) -> float:
-    return round(1e3 * length, 9)

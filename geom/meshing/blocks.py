@@ -14,10 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from geom.arrays import Ints
+from geom.groups import joined_groups
 from geom.meshing.partition import AMBIENT, Partition
 
 
@@ -62,9 +61,7 @@ def _groups(cut: Partition, slab: int) -> list[Ints]:
     """Sets of solid faces of one slab that are connected through common edges."""
     solid = np.append(cut.solid[:, slab], False)
     inside = solid[cut.left] & solid[cut.right]
-    a, b = cut.left[inside], cut.right[inside]
-    n = len(solid)
-    component = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)[1]
+    component = joined_groups(len(solid), np.column_stack([cut.left[inside], cut.right[inside]]))
     members = defaultdict(list)
     for face in np.flatnonzero(solid):
         members[component[face]].append(face)

@@ -9,11 +9,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from geom.arrays import Array, Ints
+from geom.groups import near_groups
 
 GRID = 1e-7  # m; coordinates are snapped to this
 NEAR = 2e-6  # m; points and lines nearer than this are one, far below any tolerance of a motor
@@ -36,9 +34,7 @@ def _segments(lines: shapely.Geometry) -> tuple[Array, Ints]:
 
 def _merged_points(points: Array) -> Ints:
     """For each point the number of the point that stands for all those near it."""
-    pairs = KDTree(points).query_pairs(NEAR, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
-    group = connected_components(graph, directed=False)[1]
+    group = near_groups(points, NEAR)
     return np.unique(group, return_index=True)[1][group]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Profile
 from geom.errors import InputError
@@ -40,7 +40,7 @@ class Partition:
     parts: tuple[Part, ...]
 
     @property
-    def solid(self) -> NDArray[np.bool_]:
+    def solid(self) -> Mask:
         """(n_face, n_slab) True where a solid part is."""
         is_solid = np.array([part.solid for part in self.parts] + [False])
         return is_solid[self.labels]

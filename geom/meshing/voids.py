@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from geom.arrays import Mask
 from geom.errors import InputError
+from geom.groups import joined_groups
 from geom.meshing.partition import AMBIENT, Partition
 
 
@@ -28,7 +27,7 @@ def filled(cut: Partition) -> Partition:
     return replace(cut, labels=np.where(hidden, takers[0], cut.labels))
 
 
-def _hidden(cut: Partition) -> NDArray[np.bool_]:
+def _hidden(cut: Partition) -> Mask:
     """(n_face, n_slab) True in voids without a label and without a way out."""
     void = cut.labels == AMBIENT
     n_face, n_slab = void.shape
@@ -42,12 +41,11 @@ def _hidden(cut: Partition) -> NDArray[np.bool_]:
     open_cells = np.concatenate([cell[rim].ravel(), cell[:, 0][void[:, 0]], cell[:, -1][void[:, -1]]])
     first = np.concatenate([cell[a][beside], cell[:, :-1][above], open_cells])
     second = np.concatenate([cell[b][beside], cell[:, 1:][above], np.full(len(open_cells), outside)])
-    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(outside + 1, outside + 1))
-    component = connected_components(graph, directed=False)[1]
+    component = joined_groups(outside + 1, np.column_stack([first, second]))
     return void & (component[:-1].reshape(n_face, n_slab) != component[-1])
 
 
-def _where(cut: Partition, hidden: NDArray[np.bool_]) -> str:
+def _where(cut: Partition, hidden: Mask) -> str:
     face, slab = np.argwhere(hidden)[0]
     point = shapely.point_on_surface(cut.faces[face])
     z = cut.levels[slab : slab + 2].mean()

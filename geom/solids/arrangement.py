@@ -8,15 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from geom.description.profile import Loop, Profile, edges, loop_area
+from geom.groups import near_groups
 
-Flags = NDArray[np.bool_]
 TOLERANCE = 1e-10  # m; points nearer than this are one, as in CAD files: above rounding at 10 m, below any gap
 
 
@@ -36,7 +32,7 @@ class Curves:
     sweep: Array
 
     @property
-    def curved(self) -> Flags:
+    def curved(self) -> Mask:
         return self.sweep > 0.0
 
     @property
@@ -89,9 +85,9 @@ class Arrangement:
     centre: Array
     radius: Array
     sweep: Array
-    left: Flags
-    right: Flags
-    corners: Flags
+    left: Mask
+    right: Mask
+    corners: Mask
 
 
 def arrangement(profiles: Sequence[Profile]) -> Arrangement:
@@ -100,7 +96,7 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     points, ends = _points(curves)
     curve, place, pieces = _cut(curves, points)
     middle = curves.at(curve, place)
-    same = np.column_stack([np.sort(pieces, axis=1), _merged(middle)])
+    same = np.column_stack([np.sort(pieces, axis=1), near_groups(middle, TOLERANCE)])
     _, first, kind = np.unique(same, axis=0, return_index=True, return_inverse=True)
     kind = kind.ravel()
     left = np.zeros((len(first), len(profiles)), bool)
@@ -117,7 +113,7 @@ def arrangement(profiles: Sequence[Profile]) -> Arrangement:
     return Arrangement(points, pieces[first], *at, left | within, right | within, corners)
 
 
-def covers(loops: Iterable[Loop], points: Array) -> Flags:
+def covers(loops: Iterable[Loop], points: Array) -> Mask:
     """(n,) whether the points (n, 2) (m) lie inside the loops (even-odd); on an edge either may be said.
 
     A ray crosses the chords; a point between an arc and its chord changes sides once more. A point on a chord is taken
@@ -138,7 +134,7 @@ def covers(loops: Iterable[Loop], points: Array) -> Flags:
     return inside
 
 
-def _curves(profiles: Sequence[Profile]) -> tuple[Curves, Ints, Flags]:
+def _curves(profiles: Sequence[Profile]) -> tuple[Curves, Ints, Mask]:
     """All edges; the profile of each, and whether it has the profile on its left."""
     rows, owner, inside_left = [], [], []
     for k, profile in enumerate(profiles):
@@ -171,16 +167,9 @@ def _points(curves: Curves) -> tuple[Array, Ints]:
     """Ends and crossings, nearly equal ones made one; which point every start, then every end, is."""
     crossings = _crossings(curves)
     loose = np.concatenate([curves.start, curves.end, crossings])
-    which = _merged(loose)
+    which = near_groups(loose, TOLERANCE)
     _, first = np.unique(which, return_index=True)
     return loose[first], which[: 2 * len(curves.start)]
-
-
-def _merged(points: Array) -> Ints:
-    """A number for each point, the same for points that are one."""
-    close = KDTree(points).query_pairs(TOLERANCE, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(close)), tuple(close.T)), shape=(len(points), len(points)))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
 def _crossings(curves: Curves) -> Array:
@@ -244,7 +233,7 @@ def _cut(curves: Curves, points: Array) -> tuple[Ints, Array, Ints]:
     return curve[1:][follows], (place[1:] + place[:-1])[follows] / 2, pieces
 
 
-def _within(profiles: Sequence[Profile], points: Array, on: Flags) -> Flags:
+def _within(profiles: Sequence[Profile], points: Array, on: Mask) -> Mask:
     """(m, k) whether a point lies inside a profile whose edge it is not on."""
     inside = np.zeros_like(on)
     for k, profile in enumerate(profiles):

@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
-from geom.arrays import Ints
+from geom.arrays import Ints, Mask
 from geom.description.part import Prism
 from geom.description.profile import Loop, loop_area
-from geom.solids.arrangement import Flags, arrangement, covers
+from geom.solids.arrangement import arrangement, covers
 
 _DIGITS = 7  # of a level (m); levels that agree in them are one
 _CURVATURE = 1e-7  # rad m; how much a curvature counts where directions are the same
@@ -96,12 +96,12 @@ class Sections:
     def area(self, region: Region) -> float:
         return sum(loop_area(self.outline(loop)) for loop in region)
 
-    def _valence(self, edge: Flags) -> Ints:
+    def _valence(self, edge: Mask) -> Ints:
         """(n, n_point) how many of the pieces end at each point."""
         pieces, points = self.plane.pieces, len(self.plane.points)
         return np.array([np.bincount(pieces[row].ravel(), minlength=points) for row in edge])
 
-    def _runs(self, edge: Flags, corner: Flags) -> list[Run]:
+    def _runs(self, edge: Mask, corner: Mask) -> list[Run]:
         indices, corners, pieces = np.flatnonzero(edge).tolist(), corner.tolist(), self._pieces
         follows = {pieces[p][0]: p for p in indices if not corners[pieces[p][0]]}
         out = []
@@ -156,10 +156,10 @@ class Sections:
         return next(i for i, loop in enumerate(outer) if covers([loop], inside)[0])
 
 
-def _below(flags: Flags) -> Flags:
+def _below(flags: Mask) -> Mask:
     """Of each level, what holds in the section below it."""
     return np.concatenate([np.zeros((1, flags.shape[1]), bool), flags])
 
 
-def _above(flags: Flags) -> Flags:
+def _above(flags: Mask) -> Mask:
     return np.concatenate([flags, np.zeros((1, flags.shape[1]), bool)])

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from OCP.Geom import Geom_Circle, Geom_CylindricalSurface, Geom_Plane, Geom_Surface
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from geom.description.part import Prism
+from geom.groups import joined_groups
 from geom.solids.brep import Boundary, Oriented, axes, line, line_2d
 from geom.solids.sections import Region, Run, Sections
 
@@ -56,10 +55,9 @@ def _shells(faces: list[_Face]) -> list[tuple[list[Any], float]]:
         for key in face.edges:
             of[key].append(i)
     pairs = np.array([pair for pair in of.values() if len(pair) == 2])
-    graph = coo_matrix((np.ones(len(pairs)), tuple(pairs.T)), shape=(len(faces), len(faces)))
-    count, which = connected_components(graph, directed=False)
+    which = joined_groups(len(faces), pairs)
     volume = np.bincount(which, [face.volume for face in faces])
-    members: list[list[Any]] = [[] for _ in range(count)]
+    members: list[list[Any]] = [[] for _ in volume]
     for face, i in zip(faces, which):
         members[i].append(face.face)
     return list(zip(members, volume.tolist()))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.correlations.info import Info, checked
 
-Number = TypeVar("Number", float, NDArray[np.float64])
+Number = TypeVar("Number", float, Array)
 
 # k1 (W/m2/K), k2 ((s/m)^k3), k3, as listed by Staton et al. 2005: end spaces differ by a factor 2 to 3 at standstill.
 PUBLISHED = {

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from geom.arrays import Array
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-Number = TypeVar("Number", float, NDArray[np.float64])
+Number = TypeVar("Number", float, Array)
 CRITICAL_RE = 5e5  # of a smooth plate in quiet air (Incropera); a rough one turns turbulent earlier
 
 

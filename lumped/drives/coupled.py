@@ -46,7 +46,7 @@ def coupled(
     """
     looks = [network.place(place).mean for place in places.values()]
     start = np.concatenate([start_state(network, record), np.zeros(len(network.boundaries))])
-    T = {n: np.full(record.time.size, r.weights @ start[r.index]) for n, r in zip(places, looks, strict=True)}
+    T = {n: np.full(record.time.size, r.at(start)) for n, r in zip(places, looks, strict=True)}
     residuals: list[float] = []
     for _ in range(most):
         inputs = {**record.inputs, **drive(T)}

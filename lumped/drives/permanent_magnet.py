@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
@@ -128,7 +127,7 @@ class _Region:
     psi: Array
     side: float
 
-    def only(self, mask: NDArray[np.bool_]) -> _Region:
+    def only(self, mask: Mask) -> _Region:
         return _Region(self.machine, self.w[mask], self.R[mask], self.psi[mask], self.side)
 
     def other(self) -> _Region:
@@ -168,7 +167,7 @@ class _Region:
         reach, room = np.sqrt(np.maximum(b**2 - a * c, 0.0)), np.sqrt(np.maximum(m.current_limit**2 - i_d**2, 0.0))
         return np.maximum((-b - reach) / a, -room), np.minimum((-b + reach) / a, room)
 
-    def allows(self, i_d: Array, i_q: Array) -> NDArray[np.bool_]:
+    def allows(self, i_d: Array, i_q: Array) -> Mask:
         m, w, R = self.machine, self.w, self.R
         V = np.hypot(R * i_d - w * m.Lq * i_q, R * i_q + w * (m.Ld * i_d + self.psi))
         return np.asarray(

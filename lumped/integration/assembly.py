@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.arrays import Array, Mask
+from geom.arrays import Array, Ints, Mask
 from lumped.model.network import NOTHING, Link, Network, Row, Source
 from lumped.numerics.dense import Structure, least_fill
 from lumped.numerics.terms import CONSTANT, FILM, INVERSE, LINEAR, POWER, RADIATION, STREAM, TABLE, Terms
@@ -23,10 +23,10 @@ class Pattern:
     them an entry stands in; touches: whether any entry stands in a state's column."""
 
     name: str
-    cols: NDArray[np.int64]
+    cols: Ints
     vals: Array
-    row: NDArray[np.int64]
-    to: NDArray[np.int64]
+    row: Ints
+    to: Ints
     law: laws.Law
     hot: Row
     cold: Row
@@ -70,7 +70,7 @@ class Assembly:
         self._vals = floats(p.vals for p in self.patterns)
         self._packed: dict[bytes, Terms] = {}
         self._sizes: dict[bytes, tuple[InputSize, ...]] = {}
-        self._eliminated: dict[bytes, tuple[NDArray[np.int64], Structure]] = {}
+        self._eliminated: dict[bytes, tuple[Ints, Structure]] = {}
 
     def matrix(self, coefficient: Array) -> Array:
         """(n, size + 1): the sum of all patterns, each by its coefficient (ne,); zeros change nothing, to the bit."""
@@ -79,7 +79,7 @@ class Assembly:
             n, width
         )
 
-    def elimination(self, acting: Mask) -> tuple[NDArray[np.int64], Structure]:
+    def elimination(self, acting: Mask) -> tuple[Ints, Structure]:
         """(n,) the order in which the fewest zeros fill in, and what does.
 
         acting (ne,) : terms whose multiplier is not zero; the others change no sum, not by the order of adding either.
@@ -116,7 +116,7 @@ class Assembly:
 
 
 @lru_cache(maxsize=64)
-def _ordered(bits: bytes, n: int) -> tuple[NDArray[np.int64], Structure]:
+def _ordered(bits: bytes, n: int) -> tuple[Ints, Structure]:
     """By where entries may be, packed: most effects sit where something couples already, and 240 states take 40 ms."""
     return least_fill(np.unpackbits(np.frombuffer(bits, np.uint8), count=n * n).reshape(n, n).astype(bool))
 
@@ -177,7 +177,7 @@ def _table(law: laws.TemperatureLaw) -> Array:
     return np.ascontiguousarray(np.array(points, float).T)
 
 
-def starts(parts: Sequence[Sequence | NDArray]) -> NDArray[np.int64]:
+def starts(parts: Sequence[Sequence | NDArray]) -> Ints:
     return np.concatenate([[0], np.cumsum([len(p) for p in parts])]).astype(np.int64)
 
 
@@ -185,7 +185,7 @@ def floats(parts: Iterable[Sequence | NDArray]) -> Array:
     return np.concatenate([np.empty(0), *(np.asarray(p, float) for p in parts)])
 
 
-def ints(parts: Iterable[Sequence | NDArray]) -> NDArray[np.int64]:
+def ints(parts: Iterable[Sequence | NDArray]) -> Ints:
     return np.concatenate([np.empty(0, np.int64), *(np.asarray(p, np.int64) for p in parts)])
 
 
@@ -197,7 +197,7 @@ class InputSize:
     law: laws.Law
 
 
-def input_sizes(patterns: Sequence[Pattern]) -> tuple[tuple[InputSize, ...], NDArray[np.int64]]:
+def input_sizes(patterns: Sequence[Pattern]) -> tuple[tuple[InputSize, ...], Ints]:
     """What temperature laws see of inputs; which column of all that is every pattern's, or 0."""
     columns: dict[tuple[str | None, float], int] = {}
     at = np.zeros(len(patterns), np.int64)
@@ -242,7 +242,7 @@ def _pack(patterns: Sequence[Pattern], steady: Mask) -> Terms:
     )
 
 
-def _numbered(keys: Sequence[Hashable]) -> NDArray[np.int64]:
+def _numbered(keys: Sequence[Hashable]) -> Ints:
     """Equal keys have equal numbers, in the order in which they appear."""
     numbers: dict[Hashable, int] = {}
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], np.int64)

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from lumped.integration.assembly import floats, starts
 from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
@@ -93,7 +92,7 @@ class Walk:
     steps: Steps
     x: Array
     weight: Array
-    row: NDArray[np.int64]
+    row: Ints
     at: Array
 
 
@@ -148,7 +147,7 @@ def _through(network: Network, core: Compiled, mean: Array) -> Array:
     return floats([*sides, *(np.zeros(at.size) for at in rows[links:])])
 
 
-def _rows(core: Compiled) -> list[NDArray[np.int64]]:
+def _rows(core: Compiled) -> list[Ints]:
     """The states that every term takes from, term by term."""
     return [core.terms.row[first:end] for first, end in core.terms.part[:, [ROW, END]]]
 
@@ -166,7 +165,7 @@ def _side(network: Network, link: Link) -> Array:
     return np.zeros(n)
 
 
-def _states(network: Network, place: str) -> NDArray[np.int64]:
+def _states(network: Network, place: str) -> Ints:
     if place in network.places:
         states = network.places[place].states
         return states[states < len(network.states)]

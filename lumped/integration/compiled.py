@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array, Mask
+from geom.arrays import Array, Ints, Mask
 from lumped.integration.assembly import Assembly, assembly, floats, ints, starts
 from lumped.integration.forcing import boundary_table, checked_time, forcing
 from lumped.integration.record import Record
@@ -58,11 +57,11 @@ class Compiled:
     tangents: Tangents
     rows: Rows
     control: Control
-    order: NDArray[np.int64]
+    order: Ints
     structure: Structure
 
     @property
-    def stiff(self) -> NDArray[np.bool_]:
+    def stiff(self) -> Mask:
         """(ne,) which terms are dynamic and touch the matrix."""
         return self.terms.kind[:, DYNAMIC] * self.terms.kind[:, STIFF] == 1
 

@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints, Mask
 from lumped.numerics.knots import halfway
 from lumped.transfer.ranges import within_silence
 
@@ -48,8 +47,8 @@ class Moves(NamedTuple):
     extremes : the samples at which an input is least or largest
     """
 
-    left: NDArray[np.int64]
-    far: NDArray[np.bool_]
+    left: Ints
+    far: Mask
     extremes: Array
 
     @property
@@ -94,11 +93,7 @@ def straight(value: Array) -> Curve:
 
 
 def curve(
-    every: Array,
-    factor: Callable[[Array], Array],
-    moves: Moves,
-    turns: Array = NONE,
-    skip: NDArray[np.bool_] | None = None,
+    every: Array, factor: Callable[[Array], Array], moves: Moves, turns: Array = NONE, skip: Mask | None = None
 ) -> Curve:
     """From a factor, () where it never changes.  every : the factor at moves.positions;  factor : at any positions
 
@@ -134,7 +129,7 @@ def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: flo
     return _inserted(factor, wrong, turns, small) if wrong.size else NONE
 
 
-def _too_curved(five: Array, width: Array | float, small: float) -> NDArray[np.bool_]:
+def _too_curved(five: Array, width: Array | float, small: float) -> Mask:
     """(n,) whether a parabola misses too much of a factor in an interval of that width, a share of that of samples."""
     f0, q1, fm, q3, f1 = five.T
     low, high = (3 * f0 + 6 * fm - f1) / 8, (-f0 + 6 * fm + 3 * f1) / 8

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.arrays import Array, Ints, Mask
 from geom.errors import InputError
@@ -136,7 +135,7 @@ def _between(time: Array, indices: Ints, curves: Sequence[Curve], wholes: Sequen
     return value, bulge
 
 
-def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int64]]:
+def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, Ints]:
     """Positions of the knots, and which sample each of them is (-1: none)."""
     samples = np.arange(time.size)
     more = [c.inserted for c in curves if c.inserted.size]
@@ -149,7 +148,7 @@ def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, NDArray[np.int6
     return at, np.where(whole, at, -1.0).astype(np.int64)
 
 
-def _renewals(time: Array, factor: Array, bulge: Array) -> NDArray[np.int64]:
+def _renewals(time: Array, factor: Array, bulge: Array) -> Ints:
     """How the matrix of every interval differs from the one before: see Forcing."""
     out, ends = np.zeros(time.size, np.int64), np.flatnonzero(np.diff(time) > 0.0) + 1
     varies = np.any((factor[ends] != factor[ends - 1]) | (bulge[ends] != 0.0), axis=1)

@@ -7,15 +7,14 @@ far from a parabola (a switch), the interval is cut at the record's own samples.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array, Mask
+from geom.arrays import Array, Ints, Mask
 from lumped.integration.curve import SMALL, Curve
 
 SWITCH = 0.1  # of the largest factor of an interval: more than measuring noise moves a current or a speed
 
 
-def crowded(time: Array, fine_time: Array) -> NDArray[np.bool_]:
+def crowded(time: Array, fine_time: Array) -> Mask:
     """(nt,) of the interval that ends at a knot: does a finer sample lie inside?"""
     first, last = np.searchsorted(fine_time, time, "right"), np.searchsorted(fine_time, time, "left")
     return np.append(False, last[1:] > first[:-1])
@@ -78,7 +77,7 @@ def integral(fine: Curve, fine_time: Array, at: Array) -> Array:
 
 
 def _deviation_from_parabola(
-    value: Array, bulge: Array, time: Array, cell: NDArray[np.int64], t: Array, f: Array
+    value: Array, bulge: Array, time: Array, cell: Ints, t: Array, f: Array
 ) -> tuple[Array, Array]:
     """(nt,) of the interval that ends at a knot: its largest factor, and how far its samples are from its parabola."""
     s = (t - time[cell]) / (time[cell + 1] - time[cell])

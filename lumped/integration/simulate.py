@@ -11,9 +11,8 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted
@@ -308,7 +307,7 @@ def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:
     """Of ns steps;  moves : for tangents, which need the LU of every step."""
     n, slots = core.C.size, ns if moves else 1
 
-    def whole() -> NDArray[np.int64]:
+    def whole() -> Ints:
         return np.zeros(ns, np.int64)
 
     return Trace(

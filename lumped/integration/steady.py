@@ -74,5 +74,5 @@ def steady(
     reach = Reach(core.terms)
     reach.see(z[None, :])
     reach.tell(core.names)
-    y, dy = [r.weights @ z[r.index] for r in rows], [r.weights @ dz[r.index] for r in rows]
+    y, dy = [r.at(z) for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

@@ -11,12 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from geom.description.bases import THIS_MACHINE
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
 from lumped.transfer.laws import Array, Inputs, Wrapped
-
-THIS_MACHINE = "own"
 
 
 @dataclass(frozen=True)

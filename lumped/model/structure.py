@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from geom.description.roles import Identity
 from geom.errors import InputError
 from lumped.model.quantities import USUAL
@@ -20,8 +19,11 @@ from lumped.transfer.laws import Law
 class Row:
     """A fixed weighted sum of z = [x; u]: `weights @ z[index]` (degC, or K for a difference)."""
 
-    index: NDArray[np.int64]
+    index: Ints
     weights: Array
+
+    def at(self, z: Array) -> float:
+        return float(self.weights @ z[self.index])
 
     def dense(self, size: int) -> Array:
         row = np.zeros(size)
@@ -50,7 +52,7 @@ class Place:
     name: str
     kind: Literal["surface", "part", "node", "fluid"]
     part: str
-    states: NDArray[np.int64]
+    states: Ints
     K: Array
     b: Array
     area: float | None = None
@@ -77,8 +79,8 @@ class Link:
     name: str
     kind: str
     places: tuple[str, str]
-    rows: NDArray[np.int64]
-    cols: NDArray[np.int64]
+    rows: Ints
+    cols: Ints
     vals: Array
     law: Law
     hot: Row
@@ -98,7 +100,7 @@ class Source:
     name: str
     kind: str
     place: str
-    index: NDArray[np.int64]
+    index: Ints
     weights: Array
     law: Law
     probe: Row

@@ -10,9 +10,8 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from lumped.numerics.jit import inner, inner_reordered
 
 GROUP = 4  # rows of U
@@ -55,7 +54,7 @@ def factored(slots: int, structure: Structure) -> Factored:
     return Factored(A, np.zeros((slots, n)), np.zeros((slots, n), np.int64), np.zeros(slots, np.int64), structure)
 
 
-def least_fill(touches: NDArray[np.bool_]) -> tuple[Ints, Structure]:
+def least_fill(touches: Mask) -> tuple[Ints, Structure]:
     """(n,) the order of elimination in which every next unknown has the fewest neighbours left (minimum degree; George
     and Liu 1989), and the structure in it.  touches (n, n) : where a matrix may have entries"""
     A = touches | touches.T
@@ -71,7 +70,7 @@ def least_fill(touches: NDArray[np.bool_]) -> tuple[Ints, Structure]:
     return order, structured(filled[np.ix_(order, order)])
 
 
-def structured(filled: NDArray[np.bool_]) -> Structure:
+def structured(filled: Mask) -> Structure:
     """From where U has entries behind its diagonal (n, n), as L has them below it."""
     n, whole = len(filled), len(filled) // GROUP
     begin: list[Ints] = []
@@ -96,7 +95,7 @@ def dense(n: int) -> Structure:
     return structured(np.triu(np.ones((n, n), bool), 1))
 
 
-def _stretches(entries: NDArray[np.bool_], start: int) -> list[tuple[int, int]]:
+def _stretches(entries: Mask, start: int) -> list[tuple[int, int]]:
     """Columns from `start` on in which there are entries, in whole groups; up to GAP zeros are taken along."""
     out: list[tuple[int, int]] = []
     for j in start + np.flatnonzero(entries[start:]):

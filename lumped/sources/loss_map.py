@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Ints
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
 from lumped.transfer.ranges import out_of_range
 
@@ -47,7 +47,7 @@ class MapLoss(Law):
         return np.clip(x, at[0], at[-1])
 
 
-def _cell(x: Array, at: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
+def _cell(x: Array, at: tuple[float, ...]) -> tuple[Ints, Array]:
     """Index of the grid cell that holds x, and the share of the way through it."""
     grid = np.asarray(at)
     k = np.clip(np.searchsorted(grid, x, side="right") - 1, 0, grid.size - 2)

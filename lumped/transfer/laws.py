@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 
 Inputs = Mapping[str, Array]
 
@@ -149,7 +148,7 @@ class StreamTable(TemperatureLaw):
         return np.asarray(np.maximum(h, np.expm1(np.minimum(N, FULL_UNITS)) * u / self.stretch))
 
 
-def _piece(grid: Array, x: Array) -> tuple[NDArray[np.int64], Array]:
+def _piece(grid: Array, x: Array) -> tuple[Ints, Array]:
     """The piece of a grid that x lies in, and where in it."""
     k = np.clip(np.searchsorted(grid, x, "right") - 1, 0, grid.size - 2)
     return k, (x - grid[k]) / (grid[k + 1] - grid[k])

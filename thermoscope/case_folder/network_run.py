@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.balance import balance
 from measured.case import Case, Test
 from validation.comparison.predict import heat_model, record
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from viz.viewer.network import NetworkRun
 
 
-def network_run(case: Case, test: Test, times: NDArray[np.float64]) -> NetworkRun:
+def network_run(case: Case, test: Test, times: Array) -> NetworkRun:
     """At the times (s) of a test: node -> degC; heat between nodes, the mean over the step that ends there."""
     from viz.figures.flows import heat_flows, last_running_step
     from viz.viewer.network import NetworkRun

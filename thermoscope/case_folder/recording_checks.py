@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.constants import ZERO_C
 from measured.recordings.sheet import Sheet
 from measured.recordings.tables import Samples
@@ -131,7 +130,7 @@ def _spikes(p: Patient) -> Iterator[Finding]:
             )
 
 
-def _moved(p: Patient, name: str) -> NDArray[np.bool_]:
+def _moved(p: Patient, name: str) -> Mask:
     """Rows (n,) at which another column of a test without inputs, or an input, leaps and comes back too."""
     out = np.full(p.samples.time.size, not p.inputs)
     for other, values in p.samples.values.items():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.errors import InputError, MissingDependency
 from viz.colours import LIGHT, VERDICT, Theme, rgb
 from viz.data import Sensor
@@ -101,7 +101,7 @@ class Pulses:
         self._dots("dot", np.ones_like(wrong), colours, DOT, 3)
         self._dots("core", self._hidden, np.full_like(colours, 255), HOLLOW * DOT, 4)
 
-    def _dots(self, name: str, mask: NDArray[np.bool_], colours: NDArray[np.uint8], size: float, order: int) -> None:
+    def _dots(self, name: str, mask: Mask, colours: NDArray[np.uint8], size: float, order: int) -> None:
         self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
         if mask.any():
             actor = self._p.add_points(

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from viz.colours import LIGHT, Theme, missing
 from viz.data import Sensor
 from viz.machine.field import cut_open, paint_cut, room_for
@@ -51,7 +50,7 @@ def misses(
     most = float(np.abs(K).max())
     paint_cut(p, surface, marks.cut, K, (-most, most), theme, missing())
     scene.colour_bar(p, "K", theme)
-    guess: NDArray[np.bool_] = np.asarray(marks.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
+    guess: Mask = np.asarray(marks.cut.solid.values(on_nodes(nodes, explained)) < GUESS)
     _hatch(p, marks.cut.solid, guess, theme)
     renderer: Any = p.renderer
     renderer.ResetCameraClippingRange()
@@ -60,11 +59,11 @@ def misses(
     return scene.save(p, png)
 
 
-def _hatch(p: pyvista.Plotter, surface: Surface, guess: NDArray[np.bool_], theme: Theme) -> None:
+def _hatch(p: pyvista.Plotter, surface: Surface, guess: Mask, theme: Theme) -> None:
     """Stripes, evenly spaced on the screen, over the triangles whose corners are all a guess."""
     import pyvista
 
-    inside: NDArray[np.bool_] = np.all(guess[surface.triangles], axis=1)  # type: ignore[assignment]
+    inside: Mask = np.all(guess[surface.triangles], axis=1)  # type: ignore[assignment]
     hatched = surface.only(inside).compact()
     if not len(hatched.triangles):
         return

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from viz.colours import Theme
 from viz.data import Sensor, short
 from viz.labels import signed
@@ -37,7 +36,7 @@ class Marked:
 
     labelled: tuple[Sensor, ...]
     others: tuple[Sensor, ...]
-    hidden: NDArray[np.bool_]
+    hidden: Mask
     cut: Ghosted
 
     def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme, note: str = "") -> None:

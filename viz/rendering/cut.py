@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from geom.errors import InputError
 from viz.rendering.nodes import SplitMesh, repeated
 
@@ -73,7 +72,7 @@ class Surface:
         """(n_points,) or (n_points, n) values from (n_nodes,) or (n_nodes, n) nodal ones."""
         return self.weights @ T
 
-    def only(self, mask: NDArray[np.bool_]) -> Surface:
+    def only(self, mask: Mask) -> Surface:
         """Some of the triangles, (n,)."""
         return Surface(self.nodes, self.weights, self.triangles[mask], self.part[mask])
 
@@ -199,14 +198,14 @@ def _facing(flat: Surface, normal: Array) -> Surface:
     return Surface(flat.nodes, flat.weights, triangles, flat.part)
 
 
-def _first(cells: Ints, flag: NDArray[np.bool_], count: int) -> Ints:
+def _first(cells: Ints, flag: Mask, count: int) -> Ints:
     """Corners of each cell with the `count` flagged ones first."""
     order = np.argsort(~flag, axis=1, kind="stable")
     assert flag.sum(axis=1).max(initial=count) == count
     return np.take_along_axis(cells, order, axis=1)
 
 
-def _turned(triangles: Ints, flag: NDArray[np.bool_]) -> Ints:
+def _turned(triangles: Ints, flag: Mask) -> Ints:
     """Triangles turned (orientation kept) so that their single flagged corner comes first."""
     turn = (np.argmax(flag, axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(triangles, turn, axis=1)

@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from viz.rendering.cut import Surface, joined, section
 
 SIDES = 20  # of a window: round to the eye
@@ -53,7 +52,7 @@ class Window:
             surface = surface.clipped(n, float(n @ self.eye))
         return surface
 
-    def _near(self, surface: Surface) -> NDArray[np.bool_]:
+    def _near(self, surface: Surface) -> Mask:
         """(n,) triangles with no side of the window between them and it."""
         outside = (surface.points - self.eye) @ self.normals.T < 0
         return ~np.any(np.all(outside[surface.triangles], axis=1), axis=1)
@@ -71,7 +70,7 @@ class Ghosted:
     windows: tuple[Window, ...] = ()
 
 
-def ghosted(surface: Surface, places: Array, mask: NDArray[np.bool_], eye: Array) -> Ghosted:
+def ghosted(surface: Surface, places: Array, mask: Mask, eye: Array) -> Ghosted:
     """The surface with a window to each chosen one of the places (n, 3) m, as seen from `eye` (m); the deepest last.
 
     Where two lines of sight are close, their windows meet midway: each must show its own part.

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from geom.description.roles import Identity, Role
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
@@ -60,16 +59,16 @@ class SplitMesh:
         outer = self.outer().ravel()
         return self.tets[:, FACES].reshape(-1, 3)[outer], np.repeat(self.region, 4)[outer]
 
-    def outer(self) -> NDArray[np.bool_]:
+    def outer(self) -> Mask:
         """(n_tets, 4) which FACES bound their part."""
         return ~repeated(self.tets[:, FACES].reshape(-1, 3)).reshape(-1, 4)
 
-    def touching(self) -> NDArray[np.bool_]:
+    def touching(self) -> Mask:
         """(n_tets, 4) which FACES bound their part and lie on another one."""
         return self.outer() & repeated(self.original[self.tets[:, FACES]].reshape(-1, 3)).reshape(-1, 4)
 
 
-def repeated(triangles: Ints) -> NDArray[np.bool_]:
+def repeated(triangles: Ints) -> Mask:
     """(n,) which triangles, corners (n, 3) in any order, occur more than once."""
     a, b, c = np.sort(triangles, axis=1).T
     step = int(triangles.max(initial=0)) + 1

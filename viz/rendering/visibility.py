@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Mask
 from viz.rendering import scene
 from viz.rendering.cut import Surface
 from viz.rendering.scene import Room, View
@@ -61,7 +61,7 @@ def obstacle(surface: Surface) -> Any:
     return locator
 
 
-def covered(obstacle: Any, points: Array, eye: Array) -> NDArray[np.bool_]:
+def covered(obstacle: Any, points: Array, eye: Array) -> Mask:
     """(n,) does something lie between each of the points (n, 3) m and the eye?"""
     from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 

@@ -124,5 +124,5 @@ def power_of(source: Source, inputs: Mapping[str, float], state: Steady) -> floa
         raise InputError(
             f"loss '{source.name}' follows a {type(law).__name__}", "two resistances", "constant, or as copper does"
         )
-    T = float(source.probe.weights @ state.z[source.probe.index])
+    T = source.probe.at(state.z)
     return factor * temperature_value(law, T, T)

@@ -108,7 +108,7 @@ class Session:
         for c in self.withheld:
             y = rows.readings[c.name]
             estimates = np.array([s.at(c.row)[0] for s in samples])
-            without = np.array([c.row.weights @ z[c.row.index] for z in free])
+            without = np.array([c.row.at(z) for z in free])
             both = np.column_stack([y - estimates, y - without])
             sums = self.errors.setdefault(c.name, [np.zeros(2), np.zeros(2)])
             good = np.isfinite(y)

@@ -150,10 +150,10 @@ class Constants:
 
     def by_sensor(self, j: int, z: Array) -> Iterator[tuple[int, float]]:
         """Where in the vector, and how much (K) its reading at z = [x; u] changes with it."""
-        i, reading = self.first(j), row_temperature(self.channels[j].row, z)
+        i, reading = self.first(j), self.channels[j].row.at(z)
         for k, (row, _) in enumerate(self.beside[j]):
-            yield i + k, row_temperature(row, z) - reading
-        yield i + len(self.beside[j]), reading - row_temperature(self.air, z)
+            yield i + k, row.at(z) - reading
+        yield i + len(self.beside[j]), reading - self.air.at(z)
         yield i + len(self.beside[j]) + 1, 1.0
 
     def bias(self, j: int, w: Array) -> float:
@@ -164,8 +164,3 @@ class Constants:
         return {
             c.name: Sensor(replace(c, row=self.sensor_row(j, w)), self.bias(j, w)) for j, c in enumerate(self.channels)
         }
-
-
-def row_temperature(row: Row, z: Array) -> float:
-    """At a row (degC) of z = [x; u]."""
-    return float(row.weights @ z[row.index])

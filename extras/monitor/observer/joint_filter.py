@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from extras.monitor.observer.constants import Constants, row_temperature
+from extras.monitor.observer.constants import Constants
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Record
@@ -138,7 +138,7 @@ class _Run:
 
     def _reading_of(self, c: Channel, z: Array) -> float:
         j = self.at[c.name]
-        return row_temperature(self.of.constants.sensor_row(j, self.w), z) + self.of.constants.bias(j, self.w)
+        return self.of.constants.sensor_row(j, self.w).at(z) + self.of.constants.bias(j, self.w)
 
     def _slope(self, c: Channel, z: Array) -> Array:
         """(N,) what a reading sees of everything."""
@@ -209,7 +209,7 @@ class _Terms:
     def _laws(self, z: Array) -> Array:
         out = np.ones(len(self.every.patterns))
         for e, law, hot, cold in self._bent:
-            out[e] = temperature_value(law, row_temperature(hot, z), row_temperature(cold, z), self._sizes[e])
+            out[e] = temperature_value(law, hot.at(z), cold.at(z), self._sizes[e])
         return out
 
     def heat(self, z: Array) -> tuple[Array, Array]:
@@ -249,6 +249,6 @@ def _slope(law: TemperatureLaw, hot: Row, cold: Row, z: Array, side: int, size: 
     """Of a law with one of its temperatures, at a size of the input that it sees."""
     if law == CONSTANT:
         return 0.0
-    a, b = row_temperature(hot, z), row_temperature(cold, z)
+    a, b = hot.at(z), cold.at(z)
     more = temperature_value(law, a + STEP_K * (side == 0), b + STEP_K * (side == 1), size)
     return (more - temperature_value(law, a, b, size)) / STEP_K

@@ -57,7 +57,7 @@ class Sample:
         z = np.concatenate([self.x, self.u])
         inside = row.index < self.x.size
         h = row.weights[inside] @ self.along[row.index[inside]]
-        return float(row.weights @ z[row.index]), float(np.linalg.norm(h @ self.S[: h.size]))
+        return row.at(z), float(np.linalg.norm(h @ self.S[: h.size]))
 
 
 @dataclass
@@ -98,7 +98,7 @@ class Observer:
 
     def _update(self, by: Driven, k: int, readings: Array, seconds: float) -> None:
         z = np.concatenate([self.filter.x, by.u[k]])
-        expected = np.array([c.row.weights @ z[c.row.index] for c in self.sensors])
+        expected = np.array([c.row.at(z) for c in self.sensors])
         lag = np.array([c.lag_s for c in self.sensors])
         keeps = np.exp(-seconds / np.maximum(lag, 1e-9)) if self.started else np.zeros(lag.size)
         self.lagged = expected + keeps * (self.lagged - expected)

@@ -93,13 +93,13 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     strength = np.array(
         [
             m.get(p.name, 1.0)
-            * (coefficient(p.law, at, _T(p.hot, z), _T(p.cold, z)) if p.touches else float(np.mean(p.law.factor(at))))
+            * (coefficient(p.law, at, p.hot.at(z), p.cold.at(z)) if p.touches else float(np.mean(p.law.factor(at))))
             for p in every.patterns
         ]
     )
     G = every.matrix(strength)[:, :n]
     for s, c in zip(network.sources, strength[len(network.links) :], strict=True):
-        if slope_1_K := loss_slope(s.law.temperature, _T(s.probe, z)):
+        if slope_1_K := loss_slope(s.law.temperature, s.probe.at(z)):
             slope = c * slope_1_K * s.weights
             np.subtract.at(G, (s.index[:, None], s.probe.index[None, :]), np.outer(slope, s.probe.weights))
     return G
@@ -112,13 +112,9 @@ def losses(
     m, at = multipliers(network, values), {n: np.array([float(u)]) for n, u in inputs.items()}
     sources = [s for s in network.sources if s.kind in kinds]
     watts = [
-        float(np.mean(s.law.factor(at))) * temperature_value(s.law.temperature, _T(s.probe, z), 0.0) for s in sources
+        float(np.mean(s.law.factor(at))) * temperature_value(s.law.temperature, s.probe.at(z), 0.0) for s in sources
     ]
     return sum(m.get(s.name, 1.0) * w for s, w in zip(sources, watts, strict=True))
-
-
-def _T(row: Row, z: Array) -> float:
-    return float(row.weights @ z[row.index])
 
 
 def without_feedback(network: Network, T: float) -> Network:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
@@ -107,7 +107,7 @@ def largest(sensors: Sequence[Sensor]) -> str:
 
 
 def misses(
-    folder: Folder, model: Case, test: Test, times: NDArray[np.float64], limit_K: Mapping[str, float]
+    folder: Folder, model: Case, test: Test, times: Array, limit_K: Mapping[str, float]
 ) -> list[tuple[Sensor, ...]]:
     """At each of the times (s): the sensors with a place, and what the model misses there."""
     from viz.data import Sensor
