@@ -14,12 +14,12 @@ from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import (
-    added_words,
     before_last,
     by_interest,
     fields,
     instant_words,
     readings,
+    step_words,
     temperature_range,
 )
 from thermoscope.commands.open_case import needs_geometry, open_case
@@ -80,22 +80,14 @@ def film(
 
 def before(folder: Folder) -> str:
     """The model before its last step, in words."""
-    added = step_words(folder)
-    return f"without {added}" if added else "the model before its last step"
+    last = folder.history.last
+    return f"without {step_words(folder.case, last)}" if last.action == "add" else "the model before its last step"
 
 
 def now(folder: Folder) -> str:
     """The model as it is, in words."""
-    added = step_words(folder)
-    return f"with {added}" if added else "the model now"
-
-
-def step_words(folder: Folder) -> str:
-    """What the last step added, as an engineer says it; empty where it added nothing."""
-    from validation.revision.revise import TOGETHER
-
     last = folder.history.last
-    return added_words(folder.case, last.effect.split(TOGETHER)) if last.action == "add" else ""
+    return f"with {step_words(folder.case, last)}" if last.action == "add" else "the model now"
 
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
