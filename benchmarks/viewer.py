@@ -37,12 +37,13 @@ from typing import Any
 import numpy as np
 
 from geom import build_mesh, load_machine
+from geom.plugins import plugins
 from lumped.model.network import Row
 from measured.case import Channel, Test
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
-from viz.viewer.page import Recorded, document, render
+from viz.viewer.page import Recorded, analysis_document, machine_document, render, temperature_document
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -90,7 +91,9 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     test = Test("hour", "hold-out", times, {}, {"ambient": np.full(FRAMES, 20.0)}, channels)
     comparison = Comparison(test, dict.fromkeys(at, model), dict.fromkeys(at, 1.0))
     page, machine = folder / "viewer.html", load_machine(MACHINE)
-    page.write_text(render(document("motor", nodes, [Recorded(comparison, times, fields)], at, machine=machine)))
+    tests, looks = [Recorded(comparison, times, fields)], plugins("sections")["looks"].packed_looks(machine, nodes)
+    content = machine_document("motor", nodes, None, looks) | analysis_document(tests, nodes, None)
+    page.write_text(render(content | temperature_document(nodes, tests, at, None, ("now", "before"), None)))
     return page
 
 

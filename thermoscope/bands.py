@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
@@ -26,7 +26,6 @@ from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stre
 from validation.bands.posterior import rows_read
 from validation.counting import counted
 
-Array = NDArray[np.float64]
 SMALL = 40  # states up to which bands cost less than a run's other work
 JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds
 LAYOUT = 3  # of a kept file: a change here makes old ones be left alone

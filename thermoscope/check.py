@@ -20,8 +20,8 @@ from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import EXTRAS
+from viz.pages.pdf import BROWSERS
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
 CHROMIUM = "apt-get install -y chromium"
 

@@ -103,7 +103,6 @@ from lumped.sources.loss_laws import (
     IronLoss as IronLoss,
     PowerLoss as PowerLoss,
 )
-from lumped.transfer.exchanger import Rate as Rate
 from lumped.transfer.laws import (
     CLOCK as CLOCK,
     CONSTANT as CONSTANT,

@@ -12,7 +12,7 @@ import numpy as np
 from extras.portraits.moving import moving
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import before_last, by_interest, fields, temperature_range
-from thermoscope.commands.show.film import before, misses, now, title
+from thermoscope.commands.show.film import misses, model_words, title
 from viz.rendering.nodes import split
 
 FRAMES, PER_SECOND, WIDTH = 48, 12.0, 640  # 48 pictures for each model: eight seconds
@@ -26,7 +26,7 @@ def draw(case: Path, gif: Path) -> None:
     assert earlier is not None, "a case whose model has had a step"
     limit_K = folder.limits(test)
     nodes, T, titles, seen = split(folder.built.mesh), [], [], []
-    for words, model in ((before(folder), earlier), (now(folder), folder.case)):
+    for words, model in zip(model_words(folder), (earlier, folder.case), strict=True):
         times, values = fields(model, test, nodes, FRAMES)
         rows = misses(folder, model, test, times, limit_K)
         T.append(values)

@@ -10,7 +10,14 @@ from pathlib import Path
 from PIL import Image
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, by_interest, comparison_of, end_words, fields, temperature_range
+from thermoscope.case_folder.runs import (
+    before_last,
+    by_interest,
+    comparison_of,
+    fields,
+    instant_words,
+    temperature_range,
+)
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
 from viz.rendering import scene
@@ -24,7 +31,7 @@ def draw(case: Path, png: Path) -> None:
     wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
-    title = f"{end_words(test)}: measured minus modelled"
+    title = f"{instant_words(test, test.time[-1])}: measured minus modelled"
     ends = temperature_range(folder, nodes)
     p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
     words = f"found missing:\n{last.effect}\nadded: {before:.2f} K → {after:.2f} K rms"

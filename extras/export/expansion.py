@@ -23,7 +23,6 @@ from thermoscope.plugin import (
     MeasuredLoss,
     OneWay,
     PowerLoss,
-    Rate,
     Scaled,
     Stirred,
     Streamed,
@@ -100,12 +99,6 @@ def _(law: MeasuredLoss) -> Sum | Unknown:
 @expanded.register
 def _(law: Streamed) -> Sum | Unknown:
     return (Product(law.value),)
-
-
-@expanded.register
-def _(law: Rate) -> Sum | Unknown:
-    flow = law.flow
-    return (Product(flow.rate, (Powered(flow.of, 1.0, 1.0),) if flow.of else ()),)
 
 
 @expanded.register

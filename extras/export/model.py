@@ -114,6 +114,8 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
     constant = [float(p.law.factor({})) if s else 0.0 for p, s in zip(every.patterns, steady, strict=True)]
     inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in _read(every, live))
     hidden = np.array(["#" in s for s in network.states], bool)
+    # What temperature laws see: (input, 0), or (None, a size)
+    laws = [x.law for x in every.input_sizes(live)]
     return Model(
         network.name,
         0,
@@ -129,15 +131,9 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
         tuple(looks),
         state_units(network),
         (~hidden).astype(np.int64),
-        _sizes(every, live),
+        tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws),
         initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
     )
-
-
-def _sizes(every: Assembly, live: NDArray[np.bool_]) -> tuple[tuple[str | None, float], ...]:
-    """What temperature laws see: (input, 0), or (None, a size)."""
-    laws = [x.law for x in every.input_sizes(live)]
-    return tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws)
 
 
 def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:

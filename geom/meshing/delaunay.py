@@ -64,11 +64,7 @@ def triangulate_face(points: Array, border: Ints, face: shapely.Polygon) -> Ints
     complete = abs(_doubled_area(points, triangles).sum() / 2 / face.area - 1) < 1e-9
     if complete and not len(_missing(triangles, border)):
         return triangles
-    return _plain(points, face)
-
-
-def _plain(points: Array, face: shapely.Polygon) -> Ints:
-    """Constrained Delaunay triangles between border points only (GEOS, robust)."""
+    # Constrained Delaunay triangles between border points only (GEOS, robust)
     corners = shapely.get_coordinates(shapely.get_parts(shapely.constrained_delaunay_triangles(face)))
     tree = shapely.STRtree(shapely.points(points))
     number = tree.nearest(shapely.points(corners)).reshape(-1, 4)[:, :3]

@@ -59,14 +59,9 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     exact = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
     polygons = shapely.set_precision(exact, GRID, mode="pointwise")  # equal corners become equal to the bit
     faces = _tile(polygons)
-    levels = axial_levels(parts)
+    levels = np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
     labels = _label(parts, profiles, polygons, faces, levels)
     return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
-
-
-def axial_levels(parts: Sequence[Part]) -> Array:
-    """Sorted distinct end planes of all prisms (m)."""
-    return np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
 
 
 def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:

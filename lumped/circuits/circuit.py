@@ -20,10 +20,10 @@ from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectang
 from lumped.correlations.info import Info
 from lumped.correlations.streams import LEAST, MOST, streamed
 from lumped.model.build import node_row
-from lumped.model.network import Link, Network, Row
+from lumped.model.network import NOTHING, Link, Network, Row
 from lumped.transfer.coolant import Coolant
-from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow, Rate
-from lumped.transfer.laws import FULL_UNITS, AtUsualTemperature, InputPower, Law
+from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow
+from lumped.transfer.laws import CONSTANT, FULL_UNITS, AtUsualTemperature, InputPower, Law, TemperatureLaw
 from lumped.transfer.properties import Fluid
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
@@ -32,7 +32,6 @@ PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
 
 Edge = tuple[str, str]  # from, to
-NOTHING = Row(np.empty(0, np.int64), np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -87,6 +86,10 @@ class Circuit:
     def stream(self) -> Flow:
         """Heat capacity rate of the flow."""
         return Flow(self.heat * (PER_M3S[self.unit] if self.of else self.flow), self.of)
+
+    def _rate(self, temperature: TemperatureLaw = CONSTANT) -> InputPower:
+        """Heat capacity rate (W/K) of the flow as a law, times one of temperature."""
+        return InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), temperature)
 
     def shares(self, flow: float | None = None, degC: float | None = None) -> dict[str, float]:
         """Of a flow (m3/s) through each branch, from equal pressure drop: as declared where nothing else is said."""
@@ -158,7 +161,7 @@ class Circuit:
 
         Branches are streams of their own, whose shares follow flow and mean temperature, and sum to 1.
         """
-        rate = Rate(self.stream())
+        rate = self._rate()
         if len(self.branches) == 1:
             (path,) = self._paths.values()
             return self._both_ways(network, "", [*path, *self._return], rate)
@@ -190,7 +193,7 @@ class Circuit:
         alike = self._streamed(self.branches[branch][0], branch, 0.0).table
         number, value = flows - math.log(self._unit), np.tile(each[branch], len(alike.total))
         table = replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist()))
-        stream = InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), table)
+        stream = self._rate(table)
         return stream if self.follows else AtUsualTemperature(stream)
 
     def _streamed(self, part: Pass, branch: str, stretch: float) -> Streamed:

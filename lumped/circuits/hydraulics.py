@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.correlations.ducts import LAMINAR, TURBULENT
 from lumped.transfer.properties import Fluid
 
-Array = NDArray[np.float64]
 POINTS = 1600  # of a split, 2 % apart in flow, beside the kinks of the friction: straight in between to 1e-4 of a share
 COIL_BRIDGE = 1.2  # of a coil's critical Re, where Schmidt's turbulent friction begins: his branches do not meet
 COIL_JUMP = 2.2e4  # Re at which his turbulent friction steps up

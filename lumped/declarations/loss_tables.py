@@ -82,6 +82,10 @@ def _brush(table: Table) -> Law:
 def _measured(table: Table, speeds: Collection[str]) -> Law:
     table.words("less", [])
     # Taken off. speeds : inputs in 1/min, which come with pi/30; a product of several without one needs its factor
+    electrical = []
+    for item in table.listed("electrical"):
+        electrical.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
+        item.close()
     out = []
     for item in table.listed("mechanical"):
         names = item.words("product")
@@ -91,7 +95,7 @@ def _measured(table: Table, speeds: Collection[str]) -> Law:
             raise item.error("none of these inputs is known as a speed", right)
         out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
         item.close()
-    return MeasuredLoss(_electrical(table) + tuple(out))
+    return MeasuredLoss((*electrical, *out))
 
 
 def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
@@ -134,17 +138,6 @@ def _map(table: Table) -> Law:
     return MapLoss(
         speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"), _temperature(table)
     )
-
-
-Products = tuple[tuple[float, tuple[str, ...]], ...]
-
-
-def _electrical(table: Table) -> Products:
-    out = []
-    for item in table.listed("electrical"):
-        out.append((item.number("factor", 1.0, of="electrical.factor"), item.words("product")))
-        item.close()
-    return tuple(out)
 
 
 LOSSES = {"copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter}

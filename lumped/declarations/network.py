@@ -16,7 +16,7 @@ from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
-from lumped.model.network import Link, Network, Place, Row, Source
+from lumped.model.network import NOTHING, Link, Network, Place, Source
 from lumped.model.quantities import INPUTS
 from lumped.model.soundness import checked_names, checked_path, islands
 from lumped.schemas.reader import Table, suggestion
@@ -191,7 +191,7 @@ def _links(network: Network, top: Table) -> list[Link]:
             kind = "film" if surface is not None else "link"
             link = node_link(network, full, kind, a, b, law, area if per_area else 1.0)
             if isinstance(law, Streamed) and law.liquid:
-                link = replace(link, hot=link.cold, cold=Row(np.empty(0, np.int64), np.empty(0)))
+                link = replace(link, hot=link.cold, cold=NOTHING)
             out.append(replace(link, places=(ends[0], b)))
         table.raw("prior_sd")
         table.close()

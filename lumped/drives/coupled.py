@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ALPHA_CU
 from geom.errors import ThermoscopeError
 from lumped.drives.drive import Controller, Cycle, SeriesMachine, Vehicle, drive_cycle
@@ -17,7 +17,6 @@ from lumped.integration.compiled import READINGS
 from lumped.integration.simulate import Record, Run, simulate, start_state
 from lumped.model.network import Network, Row
 
-Array = NDArray[np.float64]
 Drive = Callable[[Mapping[str, Array]], Mapping[str, Array]]
 
 

@@ -12,12 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import GRAVITY, RPM
 from lumped.numerics.jit import entry
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array
 
 
 def _blocks(edges: Array, levels: Array, step: float) -> tuple[Array, Array]:

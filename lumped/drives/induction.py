@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Ints
+from geom.arrays import Array, Ints
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
-Array = NDArray[np.float64]
 ALPHA_AL = 1.0 / 245.0  # 1/K at 20 degC, cast aluminium: 1 / (225 + 20), IEC 60034-2-1
 RATIOS = 1e-6, 1e3  # i_q / i_d: from no load to far beyond pull-out, which lies below 1 / leakage factor
 STEPS = 64  # of the ratio, a third of it each, and closer where the field stands still: in between is one maximum

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array
+
 HALVINGS = 50  # a current to the last digit
 GOLDEN, SHRINKS = 0.5 * (5.0**0.5 - 1.0), 40  # golden section: the place of a maximum to half the digits
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
-Array = NDArray[np.float64]
 TINY = 1e-30  # in place of 0 ohm and 0 V/A, where no voltage limits a current
 EDGE = 1e-9  # of a current or voltage limit: what counts as kept
 

@@ -10,14 +10,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.model.network import Link, Network, Row, Source
+from geom.arrays import Array, Mask
+from lumped.model.network import NOTHING, Link, Network, Row, Source
 from lumped.numerics.dense import Structure, least_fill
 from lumped.numerics.terms import CONSTANT, FILM, INVERSE, LINEAR, POWER, RADIATION, STREAM, TABLE, Terms
 from lumped.transfer import laws
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-NOTHING = Row(np.empty(0, np.int64), np.empty(0))
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.balance import Balance, Walk, counted, walk
 from lumped.integration.compiled import compiled
 from lumped.integration.record import Record
@@ -17,8 +17,6 @@ from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Source
 from lumped.transfer.laws import CONSTANT, TemperatureLaw
 from lumped.transfer.terms_value import temperature_value
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

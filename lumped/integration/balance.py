@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.assembly import floats, starts
 from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
@@ -17,7 +18,6 @@ from lumped.numerics.heat_integrals import count
 from lumped.numerics.stages import Steps, stages, work
 from lumped.numerics.terms import END, ROW
 
-Array = NDArray[np.float64]
 # Radau's quadrature of order five over a step, which does not look at its start (Hairer and Wanner 1996, sec. IV.5)
 NODES = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0])
 WEIGHTS = np.array([(16.0 - np.sqrt(6.0)) / 36.0, (16.0 + np.sqrt(6.0)) / 36.0, 1.0 / 9.0])

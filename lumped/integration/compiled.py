@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Mask
 from lumped.integration.assembly import Assembly, assembly, floats, ints, starts
 from lumped.integration.forcing import boundary_table, checked_time, forcing
 from lumped.integration.record import Record
@@ -21,8 +22,6 @@ from lumped.numerics.kernel import Control, Rows
 from lumped.numerics.tangents import Tangents
 from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
 
 

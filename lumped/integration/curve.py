@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.numerics.knots import halfway
 from lumped.transfer.ranges import within_silence
 
-Array = NDArray[np.float64]
 CURVED = 1e-3  # of the largest factor of an interval: what a parabola may miss, times its share of the interval
 MISSED = 0.01  # and however short that is: a cell of 0.1 J/K follows at once (to |x|^0.8 from 0 on it misses 0.024)
 SMALL = 1e-2  # of the largest factor of a record: less than that counts as that

@@ -13,13 +13,12 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, MissingDependency
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Network, Row
 
-Array = NDArray[np.float64]
 Members = Sequence[Mapping[str, float]]
 CHUNKS = 8  # per worker: small enough that none waits long for the last
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.integration.runaway import grows
+from lumped.integration.runaway import growing_losses
 from lumped.model.network import Network
 from lumped.numerics.kernel import HOT, KNOT, NODE, OUTSIDE, SHARE, STATUS, Position
 from lumped.numerics.terms import Forcing
@@ -19,7 +19,7 @@ def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) ->
     """What to say of where the run stands."""
     status, t, hottest = int(at.at[STATUS]), _instant(forcing, at), core.control.hottest[0]
     node, where = network.states[int(at.at[NODE])], f"{network.title}: "
-    if status == HOT and (growing := _growing(network)):
+    if status == HOT and (growing := growing_losses(network)):
         tables = ", ".join(f"[losses.{name}]" for name in growing)
         why = f"{tables} grow faster with temperature than its cooling: check the units of their inputs"
         return f"{where}thermal runaway at t = {t:g} s: '{node}' passes {hottest:g} degC; {why}"
@@ -36,12 +36,6 @@ def _instant(forcing: Forcing, at: Position) -> float:
     j = min(int(at.at[KNOT]), forcing.time.size - 1)
     before = forcing.time[max(j - 1, 0)]
     return float(before + at.clock[SHARE] * (forcing.time[j] - before))
-
-
-def _growing(network: Network) -> list[str]:
-    """Losses that grow with temperature."""
-    sources = [s for s in network.sources if not s.origin and grows(s.law)]
-    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in sources))
 
 
 def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:

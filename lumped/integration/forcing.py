@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints, Mask
 from geom.errors import InputError
 from lumped.integration.assembly import InputSize, Pattern
 from lumped.integration.curve import NONE, ROUNDING, SMALL, Curve, between, straight
@@ -15,9 +16,6 @@ from lumped.model.network import Network
 from lumped.numerics.knots import needed, placed
 from lumped.numerics.terms import Forcing
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 PARABOLA, PARABOLA_K = 2e-4, 1e-3  # of the largest of an interval, K: a few hundredths of what a step may be wrong by
 
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Mask
 from lumped.integration.curve import SMALL, Curve
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 SWITCH = 0.1  # of the largest factor of an interval: more than measuring noise moves a current or a speed
 
 

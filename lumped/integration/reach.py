@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.numerics.terms import CODE, COLD, HOT, POINT, STREAM, Terms
 from lumped.transfer.ranges import out_of_range
-
-Array = NDArray[np.float64]
 
 
 class Reach:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.model.network import Network
 from lumped.transfer.laws import Law, Linear
 
-Array = NDArray[np.float64]
 LIMIT_C = 1e4  # no machine; a run that passes it has no meaning, though its numbers are finite
 
 
@@ -29,8 +28,14 @@ def grows(law: Law) -> bool:
     return isinstance(law.temperature, Linear) and law.temperature.alpha > 0.0
 
 
+def growing_losses(network: Network) -> list[str]:
+    """The network's own losses that grow with temperature, by name."""
+    sources = [s for s in network.sources if not s.origin and grows(s.law)]
+    return list(dict.fromkeys(s.name.removeprefix("loss:") for s in sources))
+
+
 def _cause(network: Network) -> str:
-    growing = [s.name.removeprefix("loss:") for s in network.sources if grows(s.law)]
+    growing = growing_losses(network)
     if not growing:
         return "check its capacity, its links and the losses at it"
     tables = ", ".join(f"[losses.{name}]" for name in growing)

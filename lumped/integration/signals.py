@@ -8,15 +8,14 @@ from typing import Any, NamedTuple
 from weakref import ref
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.integration.curve import FAR, NONE, Between, Curve, Moves, between, curve, parabolas, straight
 from lumped.integration.projection import crowded, projected
 from lumped.numerics.knots import moved
 from lumped.transfer.laws import Fixed, Law
 
-Array = NDArray[np.float64]
 MOST_FINER = 8  # finer ones of one record: every event that is tried needs others, and each holds a factor of every law
 LONG = 200_000  # samples: of longer records only the factors are kept of which every stretch asks for the whole
 

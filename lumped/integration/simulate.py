@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted
@@ -41,7 +42,6 @@ from lumped.numerics.steady_start import solve_steady_start
 from lumped.numerics.tangents import differentiate
 from lumped.numerics.terms import Forcing
 
-Array = NDArray[np.float64]
 PORTION = 4096  # steps whose states are kept for their tangents
 ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
 FINER = 100.0  # as exact: next to nothing is left of the error then, in 5 times the steps

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from geom.table import Table, TableResult
 from geom.text import table
@@ -18,7 +18,6 @@ from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.stages import stages, work
 from lumped.numerics.steady_start import solve_steady_start
 
-Array = NDArray[np.float64]
 SCREEN = 20  # temperatures that a notebook shows
 ABOVE_K = 30.0  # still air takes nothing without a difference: a start without one would leave the nodes unheld
 

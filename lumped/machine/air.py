@@ -29,7 +29,7 @@ from lumped.correlations.info import Info
 from lumped.correlations.streams import LEAST, MOST, streamed
 from lumped.machine.settings import Fan, Films
 from lumped.machine.shapes import Gap, gap_fluid
-from lumped.model.network import Link, Network, Row
+from lumped.model.network import NOTHING, Link, Network, Row
 from lumped.transfer.laws import Array, InputPower, Inputs, Law, StreamTable, Table
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.reversal import OneWay
@@ -165,5 +165,5 @@ def _stream(network: Network, edges: list[tuple[str, str]], rate: Law, usual: fl
     law = OneWay(
         rate, "fan_flow_m3h", "[fans]", "a flow from left to right: what comes in at the right is not known", usual
     )
-    intake, nothing = Row(np.array([network.column("ambient")]), np.ones(1)), Row(np.empty(0, np.int64), np.empty(0))
-    return Link(f"stream:fan:{edges[0][1]}", "stream", edges[0], rows, cols, vals, law, intake, nothing)
+    intake = Row(np.array([network.column("ambient")]), np.ones(1))
+    return Link(f"stream:fan:{edges[0][1]}", "stream", edges[0], rows, cols, vals, law, intake, NOTHING)

@@ -22,7 +22,8 @@ from lumped.correlations.info import Info
 from lumped.correlations.streams import streamed
 from lumped.machine.path import cells_of, stem
 from lumped.machine.shapes import radius
-from lumped.model.network import Link, Network, Place, Row
+from lumped.model.build import stream
+from lumped.model.network import NOTHING, Link, Network, Place, Row
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import AtUsualTemperature, InputPower, Law
 from lumped.transfer.properties import Fluid, ethylene_glycol, propylene_glycol, water
@@ -143,7 +144,7 @@ def outlet_film(machine: Machine, network: Network, place: str, cooling: Cooling
     law = onto_outlet(machine, jacket, cooling, wet)
     between = np.array([network.column(feeds[cell]), network.column(cell)])
     link = network.surface_link(f"film:{place}", "film", place, cell, law)
-    return replace(link, hot=Row(between, np.array([0.5, 0.5])), cold=Row(np.empty(0, np.int64), np.empty(0)))
+    return replace(link, hot=Row(between, np.array([0.5, 0.5])), cold=NOTHING)
 
 
 @lru_cache(64)
@@ -164,20 +165,15 @@ def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
 def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
     """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
     feeds = _feeds(machine, cooling).items()
-    return [_stream(network, feed, cell, _rate_law(machine, stem(cell), cooling)) for cell, feed in feeds]
+    return [
+        stream(network, f"stream:{cell}", (feed, cell), _rate_law(machine, stem(cell), cooling)) for cell, feed in feeds
+    ]
 
 
 def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     right = "a flow from inlet to outlet: what comes in at the outlet is not known"
     rate = InputPower(_rate(jacket, cooling), ((FLOW, 1.0, 1.0),))
     return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
-
-
-def _stream(network: Network, feed: str, cell: str, law: Law) -> Link:
-    i, before, one = network.column(cell), network.column(feed), np.array([1.0])
-    ends, of, rows = (feed, cell), np.array([i, before]), np.array([i, i])
-    hot, cold = Row(np.array([i]), one), Row(np.array([before]), one)
-    return Link(f"stream:{cell}", "stream", ends, rows, of, np.array([1.0, -1.0]), law, hot, cold)
 
 
 def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, Place]:

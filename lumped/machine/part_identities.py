@@ -64,17 +64,12 @@ def _by_material(machine: Machine, part: Part) -> Identity:
         return Identity(role, stands, f"made of {part.material}")
     if wound(machine, part.name):
         return Identity(Role.WINDING, None, "made of wires along the axis")
-    if _on_axis(part):
-        return Identity(Role.SHAFT, True, "the axis runs through it")
-    return Identity(None, None, "nothing tells")
-
-
-def _on_axis(part: Part) -> bool:
-    """Is the machine's axis inside all of its prisms?"""
     import shapely
 
     grid = ArcGrid([profile for profile, _, _ in part.prisms], 24)
-    return all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms)
+    if all(profile.to_polygon(grid).contains(shapely.Point(0.0, 0.0)) for profile, _, _ in part.prisms):
+        return Identity(Role.SHAFT, True, "the axis runs through it")
+    return Identity(None, None, "nothing tells")
 
 
 def turning(machine: Machine, contacts: Iterable[str]) -> frozenset[str]:

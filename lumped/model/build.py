@@ -16,11 +16,6 @@ def node_row(column: int) -> Row:
     return Row(np.array([column]), np.array([1.0]))
 
 
-def node_place(name: str, state: int, kind: str = "node") -> Place:
-    """A bare node."""
-    return Place(name, kind, name, np.array([state]), np.eye(1), np.ones(1))  # type: ignore[arg-type]
-
-
 def surface_place(name: str, part: str, state: int, area: float, fluid: str | None = None) -> Place:
     """A face of known area (m2) at its node's temperature."""
     at = np.array([state])
@@ -30,7 +25,7 @@ def surface_place(name: str, part: str, state: int, area: float, fluid: str | No
 def bare_network(name: str, capacities: Mapping[str, float], boundaries: Sequence[str]) -> Network:
     """Nodes with their heat capacities (J/K, 0 allowed) and boundaries, nothing joined yet."""
     states = tuple(capacities)
-    places = {node: node_place(node, i) for i, node in enumerate(states)}
+    places = {node: Place(node, "node", node, np.array([i]), np.eye(1), np.ones(1)) for i, node in enumerate(states)}
     C = np.array([float(c) for c in capacities.values()])
     return Network(name, states, C, tuple(boundaries), (), (), places, states)
 

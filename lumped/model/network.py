@@ -24,10 +24,10 @@ from geom.errors import InputError
 from geom.table import Table, TableResult
 from geom.text import counted
 from lumped.model.quantities import INPUTS
-from lumped.model.structure import Array, Link, Parameter, Place, Recovery, Row, Source, Structure
+from lumped.model.structure import NOTHING, Array, Link, Parameter, Place, Recovery, Row, Source, Structure
 from lumped.transfer.laws import Law
 
-__all__ = ["Array", "Link", "Network", "Parameter", "Place", "Recovery", "Row", "Source"]
+__all__ = ["NOTHING", "Array", "Link", "Network", "Parameter", "Place", "Recovery", "Row", "Source"]
 
 
 @dataclass(frozen=True)

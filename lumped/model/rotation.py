@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from lumped.model.topology import Topology, conductance, fixed
+from lumped.model.topology import Topology, conductance, fixed, reached
 
 ONLY_TURNING = {"brush": "carries the heat of brushes", "magnet": "carries a loss of magnets"}
 LOOSE = 0.2  # of the strongest joint: what hangs on the rest by less may turn in it
@@ -54,23 +54,13 @@ def seeds(top: Topology, stand: Collection[str]) -> dict[str, str]:
     out = {b: why for b, kinds in top.heat.items() for kind, why in ONLY_TURNING.items() if kind in kinds}
     out |= dict.fromkeys(top.journals, "runs between two bearings")
     bearings = top.bearings
-    far = _steps(top, [b for b in stand if b not in bearings], bearings)
+    far = reached([b for b in stand if b not in bearings], lambda a: [b for b in top.joined(a) if b not in bearings])
     for bearing in bearings:
         near = [b for b in top.joined(bearing) if b not in bearings]
         away = {b: far.get(b, len(top.bodies)) for b in near}
         if away and max(away.values()) > min(away.values()):
             out |= {b: "beyond a bearing" for b in near if away[b] == max(away.values())}
     return {b: why for b, why in out.items() if b in top.bodies}
-
-
-def _steps(top: Topology, start: Collection[str], without: Collection[str]) -> dict[str, int]:
-    """Joints from the nearest of some bodies, over others than `without`."""
-    out, edge, steps = dict.fromkeys(start, 0), list(start), 0
-    while edge:
-        steps += 1
-        edge = list({b for a in edge for b in top.joined(a) if b not in out and b not in without})
-        out |= dict.fromkeys(edge, steps)
-    return out
 
 
 def loose(top: Topology) -> dict[str, str]:
@@ -88,31 +78,18 @@ def loose(top: Topology) -> dict[str, str]:
 
 def _far_side(top: Topology, a: str, b: str) -> set[str]:
     """All that is reached from b without the joint to a."""
-    out, edge = {b}, [b]
-    while edge:
-        edge = [y for x in edge for y in top.joined(x) if y not in out and {x, y} != {a, b}]
-        out |= set(edge)
-    return out
+    return set(reached([b], lambda x: [y for y in top.joined(x) if {x, y} != {a, b}]))
 
 
 def in_one_piece(top: Topology, side: Collection[str], others: Collection[str]) -> set[str]:
     """The turning bodies with those that join them where a weak joint had cut them apart: a shaft is one piece."""
-    whole, left = _piece(top, side, next(iter(side))), set(side)
-    while whole < left:
+    left, first = set(side), next(iter(side))
+    while True:
+        whole = set(reached([first], lambda a: left.intersection(top.joined(a))))
         way = _way(top, whole, left - whole, others)
         if not way:
             return left
-        left |= set(way)
-        whole = _piece(top, left, next(iter(whole)))
-    return left
-
-
-def _piece(top: Topology, side: Collection[str], start: str) -> set[str]:
-    out, edge = {start}, [start]
-    while edge:
-        edge = [b for a in edge for b in top.joined(a) if b in side and b not in out]
-        out |= set(edge)
-    return out
+        left.update(way)
 
 
 def _way(top: Topology, start: Collection[str], end: Collection[str], without: Collection[str]) -> list[str]:

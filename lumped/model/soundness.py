@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from geom.description.names import plain_name
 from geom.errors import InputError
 from lumped.model.network import Network
+from lumped.model.topology import reached
 from lumped.schemas.reader import excerpt
 
 RESERVED = set("@#")  # of effects at places, and of shapes inside parts
@@ -33,20 +34,12 @@ def islands(network: Network) -> Iterator[list[str]]:
     for group in groups:
         for i in group:
             neighbours[i] |= set(group)
-    left = set(range(len(network.states))) - _reached(neighbours, range(len(network.states), network.size))
+    n = len(network.states)
+    left = {*range(n)} - {*reached(range(n, network.size), neighbours.__getitem__)}
     while left:
-        island = _reached(neighbours, [min(left)])
+        island = set(reached([min(left)], neighbours.__getitem__))
         yield [network.states[i] for i in sorted(island)]
         left -= island
-
-
-def _reached(neighbours: dict[int, set[int]], start: Sequence[int]) -> set[int]:
-    out, open_ends = set(start), list(start)
-    while open_ends:
-        new = neighbours[open_ends.pop()] - out
-        out |= new
-        open_ends += new
-    return out
 
 
 def checked_path(path: Sequence[str], where: str) -> Sequence[str]:

@@ -9,12 +9,11 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.roles import Identity
 from geom.errors import InputError
 from lumped.model.quantities import USUAL
 from lumped.transfer.laws import Law
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -28,6 +27,9 @@ class Row:
         row = np.zeros(size)
         np.add.at(row, self.index, self.weights)
         return row
+
+
+NOTHING = Row(np.empty(0, np.int64), np.empty(0))
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from lumped.transfer.laws import CONSTANT
 from lumped.transfer.terms_value import temperature_value
@@ -17,6 +17,18 @@ SHARE = 0.2  # of a loss: a node that gets less of it is not the place where it 
 FRICTION = frozenset({"friction", "bearing"})
 RUBBING = FRICTION | {"windage"}
 REFERENCE_K = 30.0  # difference over which a film of free convection is looked at
+Node = TypeVar("Node")
+
+
+def reached(start: Iterable[Node], near: Callable[[Node], Iterable[Node]]) -> dict[Node, int]:
+    """What joints lead to from some nodes, themselves included, and over how many.  near : a node's neighbours"""
+    out: dict[Node, int] = dict.fromkeys(start, 0)
+    edge, steps = [*out], 0
+    while edge:
+        steps += 1
+        edge = [*dict.fromkeys(y for x in edge for y in near(x) if y not in out)]
+        out |= dict.fromkeys(edge, steps)
+    return out
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array, Ints
 from lumped.numerics.jit import inner, inner_reordered
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 GROUP = 4  # rows of U
 SMALL = 1e-3  # of all behind it in its row: UMFPACK's for matrices of symmetric pattern (Davis 2004)
 GAP = 8  # columns: a loop over as many zeros costs less than to begin another
@@ -42,8 +41,8 @@ class Factored(NamedTuple):
     pivot (k, n) : the column that took a column's place;  kind (k,) SPARSE or FULL
     """
 
-    A: Floats
-    over: Floats
+    A: Array
+    over: Array
     pivot: Ints
     kind: Ints
     structure: Structure

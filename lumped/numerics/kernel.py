@@ -38,7 +38,7 @@ from lumped.numerics.terms import (
     END,
     ROW,
     SOURCE,
-    Floats,
+    Array,
     Ints,
     conductances,
     directional,
@@ -62,7 +62,7 @@ class Rows(NamedTuple):
 
     start: Ints
     at: Ints
-    weight: Floats
+    weight: Array
     state: Ints
 
 
@@ -73,11 +73,11 @@ class Control(NamedTuple):
     hottest (1,) degC, beyond which nothing goes on;  follow (1,) 1 to take the steps that the trace holds
     """
 
-    unit: Floats
+    unit: Array
     node: Ints
-    tolerance: Floats
+    tolerance: Array
     principle: Ints
-    hottest: Floats
+    hottest: Array
     follow: Ints
 
 
@@ -89,15 +89,15 @@ class Trace(NamedTuple):
     """
 
     knot: Ints
-    start: Floats
-    share: Floats
+    start: Array
+    share: Array
     kind: Ints
-    x: Floats
-    U: Floats
-    h: Floats
+    x: Array
+    U: Array
+    h: Array
     slot: Ints
     L: Factored
-    B: Floats
+    B: Array
 
 
 class Position(NamedTuple):
@@ -108,7 +108,7 @@ class Position(NamedTuple):
     """
 
     at: Ints
-    clock: Floats
+    clock: Array
 
 
 @pasted

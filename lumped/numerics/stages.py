@@ -20,7 +20,7 @@ import numpy as np
 
 from lumped.numerics.dense import Factored, dense, factored
 from lumped.numerics.jit import inner, pasted
-from lumped.numerics.terms import PLACE, Floats, Ints, Terms, directional, flow, patterns
+from lumped.numerics.terms import PLACE, Array, Ints, Terms, directional, flow, patterns
 
 GAMMA = 0.43586652150845899941601945119356
 _B2 = 1.0 / 3.0 - GAMMA
@@ -48,11 +48,11 @@ class Stages(NamedTuple):
     w (3, nz) increments U of the states, and of the boundaries what D moves them by;  vw what that makes of v
     """
 
-    z: Floats
-    v: Floats
-    tau: Floats
-    w: Floats
-    vw: Floats
+    z: Array
+    v: Array
+    tau: Array
+    w: Array
+    vw: Array
 
 
 class Work(NamedTuple):
@@ -65,29 +65,29 @@ class Work(NamedTuple):
     V (nv, p) what patterns and laws see of them
     """
 
-    f: Floats
-    df: Floats
-    du: Floats
-    F: Floats
-    G: Floats
-    H: Floats
+    f: Array
+    df: Array
+    du: Array
+    F: Array
+    G: Array
+    H: Array
     L: Factored
-    error: Floats
-    heat: Floats
-    D: Floats
-    R: Floats
-    V: Floats
+    error: Array
+    heat: Array
+    D: Array
+    R: Array
+    V: Array
 
 
 class Steps(NamedTuple):
     """The steps of a run: each ends at a share of the interval before a knot;  kind : ROSENBROCK or EULER."""
 
     knot: Ints
-    share: Floats
+    share: Array
     kind: Ints
 
 
-def stages(x0: Floats, u0: Floats, T: Terms) -> Stages:
+def stages(x0: Array, u0: Array, T: Terms) -> Stages:
     """The arrays of the stages, with the first states and boundary temperatures in place."""
     ne = T.m.size
     nv = T.begin.size - 1

@@ -18,7 +18,7 @@ from lumped.numerics.terms import (
     END,
     ROW,
     STIFF,
-    Floats,
+    Array,
     Ints,
     clear,
     conductance_derivative,
@@ -40,11 +40,11 @@ class Tangents(NamedTuple):
 
     tangent: Ints
     term: Ints
-    slope: Floats
+    slope: Array
     state: Ints
     column: Ints
-    mass: Floats
-    first: Floats
+    mass: Array
+    first: Array
 
 
 @inner

@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from geom.arrays import Array, Ints
 from geom.constants import SIGMA, ZERO_C
 from lumped.numerics.dense import axpy, matvec
 from lumped.numerics.jit import inner, inner_reordered, pasted
@@ -21,9 +19,6 @@ SMOOTH = 0.01  # K: |dT| ** p is smoothed below this difference, where its deriv
 CONSTANT, POWER, RADIATION, LINEAR, TABLE, FILM, INVERSE, STREAM = range(8)
 PATTERN, ROW, END, HOT, COLD, POINT, LAST, PLACE = range(8)
 CODE, DYNAMIC, STIFF, BENDS, SOURCE = range(5)
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Terms(NamedTuple):
@@ -42,14 +37,14 @@ class Terms(NamedTuple):
 
     begin: Ints
     at: Ints
-    weight: Floats
+    weight: Array
     row: Ints
     part: Ints
     order: Ints
     kind: Ints
-    par: Floats
-    point: Floats
-    m: Floats
+    par: Array
+    point: Array
+    m: Array
 
 
 class Forcing(NamedTuple):
@@ -63,14 +58,14 @@ class Forcing(NamedTuple):
     share (nt,) : at which share of that interval, 1 at the knot
     """
 
-    time: Floats
-    u: Floats
-    factor: Floats
-    bulge: Floats
-    arch: Floats
+    time: Array
+    u: Array
+    factor: Array
+    bulge: Array
+    arch: Array
     renew: Ints
     first: Ints
-    share: Floats
+    share: Array
 
 
 @pasted

@@ -55,20 +55,6 @@ class Flow:
 
 
 @dataclass(frozen=True)
-class Rate(Law):
-    """m cp of a stream (W/K)."""
-
-    flow: Flow
-
-    @property
-    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.flow.reads
-
-    def factor(self, inputs: Inputs) -> Array | float:
-        return _single(self.flow.at(inputs))
-
-
-@dataclass(frozen=True)
 class Exchanger(Law):
     """effectiveness * least rate (W/K): heat over the difference of both inlet temperatures.
 

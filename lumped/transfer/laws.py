@@ -14,7 +14,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array
+
 Inputs = Mapping[str, Array]
 
 

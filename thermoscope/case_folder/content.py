@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.plugins import plugins
 from lumped.condensation.recovery import Shapes
 from thermoscope.case_folder.settings import Settings
@@ -21,7 +21,6 @@ from validation.comparison.error_budget import OpenCase
 if TYPE_CHECKING:
     from measured.case import Test
 
-Array = NDArray[np.float64]
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "thermoscope")  # packages that decide what a model tells
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to
 

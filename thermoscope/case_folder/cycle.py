@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ALPHA_CU
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
@@ -31,7 +31,6 @@ from measured.recordings.grid import LEAST, bridged
 from measured.recordings.sheet import read_sheet
 from measured.recordings.tables import load_table
 
-Array = NDArray[np.float64]
 WINDING, MAGNET, CAGE = "winding", "magnet", "cage"
 INDUCTION = "induction-machine"
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
@@ -24,7 +23,6 @@ from thermoscope.case_folder.recording_checks import (
     first_readings,
 )
 
-Array = NDArray[np.float64]
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least

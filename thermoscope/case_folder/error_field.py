@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.integration.simulate import simulate
 from measured.case import Channel, Test
@@ -18,8 +17,6 @@ from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
-
-Array = NDArray[np.float64]
 
 
 def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:

@@ -9,11 +9,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ZERO_C
 from measured.recordings.sheet import Sheet
 from measured.recordings.tables import Samples
 
-Array = NDArray[np.float64]
 FIRST = 5  # readings that say where a column starts
 OFF_K = 15.0  # how near a start has to be to that of the others in another unit
 OFFSET_K = 12.0  # how far it has to be as it stands

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from viz.data import Comparison
     from viz.rendering.nodes import SplitMesh
 
-Array = NDArray[np.float64]
 ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they tell of a model
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
@@ -133,11 +132,6 @@ def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array
 def instant_words(test: Test, time: float) -> str:
     """Which test and which instant (s) a picture shows."""
     return f"{test.name} at {time / 60:.0f} min"
-
-
-def end_words(test: Test) -> str:
-    """The same of its end."""
-    return instant_words(test, test.time[-1])
 
 
 def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:

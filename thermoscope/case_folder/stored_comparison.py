@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
@@ -19,8 +19,6 @@ from validation.comparison.compare import ChannelError, Comparison, TestError, c
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty
 from validation.parameters.unknowns import standing
-
-Array = NDArray[np.float64]
 
 
 class BudgetedCase(CaseWithFiles, Protocol):

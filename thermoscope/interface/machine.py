@@ -8,9 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from geom.arrays import Array
 from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted, table
@@ -25,8 +23,6 @@ if TYPE_CHECKING:
     from lumped.build.crosscheck import CrossCheck, PartCheck
     from lumped.build.pipeline import Built
     from lumped.model.network import Network
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,8 @@ def _decisive(plan: PredictedCurves) -> str:
     at = plan.decisive()
     channels = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[: 2 * SENSORS]
     rows: list[list[Any]] = [
-        [short(c.name), *(_degrees(y[c.name][at]) for y in plan.curves.values()), BLANK] for c in channels
+        [short(c.name), *(f"{y[c.name][at]:6.1f}".replace(" ", "\u2007") for y in plan.curves.values()), BLANK]
+        for c in channels
     ]
     return f"<h3>At {_clock(plan.test.time[at] - plan.test.time[0])} (°C)</h3>" + html.table(
         Table("", ["sensor", *plan.curves, "read"], rows)
@@ -105,8 +106,3 @@ def _decisive(plan: PredictedCurves) -> str:
 
 def _clock(second: float) -> str:
     return f"{second / 60:.0f} min"
-
-
-def _degrees(T: float) -> str:
-    """One digit after the point, all points below one another."""
-    return f"{T:6.1f}".replace(" ", "\u2007")

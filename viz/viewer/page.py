@@ -14,9 +14,7 @@ from typing import Any
 import numpy as np
 
 from geom.arrays import Array, Ints
-from geom.description.machine import Machine
 from geom.meshing.mesh import NamedMesh
-from geom.plugins import plugins
 from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
 from viz.data import Comparison, late_mean, short
 from viz.rendering.flux import nodal_flux
@@ -64,32 +62,11 @@ class Recorded:
         return [*first, *(e.fields for e in self.earlier)]
 
 
-def document(
-    title: str,
-    nodes: SplitMesh,
-    tests: Sequence[Recorded],
-    positions: Mapping[str, Sequence[float]],
-    conductivity: Mapping[str, tuple[float, float]] | None = None,
-    revisions: Sequence[str] = ("now", "before"),
-    mesh: NamedMesh | None = None,
-    limits: tuple[float, float] | None = None,
-    machine: Machine | None = None,
-) -> dict[str, Any]:
-    """All the page draws: the machine, its temperatures and readings in every test, and what can follow.
-
-    machine : is drawn as it looks, too;  mesh : of the tests' networks
-    """
-    looks_of = plugins("sections").get("looks")
-    looks = None if machine is None or looks_of is None else looks_of.packed_looks(machine, nodes)
-    shape = machine_document(title, nodes, conductivity, looks)
-    temperatures = temperature_document(nodes, tests, positions, conductivity, revisions, limits)
-    return {**shape, **temperatures, **analysis_document(tests, nodes, mesh)}
-
-
 def analysis_document(tests: Sequence[Recorded], nodes: SplitMesh, mesh: NamedMesh | None) -> dict[str, Any]:
     """What can follow: residuals between the sensors; heat flows of the network, its nodes placed in the mesh."""
     runs = [t.network for t in tests if t.network is not None]
-    network = _network(mesh, nodes, runs) if len(runs) == len(tests) else None
+    # None, too, where none of its nodes has a place in the mesh
+    network = (network_document(mesh, nodes, runs) or None) if mesh is not None and len(runs) == len(tests) else None
     return {"errors": _errors(tests, nodes), "network": network}
 
 
@@ -188,11 +165,6 @@ def _errors(tests: Sequence[Recorded], nodes: SplitMesh) -> dict[str, Any] | Non
         most.append(np.abs(m.at({name: c.residual(channels[name])[at] for name in m.sensors})).max(axis=0))
     high = max(float(np.quantile(one, PEAK)) for one in most)
     return {**packed_maps(maps, nodes), "marks": marks(*rounded(-high, high))}
-
-
-def _network(mesh: NamedMesh | None, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any] | None:
-    """The network, if any of its nodes has a place in the mesh."""
-    return (network_document(mesh, nodes, runs) or None) if mesh is not None else None
 
 
 def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str, tuple[float, float]]) -> list[float]:

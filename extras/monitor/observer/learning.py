@@ -13,7 +13,7 @@ from extras.monitor.observer.observer import Observer, Sample, observer
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Network, Parameter
-from thermoscope.plugin import Array, Channel, Doubt, ParameterPosterior, Test, parameter_posterior, record, thermal
+from thermoscope.plugin import Array, Channel, Doubt, ParameterPosterior, Test, heat_model, parameter_posterior, record
 from thermoscope.plugin import MeasuredCase as Case
 
 Progress = Callable[[str], None]
@@ -102,10 +102,8 @@ def design_of(
 
 def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[Test], doubt: Doubt) -> Constants:
     """Of the network's heat, and of every sensor of the tests."""
-    bare = thermal(network)
-    names = {p.name for p in bare.parameters}
+    bare, start = heat_model(network, values)
     channels = {c.name: c for t in tests for c in t.channels}
-    start = {n: v for n, v in values.items() if n in names}
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
 
 

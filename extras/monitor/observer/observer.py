@@ -77,7 +77,6 @@ class Observer:
     tests: Hypotheses
     lagged: Array
     started: bool = False
-    likelihood: float = 0.0
     open: dict[int, Event] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
 
@@ -128,7 +127,6 @@ class Observer:
         gain, total = f.gain(h, variance)
         innovation, signature = reading - expected, h @ f.error
         signature[j] += 1.0
-        self.likelihood -= 0.5 * (innovation**2 / total + np.log(total))
         self.tests.weigh(signature, innovation, total)
         f.error = f.error - np.outer(gain, signature)
         change += gain * innovation

@@ -21,13 +21,13 @@ from thermoscope.plugin import (
     assembly,
     capacity_slopes,
     head,
+    heat_model,
     moved_boundaries,
     moved_inputs,
     multipliers,
     record,
     separated,
     slopes,
-    thermal,
     turned,
     values_of,
     within_silence,
@@ -81,9 +81,8 @@ class _Flows:
     """
 
     def __init__(self, network: Network, values: Mapping[str, float], test: Test, bodies: Sequence[str]) -> None:
-        self.network = thermal(network)
-        names = {p.name for p in self.network.parameters}
-        self.values = values_of(self.network, {k: v for k, v in values.items() if k in names})
+        self.network, mine = heat_model(network, values)
+        self.values = values_of(self.network, mine)
         self.test, self.columns = test, [network.column(b) for b in bodies]
         course = record(test, {})
         self.z = np.asarray(simulate(self.network, course, self.values, keep_states=True).z)

@@ -219,7 +219,8 @@ def designs_summary(document: Mapping[str, Any]) -> Summary:
         ("pump and fan (W)", *(d["pump_and_fan_W"] for d in designs)),
         ("mass (kg)", *(sum(d["masses_kg"].values()) for d in designs)),
     ]
-    materials = [(m, *(d["masses_kg"].get(m) for d in designs)) for m in _materials(designs)]
+    every = dict.fromkeys(m for d in designs for m in d["masses_kg"])
+    materials = [(m, *(d["masses_kg"].get(m) for d in designs)) for m in every]
     differ = [(r["parameter"], *("" if v is None else v for v in r["values"])) for r in document["dimensions"]]
     return Summary(
         f"{_verdict(designs)} Assumed of all: {around}.",
@@ -281,7 +282,3 @@ def _places(designs: Iterable[Mapping[str, Any]]) -> list[str]:
 
 def _at(design: Mapping[str, Any], place: str) -> float | str:
     return next((f"{s['degC']:.1f}" for s in design["hottest"] if s["place"] == place), "")
-
-
-def _materials(designs: Iterable[Mapping[str, Any]]) -> list[str]:
-    return list(dict.fromkeys(m for d in designs for m in d["masses_kg"]))

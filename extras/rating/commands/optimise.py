@@ -14,7 +14,7 @@ from extras.rating.commands.rate import case_or_machine
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.design_problem import DesignRequest, checked_request, design_problem
 from extras.rating.design.machine_keys import MachineFile, machine_file_text, short_key
-from extras.rating.designs import WORDS
+from extras.rating.designs import WORDS, column, page
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, StoppedSearchError, pareto_set
 from thermoscope import InputError
@@ -50,11 +50,10 @@ def optimised(
 
 def effort_words(problem: Problem, effort: Effort) -> str:
     """How long the search takes, by one design that is judged now; said before it begins."""
-    usual = {v.name: v.usual for v in problem.space.variables}
-    machine = None if problem.machine_at is None else problem.machine_at(usual)
-    problem.judged(usual, machine)  # the first also compiles
+    usual = problem.space.usual
+    problem.judged(usual)  # the first also compiles
     begin, count = time.perf_counter(), effort.population * effort.generations
-    problem.judged(usual, machine)
+    problem.judged(usual)
     minutes = count * (time.perf_counter() - begin) / 60.0
     more = "; --population and --generations set how many"
     return f"{count} designs are judged, about {max(minutes, 0.1):.2g} min of a core{more}"
@@ -78,8 +77,8 @@ def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
 
 
 def document_of(problem: Problem, designs: Sequence[Design], method: str, judged: int) -> dict[str, Any]:
-    usual = {v.name: v.usual for v in problem.space.variables}
-    reference = problem.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    usual = problem.space.usual
+    reference = problem.judged(usual)
     return {
         "method": method,
         "judged": judged,
@@ -118,8 +117,6 @@ def _write(
     folder: Path, problem: Problem, designs: Sequence[Design], document: Mapping[str, Any], file: MachineFile | None
 ) -> list[str]:
     """pareto.csv, pareto.html, and a machine file per design."""
-    from extras.rating.designs import page
-
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
     lines = ([f"{v:.6g}" if isinstance(v, float) else v for v in row.values()] for row in rows)
     out = [write_whole(folder / "pareto.csv", csv_lines([list(rows[0]), *lines]))]
@@ -141,11 +138,7 @@ def _write(
 def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
     designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
-    ends = ", ".join(
-        f"{WORDS[o]} {_in_display_unit(o, min(d[o] for d in designs)):.4g} to "
-        f"{_in_display_unit(o, max(d[o] for d in designs)):.4g}"
-        for o in objectives
-    )
+    ends = ", ".join(f"{WORDS[o]} {min(column(designs, o)):.4g} to {max(column(designs, o)):.4g}" for o in objectives)
     sentence = f"{len(designs)} designs that none beats, of {document['judged']} judged: {ends}."
     names = [v["name"] for v in document["variables"]]
     headers = ["design", *(WORDS[o] for o in objectives), *(short_key(n) for n in names)]
@@ -167,9 +160,5 @@ def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     return Summary(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
 
 
-def _in_display_unit(objective: str, value: float) -> float:
-    return value / 60.0 if objective == SETTLING else value
-
-
 def _row(word: str, design: Mapping[str, Any], objectives: Sequence[str], names: Sequence[str]) -> list[Any]:
-    return [word, *(_in_display_unit(o, design[o]) for o in objectives), *(design["values"][n] for n in names)]
+    return [word, *(column([design], o)[0] for o in objectives), *(design["values"][n] for n in names)]

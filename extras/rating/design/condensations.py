@@ -41,7 +41,7 @@ class Condensations:
 
     def __init__(self, problem: Problem, progress: Progress) -> None:
         self.problem, self.progress = problem, progress
-        self.usual = {v.name: v.usual for v in problem.space.variables}
+        self.usual = problem.space.usual
 
     @cached_property
     def reference(self) -> Problem:
@@ -71,11 +71,9 @@ class Condensations:
 
     def ratios(self, design: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""
-        assert self.problem.machine_at is not None
-        machine = self.problem.machine_at(design)
-        scaled = self.reference.judged(design, machine)
+        scaled = self.reference.judged(design)
         self.progress("network of " + ", ".join(f"{short_key(n)} {u:.4g}" for n, u in self._geometry(design)))
-        condensed = self._on(coarse_network(self._machine(design), self.progress)).judged(design, machine)
+        condensed = self._on(coarse_network(self._machine(design), self.progress)).judged(design)
         around = float(np.mean(list(self.problem.boundaries.values())))
         out = {n: (T - around) / (scaled.places[n] - around) for n, T in condensed.places.items()}
         return out | {q: condensed.objectives[q] / scaled.objectives[q] for q in (COPPER, SETTLING)}

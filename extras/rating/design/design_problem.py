@@ -214,7 +214,7 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
     """A limit that the reference exceeds without any load no design can keep."""
     idle = replace(problem, inputs={**problem.inputs, **dict.fromkeys(loads, 0.0)}, sure=None)
     usual = {v.name: v.usual for v in problem.space.variables if v.name not in loads}
-    performance = idle.judged(usual, None if problem.machine_at is None else problem.machine_at(usual))
+    performance = idle.judged(usual)
     for s in problem.spots:
         if performance.places[s.name] >= s.limit:
             raise InputError(

@@ -86,15 +86,14 @@ class Problem:
 
     def of(self, x: Sequence[float] | Array) -> Performance:
         """The design at a point of the space."""
-        design = self.space.named(x)
         try:
-            machine = None if self.machine_at is None else self.machine_at(design)
-            return self.judged(design, machine)
+            return self.judged(self.space.named(x))
         except InputError as error:
             return self._impossible(str(error))
 
-    def judged(self, design: Mapping[str, float], machine: Machine | None) -> Performance:
-        """A design whose machine is there already."""
+    def judged(self, design: Mapping[str, float]) -> Performance:
+        """The design at values of the variables. Raises InputError where no machine can be built there."""
+        machine = None if self.machine_at is None else self.machine_at(design)
         inputs, lag = self._inputs(design, machine)
         values = {
             **self.values,

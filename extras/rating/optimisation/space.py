@@ -40,6 +40,11 @@ class Space:
     def high(self) -> Array:
         return np.array([v.high for v in self.variables])
 
+    @property
+    def usual(self) -> dict[str, float]:
+        """Name -> its value in the reference."""
+        return {v.name: v.usual for v in self.variables}
+
     def named(self, x: Sequence[float] | Array) -> dict[str, float]:
         """Name -> value; integers rounded."""
         return {v.name: float(round(u)) if v.whole else float(u) for v, u in zip(self.variables, x, strict=True)}

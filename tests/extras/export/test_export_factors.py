@@ -21,7 +21,7 @@ from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.transfer.exchanger import Exchanger, Flow, Rate
+from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water
 from lumped.transfer.reversal import Direction, OneWay
@@ -50,7 +50,6 @@ EXACT = [
     Scaled(COPPER, -1.0),
     Stirred(15.0, 0.4, 0.9, 0.01),
     STREAM,
-    Rate(Flow(60.0, "flow_l_min")),
     Switched(Fixed(4.0), "on", True),
     Switched(COPPER, "on", False),
     Direction(InputPower(2.0, ()), "signed", -1),

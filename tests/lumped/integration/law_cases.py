@@ -19,7 +19,7 @@ from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
-from lumped.transfer.exchanger import Exchanger, Flow, Rate, counterflow
+from lumped.transfer.exchanger import Exchanger, Flow, counterflow
 from lumped.transfer.laws import (
     CLOCK,
     CONSTANT,
@@ -104,7 +104,6 @@ LAWS = [
     RippleLoss(48.0, "voltage_V", 1e-3, 1e4, 0.05),
     InverterLoss(("current_A",), 3.0, 0.1, 0.01, 8e3, 1e-6, 10.0, 600.0, 560.0, 1.0),
     PulseLoss("voltage_V", 96.0, 1e-3, 1e4, 0.5),
-    Rate(BY_FLOW),
     Exchanger(1.0, BY_FLOW, Flow(3.0)),
     OneWay(FORCED, "flow", "here", "so"),
     Direction(FORCED, "to_and_fro", 1),
@@ -211,7 +210,6 @@ LIMITS = {
         (InverterLoss(("I",), 3.0, np.pi / 6.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0), {"I": 0.5**0.5}, 1.0),
     ],
     PulseLoss: [(PulseLoss("V", 48.0, 1e-3, 1e4, 0.05), {"V": 0.0}, 0.0)],
-    Rate: [(Rate(BY_FLOW), {"flow": 0.0}, 0.0), (Rate(BY_FLOW), {"flow": -3.0}, 6.0)],
     Exchanger: [  # nothing flows; endless plates bring the lesser stream all the way; small ones are UA
         (Exchanger(1.0, BY_FLOW, Flow(3.0)), {"flow": 0.0}, 0.0),
         (Exchanger(1e5, BY_FLOW, Flow(3.0), counterflow), {"flow": 1.0}, 2.0),

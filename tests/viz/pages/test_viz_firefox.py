@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 from firefox import firefox
-from viewer_pages import NODES, PLACE, mapped
+from viewer_pages import NODES, PLACE, document, mapped
 
-from viz.viewer.page import document, render
+from viz.viewer.page import render
 
 FIREFOX = shutil.which("firefox") or shutil.which("firefox-esr")
 pytestmark = [

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_motor import machine, motor
-from viewer_pages import PLACE, TOP, recorded, tab, unpacked
+from viewer_pages import PLACE, TOP, document, recorded, tab, unpacked
 
 from extras.portraits.dressed import dressed
 from extras.portraits.looks import LOST, SHARES, STEP_M, coarse, packed_looks
@@ -13,7 +13,7 @@ from extras.portraits.portrait import framed
 from geom import build_mesh, load_machine
 from viz import split
 from viz.rendering.cut import HALF
-from viz.viewer.page import document, render
+from viz.viewer.page import render
 
 LARGE = ("series-dc-100kw", "tefc-industrial", "ipmsm-48s8p-jacket")
 MACHINES = ("pmsm-m1", *(pytest.param(name, marks=pytest.mark.nightly) for name in LARGE))

@@ -8,11 +8,11 @@ import pytest
 from fictional import HISTORY, comparison, documents
 from PIL import Image
 from viewer_pages import NODES, PLACE, recorded
+from viewer_pages import document as viewer_document
 
 from extras.workbench.tabs import report_policy
 from viz.pages.report import Report, render, write_report
 from viz.pages.words import verdict
-from viz.viewer.page import document as viewer_document
 from viz.viewer.page import render as viewer_page
 
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from small_motor import RADII, motor
-from viewer_pages import BROWSER, NODES, PLACE, TOP, mapped, recorded, still, tab, warming, write_viewer
+from viewer_pages import BROWSER, NODES, PLACE, TOP, document, mapped, recorded, still, tab, warming, write_viewer
 
 from extras.portraits.looks import packed_looks
 from geom import build_mesh, load_machine
 from viz import split
 from viz.rendering.flux import nodal_flux
 from viz.viewer.error_map import ERROR
-from viz.viewer.page import Earlier, document, machine_document, render, temperature_document
+from viz.viewer.page import Earlier, machine_document, render, temperature_document
 from viz.viewer.part_shapes import ERROR_K
 
 pytestmark = pytest.mark.nightly

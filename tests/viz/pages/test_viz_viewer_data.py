@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from viewer_pages import NODES, PLACE, mapped, mixed, recorded, unpacked, warming, write_viewer
+from viewer_pages import NODES, PLACE, document, mapped, mixed, recorded, unpacked, warming, write_viewer
 
 from viz.rendering.flux import nodal_flux
 from viz.viewer.error_map import ERROR, SHARE, packed_maps
 from viz.viewer.packing import packed_integers, packed_numbers
-from viz.viewer.page import STEP_K, document
+from viz.viewer.page import STEP_K
 from viz.viewer.part_shapes import BLOCK, ERROR_K, low_rank, packed_fields
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from small_motor import motor
 
+from geom.plugins import plugins
 from lumped.model.network import Row
 from measured.case import Channel, Test
 from viz import split
@@ -17,7 +18,7 @@ from viz.data import Comparison
 from viz.viewer.error_map import ErrorMap
 from viz.viewer.network import NetworkRun
 from viz.viewer.packing import UNKNOWN
-from viz.viewer.page import Recorded, document, render
+from viz.viewer.page import Recorded, analysis_document, machine_document, render, temperature_document
 
 NODES = split(motor(24))
 TIMES = np.linspace(0.0, 3600.0, 13)
@@ -55,6 +56,13 @@ def mapped() -> Recorded:
     T = {name: np.linspace(20.0, 60.0 + i, TIMES.size) for i, name in enumerate(part)}
     run = NetworkRun(T, {part: np.linspace(0.0, -120.0, TIMES.size)}, {part: 3.0})
     return replace(recorded(), error_map=between, network=run)
+
+
+def document(title, nodes, tests, positions, k=None, revisions=("now", "before"), mesh=None, limits=None, machine=None):
+    """All that a page draws.  machine : is drawn as it looks, too;  mesh : of the tests' networks"""
+    looks = None if machine is None else plugins("sections")["looks"].packed_looks(machine, nodes)
+    temperatures = temperature_document(nodes, tests, positions, k, revisions, limits)
+    return {**machine_document(title, nodes, k, looks), **temperatures, **analysis_document(tests, nodes, mesh)}
 
 
 def write_viewer(path, title, nodes, tests, positions):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
 from shlex import quote
@@ -37,13 +37,17 @@ def calibrate(
 ) -> int:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
     from validation.calibration.staged_fit import Search
+    from validation.parameters.unknowns import working
     from validation.revision.revise import calibrate as fitted
 
     def step(folder: Folder, tell: Progress) -> Revision:
         unfinished = Unfinished(folder)
         usual = folder.settings
         many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed
-        _profilable(folder, profile or ())
+        names = working(folder.case)[1].names
+        for glob in profile or ():
+            if not any(fnmatchcase(name, glob) for name in names):
+                raise InputError(f"'{glob}' is no free parameter", "--profile", suggestion(glob, names))
         search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
         try:
             result = fitted(folder.case, progress=tell, profiled=tuple(profile or ()), search=search)
@@ -54,16 +58,6 @@ def calibrate(
         return result
 
     return revised(case, step, anyway, target)
-
-
-def _profilable(folder: Folder, globs: Sequence[str]) -> None:
-    """InputError for a glob that means no free parameter."""
-    from validation.parameters.unknowns import working
-
-    names = working(folder.case)[1].names
-    for glob in globs:
-        if not any(fnmatchcase(name, glob) for name in names):
-            raise InputError(f"'{glob}' is no free parameter", "--profile", suggestion(glob, names))
 
 
 class Unfinished:

@@ -30,10 +30,13 @@ def machines(
     target: Json = None,
 ) -> int:
     """The machines that come along; with --out also a page with a thumbnail of each. --copy takes the file of one."""
-    from geom import catalogue, write_library
+    from geom import catalogue, library, write_library
 
     if copied is not None:
-        file = copy_machine(copied, out or Path())
+        if copied not in library():
+            near = ", ".join(get_close_matches(copied, library(), cutoff=0.0))
+            raise InputError(f"no machine {copied!r} comes along", "--copy", f"for example {near}")
+        file = write_machine_file(copied, library()[copied].read_bytes(), out or Path())
         give(
             {"machine": copied, "file": file},
             target,
@@ -44,16 +47,6 @@ def machines(
     page = write_library(out) if out is not None else None
     give({"machines": [described(entry, page) for entry in entries]}, target, lambda: machines_summary(entries, page))
     return 0
-
-
-def copy_machine(name: str, folder: Path) -> Path:
-    """Copy the library's file of that name into a folder. InputError where there is none, or a file is in the way."""
-    from geom import library
-
-    if name not in library():
-        near = ", ".join(get_close_matches(name, library(), cutoff=0.0))
-        raise InputError(f"no machine {name!r} comes along", "--copy", f"for example {near}")
-    return write_machine_file(name, library()[name].read_bytes(), folder)
 
 
 def write_machine_file(name: str, text: str | bytes, folder: Path) -> Path:

@@ -55,9 +55,9 @@ def film(
         assert folder.built is not None
         nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
         file = out or Path("out") / f"{file_stem(folder.case.name)}.gif"
-        runs = {} if earlier is None else {before(folder): earlier}
+        before, now = model_words(folder)
+        models = {now: folder.case} if earlier is None else {before: earlier, now: folder.case}
         tell(f"running {test.name}")
-        models = runs | {now(folder): folder.case}
         played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
         limit_K = folder.limits(test)
         sensors = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
@@ -78,16 +78,13 @@ def film(
     return 0
 
 
-def before(folder: Folder) -> str:
-    """The model before its last step, in words."""
+def model_words(folder: Folder) -> tuple[str, str]:
+    """The model before its last step and as it is, in words: by what the step added, where it added something."""
     last = folder.history.last
-    return f"without {step_words(folder.case, last)}" if last.action == "add" else "the model before its last step"
-
-
-def now(folder: Folder) -> str:
-    """The model as it is, in words."""
-    last = folder.history.last
-    return f"with {step_words(folder.case, last)}" if last.action == "add" else "the model now"
+    if last.action != "add":
+        return "the model before its last step", "the model now"
+    added = step_words(folder.case, last)
+    return f"without {added}", f"with {added}"
 
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
 import viz as viz  # so named in the wheel as well
+from geom.arrays import Array
 from geom.description.names import file_stem
 from geom.errors import InputError
 from geom.plugins import plugins
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from viz.data import Comparison, Sensor
     from viz.figures.flows import Heat
     from viz.rendering.nodes import SplitMesh
-
-Array = NDArray[np.float64]
 
 
 def picture(
@@ -87,7 +85,7 @@ class Subject:
 
     @property
     def when(self) -> str:
-        return runs.end_words(self.test)
+        return runs.instant_words(self.test, self.test.time[-1])
 
     @property
     def built(self) -> Built:

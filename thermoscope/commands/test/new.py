@@ -139,10 +139,15 @@ def model_of_case(settings: Settings, network: Network) -> Model:
     if settings.network is not None:
         return Model(network, target_of(network), _copied("network", settings.network, "network.toml"))
     assert settings.machine is not None, "a case has a machine or a network"
-    if settings.machine.suffix == ".toml" and settings.machine.exists():
-        return Model(network, target_of(network), _copied("machine", settings.machine, "machine.toml"))
-    name = settings.machine.name.removesuffix(".toml")
-    return Model(network, target_of(network), lambda folder: f"machine = {toml_value(name)}")
+    return Model(network, target_of(network), _put_machine(settings.machine))
+
+
+def _put_machine(machine: Path) -> Callable[[Path], str]:
+    """Copies the file of a machine into a case; one that comes along, or that is no TOML file, is only named there."""
+    if machine.exists() and machine.suffix == ".toml":
+        return _copied("machine", machine, "machine.toml")
+    name = str(machine.resolve()) if machine.exists() else machine.name.removesuffix(".toml")
+    return lambda folder: f"machine = {toml_value(name)}"
 
 
 def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress) -> Model:
@@ -156,7 +161,6 @@ def _model(wishes: Wishes, read: Sequence[tuple[Source, Clock]], tell: Progress)
 
 
 def _machine(machine: str, tell: Progress) -> Model:
-    from geom import library
     from lumped.build.pipeline import build
     from thermoscope.case_folder.folder import load_machine_file
 
@@ -167,14 +171,7 @@ def _machine(machine: str, tell: Progress) -> Model:
             machine,
             "[losses.NAME] with kind, at and its numbers",
         )
-    path = Path(machine)
-    if not path.exists():
-        name = path.name.removesuffix(".toml")
-        assert name in library(), "load_machine_file has found it"
-        return Model(network, target_of(network), lambda folder: f"machine = {toml_value(name)}")
-    if path.suffix == ".toml":
-        return Model(network, target_of(network), _copied("machine", path, "machine.toml"))
-    return Model(network, target_of(network), lambda folder: f"machine = {toml_value(str(path.resolve()))}")
+    return Model(network, target_of(network), _put_machine(Path(machine)))
 
 
 def _copied(kind: str, path: Path, name: str) -> Callable[[Path], str]:

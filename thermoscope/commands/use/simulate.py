@@ -9,8 +9,8 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.names import file_stem
 from geom.errors import InputError, ThermoscopeError
 from geom.escapes import csv_lines
@@ -33,7 +33,6 @@ from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.bands import Bands, ParameterPosterior
 
-Array = NDArray[np.float64]
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 

@@ -80,7 +80,7 @@ def test_a_machine_that_runs_away_is_judged_at_the_limit():
     hot = rest(body(), {}, {"flow": 1.0, "current_A": 250.0}, {"air": AIR})
     assert hot is None or not hot.stable
     p = problem()
-    done = replace(p, inputs={**p.inputs, "current_A": 250.0}).judged({"flow": 1.0}, None)
+    done = replace(p, inputs={**p.inputs, "current_A": 250.0}).judged({"flow": 1.0})
     assert_allclose(done.places["body"] - AIR, R * 250.0**2 * 1.4 / G, rtol=1e-9)
     assert not done.feasible
     assert done.why == "runaway"
@@ -160,8 +160,8 @@ def test_corrections_are_learned_and_their_error_is_that_of_others():
 class Pumped(Problem):
     """A problem whose auxiliary power is the cube of its flow, over a channel that may be narrowed."""
 
-    def judged(self, named, machine):
-        done = super().judged({"flow": named["flow"] / named.get("height", 1.0) ** 0.5}, machine)
+    def judged(self, named):
+        done = super().judged({"flow": named["flow"] / named.get("height", 1.0) ** 0.5})
         # What the flow of `problem` costs (W): its cube
         power = (10.0 * named["flow"] ** 3) / named.get("height", 1.0) ** 2
         return replace(done, objectives={**done.objectives, AUXILIARY: power})
