@@ -31,6 +31,10 @@ TEXT = 0.2  # share of cells that are words from which a column holds no reading
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
+BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
+SCALED = re.compile(
+    r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
+)  # x0.1 °C, 1/10 °C, 10 mA
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -163,6 +167,12 @@ def _source(
     if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}
+    for n in cells:
+        before, inside = m.groups() if (m := BRACKETED.fullmatch(n)) else (n, "")
+        if (scaled := SCALED.fullmatch(units.get(n, "") or inside)) and is_unit(scaled[3]):
+            factor = float(scaled[2].replace(",", ".")) ** (-1 if scaled[1] else 1)
+            cells[n], split[n], units = as_numbers(cells[n]) * factor, (before, scaled[3]), {**units, n: ""}
+            notes = [*notes, f"{file.name}: '{n}' is read in units of {factor:g} {scaled[3]}"]
     stems = Counter(label for label, unit in split.values() if unit)
     split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
     unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}

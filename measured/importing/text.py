@@ -29,7 +29,8 @@ LETTERS = re.compile(
     r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšžğış℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
 )
 INTERVAL = re.compile(
-    r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
+    r"(?im)^\W*(?:delta_x|hresolution|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall"
+    r"|scan interval)"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}

@@ -40,6 +40,7 @@ TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
 GRAIN = 1e-6  # s, below which two instants are one
+ABOUT = (("label", "name", "signal"), ("unit", "units"))  # of a signal, in structs of MATLAB
 Signal = tuple[str, Array, Array]
 Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
 BOOK = "an Excel workbook"
@@ -276,10 +277,13 @@ def _unpacked(file: Path, head: str) -> Iterator[int]:
 
 
 def _vectors(one: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Array]]:
-    """Numbers of one dimension by the names that lead to them; a Simulink signal by its label."""
+    """Numbers of one dimension by the names that lead to them; a signal whose struct has its name and unit by these."""
     if isinstance(one, Mapping):
-        if isinstance(label := one.get("label"), str) and label and "values" in one:
-            yield from _vectors(one["values"], (*path[:-1], label))
+        about = {str(key).lower(): inside for key, inside in one.items()}
+        label, unit = (next((w for k in keys if isinstance(w := about.get(k), str) and w), "") for keys in ABOUT)
+        if (key := next((k for k in ("values", "data", "value") if k in about), "")) and (label or unit):
+            name = label or (path or ("column",))[-1]
+            yield from _vectors(about[key], (*path[:-1], f"{name} [{unit}]" if unit else name))
             return
         for name, inside in one.items():
             if not str(name).startswith("__"):

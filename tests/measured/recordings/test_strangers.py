@@ -351,9 +351,15 @@ def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
     assert (
         capsys.readouterr().out.replace("\n", " ").startswith("'T_winding' starts at 240 degC: is it in other units?")
     )
-    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [°C]", S["t"], S["W"], S["W"]))
+    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [x10 °C]", S["t"], S["W"], S["W"]))
     source = read_source(tmp_path / "b.csv")
-    assert "'0.1°C'" in guesses(source, ("t [s]",), Target())[0].doubt
+    assert source.notes == ("b.csv: 'T_winding [0.1°C]' is read in units of 0.1 °C",)
+    assert "T_b" in source.labels["T_b [x10 °C]"]
+
+
+def test_a_recording_of_rises_alone_is_refused_by_their_name(tmp_path):
+    with pytest.raises(InputError, match=r"'Übertemperatur Wicklung in K' is left out: a difference of temperatures"):
+        written(tmp_path, table("t in s,Übertemperatur Wicklung in K,I in A", S["t"], S["W"] - 22, S["I"]))
 
 
 def test_the_air_that_comes_out_is_not_the_room(tmp_path):
@@ -420,6 +426,18 @@ def test_a_row_for_every_reading_in_a_parquet_file(tmp_path):
 
 def test_tenths_of_degrees_are_no_degrees():
     assert unit_of(split_unit("T_winding [0.1 degC]")[1]) == ""
+
+
+def test_signals_of_matlab_that_are_named_in_their_structs(tmp_path):
+    from scipy.io import savemat
+
+    signals = [("T_winding", "°C", S["W"]), ("T_amb", "°C", S["A"]), ("i_rms", "A", S["I"])]
+    kinds = [("Name", "O"), ("Unit", "O"), ("Data", "O")]
+    X, Y = np.array([("", "s", S["t"])], kinds), np.array(signals, kinds)
+    savemat(tmp_path / "a.mat", {"rec": {"X": X, "Y": Y, "Description": "run"}})
+    source = read_source(tmp_path / "a.mat")
+    assert list(source.cells) == ["X [s]", "T_winding [°C]", "T_amb [°C]", "i_rms [A]"]
+    assert clock_of(source).seconds == pytest.approx(S["t"])
 
 
 def test_vectors_in_structs_of_matlab(tmp_path):
@@ -516,6 +534,45 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
     .replace("\n", ",4711\n", 2)
     .replace(",4711", "", 1),
     "a camera that counts its frames": of(("Frame", *PLAIN), "ftWHAI"),
+    "remarks under the names": of(("Time[s]", "U1-1[C]", "U1-2[C]", "U1-3[C]", "U2-1[A]"), "tWHAI").replace(
+        "\n", "\nComment,Winding,Frame,Room,Current\n", 1
+    ),
+    "a unit over a group of names": ",Temperatures [°C],,,Electrical\n"
+    + of(("t [s]", "Winding U", "Frame", "Room", "I1 [A]"), "tWHAI"),
+    "few units under names that repeat": "Bench,,Winding,,Frame,,Room,,Supply,\n"
+    + of(("Time", "No", *["Temp", "Status"] * 3, "Current", "Status"), "tfWfHfAfIf").replace(
+        "\n", "\ns,,degC,,degC,,degC,,A,\n", 1
+    ),
+    "settings of every column": '"TraceName","T_COIL","T_FRAME","T_AMB","I"\n"VUnit","C","C","C","A"\n'
+    '"HResolution",5.0,5.0,5.0,5.0\n"HUnit","s","s","s","s"\n"Date","2025/03/14","2025/03/14"\n'
+    '"Time","08:52:31.0","08:52:31.0"\n' + table("", *("" if c == "-" else S[c] for c in "-WHAI")),
+    "tags of instruments": of(
+        (
+            "time_s",
+            "M101.TI_Winding.PV",
+            "M101.TI_Winding.Q",
+            "M101.TI_Frame.PV",
+            "P.TI_Ambient.PV",
+            "M101.II_Motor.PV",
+        ),
+        "tWfHAI",
+    ).replace("M101.II_Motor.PV", "M101.II_Current.PV"),
+    "a model's short name": of((*PLAIN, "T_winding_mdl [C]"), "tWHAIH"),
+    "tenths of degrees": table(
+        "t [s],T_winding (x0.1 °C),T_frame [1/10 °C],T_amb [0.1°C],I [10 mA]",
+        *(S["t"], *(10 * S[c] for c in "WHA"), 100 * S["I"]),
+    ),
+    "an instant in several columns": table(
+        "Year,DOY,HHMM,Sec,Winding_C,Frame_C,Room_C,I_A",
+        *("2025", "73", 2355 + (S["t"] // 60) % 5 if S["t"][-1] < 300 else 800 + S["t"] // 60, S["t"] % 60),
+        *(S[c] for c in "WHAI"),
+    ),
+    "a place beside what is measured": "#group,false,false\n,_time,_value,_field,location\n"
+    + "".join(
+        f",{5 * k},{S[c][k]:.2f},{field},{place}\n"
+        for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], ["winding", "frame", "room", "L1"])
+        for k in range(len(S["t"]))
+    ),
     "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
 }
 
