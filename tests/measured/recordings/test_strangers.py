@@ -20,7 +20,6 @@ from measured.importing.case_files import read_timed
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
-from measured.importing.target import Target
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
