@@ -22,6 +22,8 @@ SHORT = 0.1  # of all rows of readings: settings of channels are few
 TIMES = {"s", "ms", "us", "min", "h"}
 TALLEST = 16  # rows of names, tags, kinds, units and settings over the readings
 UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位")  # of a column of units
+MOST, LONG = 100, 20  # signals and readings of a table that lies on its side
+NUMBERED = re.compile(r"\W*(?:(?i:col|column|spalte|colonne|columna|field|channel|ch)\W*)?(\d+)\s*[:=.)-]\s*(\w.*)")
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
 
 
@@ -42,7 +44,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     units = next((i for i in reversed(block) if _all_units(rows[i])), None)
     candidates = [i for i in block if i != units]
     if not candidates:
-        return Layout(("",) * width, ("",) * width, first, width)
+        return Layout(_legend(rows[:first], width), ("",) * width, first, width)
     candidates = [i for i in candidates if len(trimmed(rows[i])) >= width - 1] or candidates
     gapless = [i for i in candidates if sum(bool(str(c or "").strip()) for c in rows[i]) >= width - 1]
     if any(is_time(str(c)) or quantities_of(str(c)) for i in gapless for c in rows[i]):
@@ -147,6 +149,21 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
     units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
     return [f"{name} {called.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
+
+
+def _legend(before: Sequence[Row], width: int) -> tuple[str, ...]:
+    """What lines before the readings say of every column by its number, "" where they do not."""
+    lines = (NUMBERED.fullmatch(" ".join(str(c) for c in row if c is not None).strip()) for row in before)
+    said = {int(m[1]): m[2].strip() for m in lines if m}
+    return tuple(said.values()) if [*said] in ([*range(width)], [*range(1, width + 1)]) else ("",) * width
+
+
+def transposed(rows: Sequence[Row]) -> bool:
+    """Does every row hold one signal, behind its name?"""
+    full = [t for t in map(trimmed, rows[: MOST + 1]) if len(t) > 1]
+    width = min(map(len, full), default=0)
+    wide = len(rows) <= MOST and width > max(LONG, 2 * len(full)) and len(full) > 1
+    return wide and all(not is_reading(r[0]) and sum(map(is_reading, r[1:])) > 0.9 * (len(r) - 1) for r in full)
 
 
 def _informative(row: Row) -> int:

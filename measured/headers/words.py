@@ -21,7 +21,7 @@ def _words(text: str) -> frozenset[str]:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, MEAN = (
+SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, SPREAD, MEAN = (
     _words(VOCABULARY["words"][name])
     for name in (
         "setpoint",
@@ -35,6 +35,7 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANN
         "outer",
         "channels",
         "extreme",
+        "spread",
         "mean",
     )
 )

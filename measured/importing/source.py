@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geom.description.names import plain_header
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
-from measured.headers.rows import UNIT_NAMES, Layout, layout
+from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
 from measured.headers.words import is_time, quantities_of, roles_of
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
@@ -103,6 +103,7 @@ def read_source(file: Path) -> Source:
     suffix = file.suffix.lower()
     if suffix in BOOKS:
         rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))
+        rows = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
         plan = layout(rows, str(file))
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
@@ -120,7 +121,10 @@ def source_of_recording(file: Path, table: DataTable) -> Source:
         if (beside := side_by_side(names, columns, str(file)))[0]:
             return _source(file, [*beside[0]], [*beside[0].values()], {}, (*beside[1], *table.notes), table.start)
     units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
-    return _source(file, names, [*table.cells.values()], units, table.notes, table.start)
+    source = _source(file, names, [*table.cells.values()], units, table.notes, table.start)
+    remarks = {n: r for n, c in zip(names, table.columns, strict=True) if roles_of(r := table.remarks.get(c, ""))}
+    labels = {n: remarks.get(n, label) if not roles_of(label) else label for n, label in source.labels.items()}
+    return replace(source, labels=labels)
 
 
 def _formulas(file: Path) -> list[str]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_reading, number
-from measured.headers.rows import SAMPLE, Layout, layout
+from measured.headers.rows import SAMPLE, Layout, layout, transposed
 from measured.recordings.csv_file import Body, chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
@@ -62,6 +62,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         lines = [line.replace('"', "") for line in lines]
     sign = delimiter(lines)
     head = split_cells(lines[: 2 * SAMPLE], sign)
+    if transposed(head):
+        head = [*map(list, zip(*(row for row in head if len(row) > 1), strict=False))]
+        lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
     if keys := _keys(head):
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None

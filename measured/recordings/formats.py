@@ -285,8 +285,12 @@ def _vectors(one: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
             name = label or (path or ("column",))[-1]
             yield from _vectors(about[key], (*path[:-1], f"{name} [{unit}]" if unit else name))
             return
+        lists = [[*v] for v in one.values() if isinstance(v, list | np.ndarray) and all(isinstance(w, str) for w in v)]
         for name, inside in one.items():
-            if not str(name).startswith("__"):
+            columns = next((v for v in lists if np.ndim(inside) == 2 and len(v) == np.shape(inside)[1]), None)
+            if columns:  # names beside a matrix
+                yield from _vectors(dict(zip(columns, np.asarray(inside).T, strict=True)), path)
+            elif not str(name).startswith("__"):
                 yield from _vectors(inside, (*path, str(name)))
     elif isinstance(one, np.ndarray) and one.dtype.kind in "fiub":
         for j, column in enumerate(one.T if one.ndim == 2 else [one][: one.ndim == 1], 1):
@@ -326,6 +330,7 @@ def _tdms(file: Path, group: str) -> Contents:
         timeless = all("wf_increment" not in c.properties for _, c in channels)
         return columns, {
             "units": {name: str(c.properties.get("unit_string", "")) for name, c in by_name},
+            "remarks": {name: str(c.properties.get("description", "")) for name, c in by_name},
             "start": _since_1970(starts[0]) if starts else None,
             "notes": (f"{file.name}: {TIMELESS}",) * timeless,
         }
@@ -359,7 +364,8 @@ def _mf4(file: Path) -> Contents:
             if len(s.samples) > 0 and s.samples.ndim == 1
         ]
         units = {c.name: c.unit or "" for g in mdf.groups for c in g.channels}
-        return joined(signals), {"units": units, "start": _since_1970(mdf.start_time)}
+        remarks = {c.name: c.comment or "" for g in mdf.groups for c in g.channels}
+        return joined(signals), {"units": units, "remarks": remarks, "start": _since_1970(mdf.start_time)}
 
 
 def _since_1970(instant: Any) -> float | None:

@@ -96,6 +96,11 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         ("t [s],Torque [%],T_winding [°C]", "tMW", "'Torque [%]': relative to a nominal torque that is not given: a"),
         ("t [s],Current [p.u.],T_winding [°C]", "tIW", "The only heat was left out: 'Current [p.u.]'"),
         ("t [s],Current (x!),T_winding [°C]", "tIW", "'Current (x!)': unit 'x!' unknown: A assumed."),
+        (
+            "t [s],I [A],T_winding [V],frame [°C]",
+            "tIWH",
+            "The winding was not placed: 'T_winding [V]' looks like winding",
+        ),
         ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone."),
     ],
 )
@@ -235,6 +240,24 @@ def test_channels_of_a_tdms_without_increments_have_the_times_of_their_channel(t
     source = read_source(tmp_path / "with.tdms")
     assert np.diff(clock_of(source).seconds) == pytest.approx(5.0)
     assert any("rows are taken as 1 s apart" in note for note in read_source(tmp_path / "without.tdms").notes)
+
+
+def test_channels_of_a_tdms_are_what_their_descriptions_say(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "a.tdms") as out:
+        out.write_segment(
+            [
+                ChannelObject("g", name, S[c], {"wf_increment": 5.0, "unit_string": unit, "description": what})
+                for name, c, unit, what in (
+                    ("ai0", "W", "°C", "Winding U"),
+                    ("ai1", "A", "°C", "Room"),
+                    ("ai2", "I", "A", ""),
+                )
+            ]
+        )
+    source = read_source(tmp_path / "a.tdms")
+    assert source.labels == {"time_s": "time", "ai0": "Winding U", "ai1": "Room", "ai2": "ai2"}
 
 
 def test_a_negative_increment_of_a_waveform_is_refused(tmp_path):
@@ -437,6 +460,9 @@ def test_signals_of_matlab_that_are_named_in_their_structs(tmp_path):
     source = read_source(tmp_path / "a.mat")
     assert list(source.cells) == ["X [s]", "T_winding [°C]", "T_amb [°C]", "i_rms [A]"]
     assert clock_of(source).seconds == pytest.approx(S["t"])
+    names = np.array(["t_s", "T_coil"], object)
+    savemat(tmp_path / "b.mat", {"data": np.column_stack([S["t"], S["W"]]), "names": names})
+    assert list(read_source(tmp_path / "b.mat").cells) == ["t_s", "T_coil"]
 
 
 def test_vectors_in_structs_of_matlab(tmp_path):
@@ -572,6 +598,12 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], ["winding", "frame", "room", "L1"])
         for k in range(len(S["t"]))
     ),
+    "a signal in every row": "".join(
+        ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN, "tWHAI", strict=True)
+    ),
+    "columns told by their numbers": "".join(f"# column {k + 1}: {name}\n" for k, name in enumerate(PLAIN))
+    + of([], "tWHAI").lstrip("\n"),
+    "an estimate of no part, and a spread": of((*PLAIN, "Motor temp estimated [C]", "T_winding_Std [C]"), "tWHAIHB"),
     "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
 }
 
