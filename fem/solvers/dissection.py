@@ -66,9 +66,9 @@ def dissect(A: sp.csr_array, xyz: Floats, leaf: int = LEAF) -> Tree:
 
 def _split(graph: Graph, along: Floats) -> tuple[Ints, Ints, Ints]:
     """Two halves and what separates them (local numbers), by the best of the directions `along` (n, k)."""
-    low = min((_below(s) for s in along.T), key=lambda low: _thickness(*graph, low))
+    low = min((_below(s) for s in along.T), key=lambda low: _thickness(graph.indptr, graph.indices, low))
     middle = np.zeros(len(low), bool)
-    for side in _least_cover(*_crossing(*graph, low)):
+    for side in _least_cover(*_crossing(graph.indptr, graph.indices, low)):
         middle[side] = True
     return np.flatnonzero(low & ~middle), np.flatnonzero(~low & ~middle), np.flatnonzero(middle)
 

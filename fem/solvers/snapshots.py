@@ -36,7 +36,8 @@ class Recipe:
         the range that random points do not reach
     favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
     thin : the same weight for parts of little volume that nothing heats; by energy alone they have too few shapes
-    max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
+    max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy; 0: the means
+        alone, for which nothing is solved
     """
 
     tolerance: float = 0.01

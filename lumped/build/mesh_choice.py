@@ -53,7 +53,7 @@ NOTABLE = 0.3  # percent of a hot spot that linear triangles of a part would cos
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
 IN_PLANE = ("size_m", "across")
 WAYS = (*IN_PLANE, "axial_m")  # and, of every laminated part, towards its ends
-MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
+MEANS = Recipe(max_states=0)  # enough for losses, fluids and streams
 Kelvins = Mapping[str, float]  # heated part -> K
 Counts = tuple[int, Mapping[str, tuple[int, int]]]  # points of a mesh; part -> its corners and middles of edges
 Losses = Mapping[str, Array]  # part -> (2, n_heated) percent of each hot spot: by edges in the plane, along the axis

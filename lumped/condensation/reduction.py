@@ -159,6 +159,9 @@ def reduce(
     solver : of the snapshots; None: the free one of fem.solvers.solve
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
+    if recipe.max_states == 0:
+        bare = {part: Principal(np.zeros(0), np.zeros((block.n, 0))) for part, block in field.blocks.items()}
+        return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, bare)
     loads = unit_loads(field, places)
     basis_cache = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})
