@@ -1,11 +1,12 @@
 """How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
 
-    python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE] [--page]
+    python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE] [--page] [--usual]
 
 Every shipped case by default, and the four commands that may take long; the first run builds what comes from a machine.
 After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
 which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
---json FILE keeps the rows of earlier runs for other cases and commands; --page puts all of them into the docs.
+--json FILE keeps the rows of earlier runs for other cases and commands; --page puts all of them into the docs. --usual
+writes what the stages of the first runs took, the median over the cases, into what a new computer starts with.
 """
 
 from __future__ import annotations
@@ -25,10 +26,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise, product
 from pathlib import Path
+from statistics import median
 
 from scripts.published import publish
 
 ROOT = Path(__file__).resolve().parents[2]
+USUAL = ROOT / "thermoscope" / "console" / "usual_stages.json"
 CASES = tuple(sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml")))
 COMMANDS = {"compare": "test", "calibrate": "model", "diagnose": "explain", "improve": "explain"}
 COLUMNS, SHORT_S, FIFTH, STOOD_S = 80, 10.0, 0.2, 20.0
@@ -106,6 +109,20 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join([*head, *lines, "", f"{verdict(rows)}.", *([f"Shorter: {', '.join(short)}."] if short else [])])
 
 
+def stages_of(name: str, cache: Path) -> dict[str, float]:
+    """What the stages of a command took in a cache that it alone has used (s)."""
+    file = cache / "stages.json"
+    document = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    return dict(document.get(f"{COMMANDS[name]} {name} 0", {}))
+
+
+def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
+    """The median of each stage over the cases that have it (s), in the order in which the longest list has them."""
+    longest = sorted(stages, key=len, reverse=True)
+    names = dict.fromkeys(word for took in longest for word in took)
+    return {word: round(median(took[word] for took in stages if word in took), 1) for word in names}
+
+
 def main() -> None:
     """A row per case and run."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -113,14 +130,18 @@ def main() -> None:
     parser.add_argument("--commands", nargs="+", default=COMMANDS, choices=COMMANDS)
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true")
+    parser.add_argument("--usual", action="store_true")
     options = parser.parse_args()
     rows = (
         [Row(**row) for row in json.loads(options.json.read_text())] if options.json and options.json.exists() else []
     )
+    took: dict[str, list[dict[str, float]]] = {}
     for command, case in product(options.commands, options.only):
         rows = [row for row in rows if (row.command, row.case) != (command, case)]
         with tempfile.TemporaryDirectory() as cache:
-            rows += [measured(command, case, run, cache) for run in ("first", "second")]
+            rows.append(measured(command, case, "first", cache))
+            took.setdefault(command, []).append(stages_of(command, Path(cache)))
+            rows.append(measured(command, case, "second", cache))
         for row in rows[-2:]:
             told = "short" if row.ratio is None else f"{row.ratio:5.2f} of what was left, stood {row.stood_s:.0f} s"
             print(
@@ -128,6 +149,9 @@ def main() -> None:
                 flush=True,
             )
     print(verdict(rows))
+    if options.usual:
+        again = {f"{COMMANDS[name]} {name} 0": usual(stages) for name, stages in took.items()}
+        USUAL.write_text(json.dumps(json.loads(USUAL.read_text()) | again, indent=1), encoding="utf-8")
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
     if options.page:

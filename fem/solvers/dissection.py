@@ -7,7 +7,9 @@ one with the smallest separator is kept, and thinned to the fewest nodes that do
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numba
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -19,6 +21,13 @@ Ints = NDArray[np.int64]
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0]]).T / 1.0
 BALANCE = 0.35  # the smaller half holds at least this share
 LEAF = 96  # unknowns of a part that is cut no further; chosen, only time hangs on it
+
+
+class Graph(NamedTuple):
+    """Neighbours of node i: indices[indptr[i]:indptr[i + 1]]."""
+
+    indptr: Ints
+    indices: Ints
 
 
 @dataclass(frozen=True)
@@ -38,11 +47,11 @@ def dissect(A: sp.csr_array, xyz: Floats, leaf: int = LEAF) -> Tree:
     owned: list[Ints] = []
     children: list[tuple[int, ...]] = []
 
-    def visit(nodes: Ints, graph: sp.csr_array) -> int:
+    def visit(nodes: Ints, graph: Graph) -> int:
         if len(nodes) <= leaf:
             return keep(nodes, ())
         left, right, middle = _split(graph, xyz[nodes] @ DIRECTIONS)
-        below = tuple(visit(nodes[s], _part(graph, s)) for s in (left, right) if len(s))
+        below = tuple(visit(nodes[s], Graph(*_among(*graph, s))) for s in (left, right) if len(s))
         return keep(nodes[middle], below)
 
     def keep(nodes: Ints, below: tuple[int, ...]) -> int:
@@ -50,31 +59,62 @@ def dissect(A: sp.csr_array, xyz: Floats, leaf: int = LEAF) -> Tree:
         children.append(below)
         return len(owned) - 1
 
-    visit(np.arange(A.shape[0]), sp.csr_array((np.ones(A.nnz, np.int8), A.indices, A.indptr), A.shape))
+    visit(np.arange(A.shape[0]), Graph(A.indptr, A.indices))
     start = np.concatenate([[0], np.cumsum([len(o) for o in owned])])
     return Tree(np.concatenate(owned), start, tuple(children))
 
 
-def _part(graph: sp.csr_array, nodes: Ints) -> sp.csr_array:
-    return graph[nodes][:, nodes]
-
-
-def _split(graph: sp.csr_array, along: Floats) -> tuple[Ints, Ints, Ints]:
+def _split(graph: Graph, along: Floats) -> tuple[Ints, Ints, Ints]:
     """Two halves and what separates them (local numbers), by the best of the directions `along` (n, k)."""
-    row = np.repeat(np.arange(graph.shape[0]), np.diff(graph.indptr))
-    best: tuple[int, NDArray[np.bool_], NDArray[np.bool_]] | None = None
-    for s in along.T:
-        low = _below(s)
-        cut = low[row] & ~low[graph.indices]
-        size = min(len(np.unique(row[cut])), len(np.unique(graph.indices[cut])))
-        if best is None or size < best[0]:
-            best = (size, low, cut)
-    assert best is not None
-    _, low, cut = best
-    middle = np.zeros(graph.shape[0], bool)
-    for side in _least_cover(row[cut], graph.indices[cut]):
+    low = min((_below(s) for s in along.T), key=lambda low: _thickness(graph.indptr, graph.indices, low))
+    middle = np.zeros(len(low), bool)
+    for side in _least_cover(*_crossing(graph.indptr, graph.indices, low)):
         middle[side] = True
     return np.flatnonzero(low & ~middle), np.flatnonzero(~low & ~middle), np.flatnonzero(middle)
+
+
+@numba.njit(cache=True)
+def _thickness(indptr, indices, low):  # type: ignore[no-untyped-def]
+    """How many nodes that side has an edge to the other from which has fewer."""
+    met, below = np.zeros(len(low), np.bool_), 0
+    for i in range(len(low)):
+        if low[i]:
+            crosses = False
+            for p in range(indptr[i], indptr[i + 1]):
+                if not low[indices[p]]:
+                    met[indices[p]] = crosses = True
+            below += crosses
+    return min(below, np.sum(met))
+
+
+@numba.njit(cache=True)
+def _crossing(indptr, indices, low):  # type: ignore[no-untyped-def]
+    """Ends of every edge from low to another node."""
+    lows, highs = [], []
+    for i in range(len(low)):
+        if low[i]:
+            for p in range(indptr[i], indptr[i + 1]):
+                if not low[indices[p]]:
+                    lows.append(i)
+                    highs.append(indices[p])
+    return np.array(lows, np.int64), np.array(highs, np.int64)
+
+
+@numba.njit(cache=True)
+def _among(indptr, indices, nodes):  # type: ignore[no-untyped-def]
+    """The graph of some of the nodes, in their numbers."""
+    local, start, count = np.full(len(indptr) - 1, -1, np.int32), np.zeros(len(nodes) + 1, np.int32), 0
+    for k in range(len(nodes)):
+        local[nodes[k]] = k
+        count += indptr[nodes[k] + 1] - indptr[nodes[k]]
+    out, count = np.empty(count, np.int32), 0
+    for k in range(len(nodes)):
+        for p in range(indptr[nodes[k]], indptr[nodes[k] + 1]):
+            if local[indices[p]] >= 0:
+                out[count] = local[indices[p]]
+                count += 1
+        start[k + 1] = count
+    return start, out[:count].copy()
 
 
 def _least_cover(low: Ints, high: Ints) -> tuple[Ints, Ints]:

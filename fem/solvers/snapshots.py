@@ -36,7 +36,8 @@ class Recipe:
         the range that random points do not reach
     favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
     thin : the same weight for parts of little volume that nothing heats; by energy alone they have too few shapes
-    max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy
+    max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy; 0: the means
+        alone, for which nothing is solved
     """
 
     tolerance: float = 0.01
@@ -178,12 +179,18 @@ def bases(
     energy: Mapping[str, sp.csr_array],
     recipe: Recipe,
     weights: Mapping[str, float] | None = None,
+    last: Mapping[str, Basis] | None = None,
 ) -> dict[str, Basis]:
-    """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy)."""
+    """Shapes of every part, as many as the recipe allows; weights above 1 favour a part (on the root of energy).
+
+    last : of the same principal fields; those of a part that keeps its number are taken over
+    """
     favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in principal}
     least = _least(np.concatenate([p.strength * favour[n] for n, p in principal.items()]), len(principal), recipe)
+    counts = {name: int(np.sum(p.strength * favour[name] > least)) for name, p in principal.items()}
+    kept = {name: basis for name, basis in (last or {}).items() if len(basis.capacity) == counts[name]}
     return {
-        name: _shaped(block, principal[name].fields[:, principal[name].strength * favour[name] > least], energy[name])
+        name: kept.get(name) or _shaped(block, principal[name].fields[:, : counts[name]], energy[name])
         for name, block in field.blocks.items()
     }
 

@@ -17,7 +17,7 @@ from geom.meshing.extrude import extrude
 from geom.meshing.mesh import NamedMesh
 from geom.meshing.meshio_io import read_npz, write_npz
 from geom.meshing.partition import Partition, partition
-from geom.meshing.triangulate import triangulate
+from geom.meshing.triangulate import Triangulation, triangulate
 from geom.meshing.voids import filled
 
 COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}  # for a first look and for tests
@@ -53,8 +53,7 @@ def build_mesh(
     if file is not None and (cached := recalled(file, read_npz)) is not None:
         return replace(cached, identities=identities)
     plan = _planned((*machine.parts, *machine.fluids), segments)
-    times = {label: finer.count(part.name) for label, part in enumerate(plan.cut.parts)}
-    flat = triangulate(plan.columns, size_m, across, times)
+    flat = _triangulated((*machine.parts, *machine.fluids), segments, size_m, across, tuple(sorted(finer)))
     mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name, ends)
     if file is not None:
         with stored(file) as partial:
@@ -77,6 +76,16 @@ def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
     cut = filled(partition(parts, segments))
     blocks = find_blocks(cut)
     return _Plan(cut, blocks, find_columns(cut, blocks))
+
+
+@lru_cache(maxsize=8)
+def _triangulated(
+    parts: tuple[Part, ...], segments: int, size_m: float, across: float, finer: tuple[str, ...]
+) -> Triangulation:
+    """Triangles of the plane; kept, so that other layers do not cut it again."""
+    plan = _planned(parts, segments)
+    times = {label: finer.count(part.name) for label, part in enumerate(plan.cut.parts)}
+    return triangulate(plan.columns, size_m, across, times)
 
 
 def _cache_file(machine: Machine, settings: tuple[float | str, ...], cache: Path | str | None) -> Path | None:

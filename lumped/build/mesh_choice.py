@@ -43,7 +43,7 @@ SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothin
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the choice some 3 min of a core
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
-MOST_BESIDE = 130_000  # of two that are solved at once: at 180,000 each two of them took 4.5 GB
+MOST_BESIDE = 300_000  # of both meshes that are solved at once: of 360,000 they took 4.5 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
 ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
 IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
@@ -53,7 +53,7 @@ NOTABLE = 0.3  # percent of a hot spot that linear triangles of a part would cos
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
 IN_PLANE = ("size_m", "across")
 WAYS = (*IN_PLANE, "axial_m")  # and, of every laminated part, towards its ends
-MEANS = Recipe(shifts=(), random_points=0)  # enough for losses, fluids and streams
+MEANS = Recipe(max_states=0)  # enough for losses, fluids and streams
 Kelvins = Mapping[str, float]  # heated part -> K
 Counts = tuple[int, Mapping[str, tuple[int, int]]]  # points of a mesh; part -> its corners and middles of edges
 Losses = Mapping[str, Array]  # part -> (2, n_heated) percent of each hot spot: by edges in the plane, along the axis
@@ -154,10 +154,17 @@ class _Looks:
         self.solve([how])
         return self.rises[how]
 
-    def solve(self, meshes: Iterable[Meshing]) -> None:
-        """Look at those that were not, two at a time where both are small enough."""
+    def solve(self, meshes: Iterable[Meshing], ahead: Iterable[Meshing] = ()) -> None:
+        """Look at those that were not, two at a time where both are small enough.
+
+        ahead : of these, which may be asked for next, one is looked at beside a single one
+        """
         new = sorted({how for how in meshes if how not in self.rises}, key=lambda how: -self.size(how)[1])
-        large = [how for how in new if self.size(how)[1] > MOST_BESIDE]
+        if len(new) == 1:
+            others = (how for how in ahead if how not in self.rises and how not in new)
+            new += [how for how in others if self.size(how)[1] + self.size(new[0])[1] <= MOST_BESIDE][:1]
+        sizes = [*(self.size(how)[1] for how in new), 0]
+        large = [how for how, *pair in zip(new, sizes, sizes[1:], strict=False) if sum(pair) > MOST_BESIDE]
         point = self.point  # before processes part
 
         def hot_spots(how: Meshing) -> Kelvins:
@@ -216,7 +223,8 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     while True:
         first = replace(looks.first, quadratic=how.quadratic)
         others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
-        looks.solve([how, first, *others.values()])
+        ahead = (other.along(way, 0.5) for way, other in others.items() if way not in WAYS)
+        looks.solve([how, first, *others.values()], ahead)
         for way, other in others.items():
             ways[way] = _looked_further(ways[way], other == how.along(way, 0.5), looks.moved(how, other))
         linear = looks.moved(first, looks.every)
@@ -227,6 +235,9 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         if percent[worst] <= enough * accuracy:
             return MeshChoice(how, percent, *looks.size(how), True)
         plane = max(ways[w].left(worst) for w in IN_PLANE)
+        rise = max(looks.hot(how)[worst], FLOOR * max(looks.hot(how).values()))
+        missing = rise * (percent[worst] - enough * accuracy) / 100.0
+        will_do = way is not None and (1.0 - 0.5**ORDER) * ways[way].left(worst) > missing
         way_left = max(ways, key=lambda w: ways[w].left(worst))
         most_left = ways[way_left].left(worst)
         if stale and (way is None or way_left in stale):
@@ -234,7 +245,7 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
             ways, stale = {**ways, **dict.fromkeys(again, _Way())}, stale - again
         elif linear[worst] > ALIKE * most_left and (part := _part_to_bend(looks, how, worst, most)):
             how, stale = replace(how, quadratic=(*how.quadratic, part)), _not_refined(ways)
-        elif (way is None or way in IN_PLANE or ways[way].left(worst) < plane) and (
+        elif (way is None or way in IN_PLANE or (ways[way].left(worst) < plane and not will_do)) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
             how, ways = alone, {**ways, **dict.fromkeys(IN_PLANE, _Way())}
@@ -273,14 +284,15 @@ def _one_part_finer(
     plane : K that halving all of them may leave of it;  in_vain : pairs of worst and finer part that were tried
     """
     column = list(looks.hot(how)).index(worst)
-    for part in sorted(looks.losses, key=lambda p: -looks.losses[p][0, column]):
-        there = replace(how, finer=(*how.finer, part))
-        if looks.losses[part][0, column] < NOTABLE:
-            return None
-        if (worst, part) not in in_vain and looks.size(there)[1] <= most:
-            if UNCONFIRMED * looks.moved(how, there)[worst] >= ALIKE * plane:
-                return there
-            in_vain.add((worst, part))
+    worth = {p: lost for p, loss in looks.losses.items() if (lost := loss[0, column]) >= NOTABLE}
+    new = [p for p in sorted(worth, key=lambda p: -worth[p]) if (worst, p) not in in_vain]
+    finer = {part: replace(how, finer=(*how.finer, part)) for part in new}
+    fits = {part: there for part, there in finer.items() if looks.size(there)[1] <= most}
+    for part, there in fits.items():
+        looks.solve([there], fits.values())
+        if UNCONFIRMED * looks.moved(how, there)[worst] >= ALIKE * plane:
+            return there
+        in_vain.add((worst, part))
     return None
 
 

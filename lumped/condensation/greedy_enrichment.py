@@ -65,7 +65,7 @@ class Size:
     ) -> Size:
         """points : the nominal one first, then random ones, all solved in full"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
-        nominal, *others = (point_error(network, point, cases) for point in points)
+        nominal, *others = errors_at(points, reduction, network, cases)
         random = merged(others)
         return cls(
             requested, network, nominal, random, max(excess(nominal, accuracy), excess(random, accuracy)) <= RESERVE
@@ -104,7 +104,7 @@ def enrich(
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, accuracy, weights)
         new = reduction.solved([reduction.random_point(first + fresh * k + j) for j in range(fresh)])
-        errors = merged([point_error(network, point, cases) for point in new])
+        errors = merged(errors_at(new, reduction, network, cases))
         history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
         tell(f"{len(network.states)} states: {errors}")
         if history[-1].met or k == rounds - 1:
@@ -125,7 +125,7 @@ def allotted_shapes(
     """Deal out shapes until the points already solved are met: parts that miss get more."""
     network = reduction.network(weights=weights)
     for _ in range(FAVOURS):
-        errors = merged([point_error(network, point, cases) for point in learned])
+        errors = merged(errors_at(learned, reduction, network, cases))
         missing = {part: accuracy.excess(e) for part, e in errors.parts.items() if accuracy.excess(e) > MARGIN}
         if not missing:
             break
@@ -135,5 +135,6 @@ def allotted_shapes(
     return network
 
 
-def point_error(network: Network, point: FullPoint, cases: LoadCases) -> Errors:
-    return point_errors(network, point.films, point.contacts, point.X, cases)
+def errors_at(points: Sequence[FullPoint], reduction: Reduction, network: Network, cases: LoadCases) -> list[Errors]:
+    """Of the network at every point, in two processes where there is room."""
+    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.X, cases), points)

@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from fem.matrices.assembly import FieldModel
 from fem.solvers.snapshots import (
     DEFAULT,
+    Basis,
     Principal,
     Recipe,
     bases,
@@ -78,6 +79,11 @@ class Reduction:
         return energies(self.field, self.films, self.contacts)
 
     @cached_property
+    def _shapes(self) -> dict[str, Basis]:
+        """Those of the last network that was cut out of it: in the next most parts have as many."""
+        return {}
+
+    @cached_property
     def solver(self) -> Solver:
         return Solver(self.field)
 
@@ -92,7 +98,8 @@ class Reduction:
         """Conduction and contacts as links, faces, parts and zones as places; no films yet. Costs no solve."""
         fine = self.recipe.tolerance if tolerance is None else tolerance
         recipe = replace(self.recipe, tolerance=fine, max_states=max_states)
-        shapes = bases(self.field, self.principal, self.energy, recipe, weights)
+        shapes = bases(self.field, self.principal, self.energy, recipe, weights, self._shapes)
+        self._shapes.update(shapes)
         whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
         return network_in(self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name)
 
@@ -159,6 +166,9 @@ def reduce(
     solver : of the snapshots; None: the free one of fem.solvers.solve
     """
     places = {**{part: Zone(part) for part in field.blocks}, **(zones or {})}
+    if recipe.max_states == 0:
+        bare = {part: Principal(np.zeros(0), np.zeros((block.n, 0))) for part, block in field.blocks.items()}
+        return Reduction(field, films, contacts, places, fluids, boundaries, name, recipe, bare)
     loads = unit_loads(field, places)
     basis_cache = BasisCache(cache, _geometry(field, loads, recipe))
     centre = Centre({**films}, {**contacts}, {p: float(b.K.diagonal().sum()) for p, b in field.blocks.items()})

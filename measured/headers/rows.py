@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import accumulate
 
@@ -20,8 +20,10 @@ FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
 TIMES = {"s", "ms", "us", "min", "h"}
-TALLEST = 8  # rows of names, tags, kinds and units over the readings
+TALLEST = 16  # rows of names, tags, kinds, units and settings over the readings
 UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位")  # of a column of units
+MOST, LONG = 100, 20  # signals and readings of a table that lies on its side
+NUMBERED = re.compile(r"\W*(?:(?i:col|column|spalte|colonne|columna|field|channel|ch)\W*)?(\d+)\s*[:=.)-]\s*(\w.*)")
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
 
 
@@ -42,8 +44,11 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     units = next((i for i in reversed(block) if _all_units(rows[i])), None)
     candidates = [i for i in block if i != units]
     if not candidates:
-        return Layout(("",) * width, ("",) * width, first, width)
+        return Layout(_legend(rows[:first], width), ("",) * width, first, width)
     candidates = [i for i in candidates if len(trimmed(rows[i])) >= width - 1] or candidates
+    gapless = [i for i in candidates if sum(bool(str(c or "").strip()) for c in rows[i]) >= width - 1]
+    if any(is_time(str(c)) or quantities_of(str(c)) for i in gapless for c in rows[i]):
+        candidates = gapless  # not names of groups, which stand over the first column of each
     header = max(candidates, key=lambda i: (_informative(rows[i]), i))
     names = [str(c or "").strip() for c in trimmed(rows[header])]
     if names and names[0].strip("#%/ ") != names[0]:
@@ -63,17 +68,26 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     width = len(names) if len(names) > width else width
     names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
-    if above and any(above[-1][width // 2 :]) and len(set(names)) < len(names):  # names of groups over those of columns
+    groups = [""] * width
+    if above and any(above[-1][width // 2 :]):  # names of groups over those of columns
         # Merged cells are of the group of the first of them.
-        groups: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
-        names = [f"{group} {name}".strip() if names.count(name) > 1 else name for group, name in zip(groups, names)]
-    if not any(map(roles_of, names)) and (remarks := next((row for row in above if any(map(roles_of, row[1:]))), None)):
+        groups = [*accumulate(above[-1], lambda group, cell: cell or group)]
+        once = [
+            names.count(n) == 1 and ((len(n) > 1 and _informative([n])) or not _informative([g]))
+            for g, n in zip(groups, names)
+        ]
+        names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
+    others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
+    if not any(map(roles_of, names)) and (remarks := next((r for r in others if any(map(roles_of, r[1:]))), None)):
         labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
-        late = next((labels.index(c) - j for row in above for j, c in enumerate(row) if c and c in labels), 0)
+        late = next((labels.index(c) - j for row in others for j, c in enumerate(row) if c and c in labels), 0)
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     unit_cells = _padded(rows[units] if units is not None else [], width)
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
+    unit_cells[0] *= is_unit(unit_cells[0])  # what stands before units is the row's own label
+    own = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
+    unit_cells = [u if mine else split_unit(group)[1] for u, mine, group in zip(unit_cells, own, groups)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
 
 
@@ -96,8 +110,8 @@ def first_row_layout(rows: Sequence[Row], where: str) -> Layout:
 def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     """The rows over the readings that may be names, units, or groups of names: those that fill half of the table.
 
-    A row with its label alone ("Comment:", "trace_values"), with dates or with the clock's name alone may stand between
-    them, and is neither.
+    A row with its label alone ("Comment:", "trace_values"), with dates or times, with one number for every column or
+    with the clock's name alone may stand between them, and is neither.
     """
     block: list[int] = []
     for i in reversed(range(max(0, first - TALLEST), first)):
@@ -105,7 +119,9 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
         alone = len(cells) == 1 < 0.5 * width <= (len(rows[i]) if block else width) and not cells[0].startswith("***")
         if alone or any(map(is_date, cells)) or (1 < len(cells) < 0.5 * width and all(map(is_time, cells))):
             continue
-        if cells and (len(cells) < 0.5 * width or all(map(is_reading, cells))):
+        if len(cells) > 2 and len(set(cells[1:])) == 1 and is_reading(cells[1]):
+            continue
+        if cells and ((len(cells) < 0.5 * width and not _all_units(rows[i])) or all(map(is_reading, cells))):
             break
         if cells:
             block.insert(0, i)
@@ -133,6 +149,21 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
     units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
     return [f"{name} {called.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
+
+
+def _legend(before: Sequence[Row], width: int) -> tuple[str, ...]:
+    """What lines before the readings say of every column by its number, "" where they do not."""
+    lines = (NUMBERED.fullmatch(" ".join(str(c) for c in row if c is not None).strip()) for row in before)
+    said = {int(m[1]): m[2].strip() for m in lines if m}
+    return tuple(said.values()) if [*said] in ([*range(width)], [*range(1, width + 1)]) else ("",) * width
+
+
+def transposed(rows: Sequence[Row]) -> bool:
+    """Does every row hold one signal, behind its name?"""
+    full = [t for t in map(trimmed, rows[: MOST + 1]) if len(t) > 1]
+    width = min(map(len, full), default=0)
+    wide = len(rows) <= MOST and width > max(LONG, 2 * len(full)) and len(full) > 1
+    return wide and all(not is_reading(r[0]) and sum(map(is_reading, r[1:])) > 0.9 * (len(r) - 1) for r in full)
 
 
 def _informative(row: Row) -> int:

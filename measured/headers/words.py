@@ -21,7 +21,7 @@ def _words(text: str) -> frozenset[str]:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, MEAN = (
+SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, SPREAD, MEAN = (
     _words(VOCABULARY["words"][name])
     for name in (
         "setpoint",
@@ -35,6 +35,7 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANN
         "outer",
         "channels",
         "extreme",
+        "spread",
         "mean",
     )
 )
@@ -79,13 +80,16 @@ def quantities_of(name: str) -> list[str]:
     spoken = {
         w for path in paths for i, w in enumerate(path) if len(w) > 1 or (i == 0 and path in (paths[0], paths[-1]))
     }
+    spoken = {w for w in spoken if len(w) > 1 and any(w in terms for terms in QUANTITY.values())} or spoken
     quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
     if quantities == ["power"] and re.match(r"p(?![a-z])", name):
         return []
     long = {q: [k for k in terms if len(k) > SHORTEST or k[0] >= IDEOGRAPHS] for q, terms in QUANTITY.items()}
     inside = {q: max((len(k) for k in terms for w in words if k in w), default=0) for q, terms in long.items()}
     inside |= {
-        q: SHORTEST for q, terms in QUANTITY.items() if not inside[q] and any(w[-SHORTEST:] in terms for w in words)
+        q: SHORTEST
+        for q, terms in QUANTITY.items()
+        if not inside[q] and any(w[-SHORTEST:] in terms for w in words if len(w) > 1)
     }
     quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
     return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])

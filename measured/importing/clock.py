@@ -33,6 +33,7 @@ POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day w
 IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
+CLOCK_PARTS = {part: words.split(",") for part, words in VOCABULARY["clock_parts"].items()}
 MILLISECONDS = ("ms", "msec", "millisecond", "milliseconds", "millisekunden")
 DAY_FIRST = frozenset({"datum", "fecha", "data", "uhrzeit", "zeit", "heure", "zeitstempel", "horodatage"})
 DAY_NAMES = frozenset({"uhrzeit", "heure", "hora", "ora", "day"})  # of a clock on the wall
@@ -207,6 +208,8 @@ def _spread(t: Array) -> tuple[Array, list[str]]:
 
 def _guessed_clock(source: Source) -> Clock | None:
     """A date with a time of day beside it, an instant, a clock, or numbers under a name for time."""
+    if (clock := _in_columns(source)) is not None:
+        return clock
     dates = [c for c in source.cells if _mostly(source.cells[c], is_date)]
     clocks = [c for c in source.cells if _mostly(source.cells[c], is_clock) and c not in dates]
     with_time = [c for c in dates if _has_time(source.cells[c])]
@@ -223,6 +226,35 @@ def _guessed_clock(source: Source) -> Clock | None:
         return _of_day(source, (by_name or clocks)[0])
     days = _instants(source.cells[dates[0]], (dates[0],), source.labels[dates[0]]) if dates else None
     return days if days is not None and _rising(days.seconds) else _numeric(source)
+
+
+def _in_columns(source: Source) -> Clock | None:
+    """Year, day, hour and the like in a column of whole numbers each; None where there are no hours of a day, or hours
+    with minutes, such."""
+    read: dict[str, tuple[str, Array]] = {}
+    for c in source.cells:
+        part = next((name for name, words in CLOCK_PARTS.items() if source.labels[c].strip().lower() in words), "")
+        if part and part not in read and source.is_numeric(c):
+            n = source.numbers(c)
+            if np.isfinite(n).all() and (n >= 0).all() and ((n == np.round(n)).all() or part == "second"):
+                read[part] = (c, n)
+    parts = {part: n for part, (_, n) in read.items()}
+    if "hhmm" in parts:
+        parts |= {"hour": parts["hhmm"] // 100, "minute": parts["hhmm"] % 100}
+    days = "day of year" in parts or {"month", "day"} <= parts.keys()
+    if "hour" not in parts or not (days or "minute" in parts) or np.max([*parts.get("minute", [0])]) > 59:
+        return None
+    none = np.zeros(source.rows)
+    year = parts.get("year", none + 1970).astype(int)
+    if "day of year" in parts:
+        day = (year - 1970).astype("M8[Y]").astype("M8[D]") + (parts["day of year"] - 1).astype(int)
+    else:
+        months = (12 * (year - 1970) + parts.get("month", none + 1).astype(int) - 1).astype("M8[M]")
+        day = months.astype("M8[D]") + (parts.get("day", none + 1) - 1).astype(int)
+    of_day = HOUR_S * parts["hour"] + 60 * parts.get("minute", none) + parts.get("second", none)
+    seconds = (day - EPOCH) / np.timedelta64(1, "s") + of_day
+    clock = _since_first(seconds, tuple(c for c, _ in read.values()), f"{', '.join(read)} in columns of their own")
+    return clock if days and "year" in parts else replace(clock, start=None)
 
 
 def _rising(seconds: Array) -> bool:

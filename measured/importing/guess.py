@@ -26,6 +26,7 @@ from measured.headers.words import (
     READ,
     ROLES,
     SETPOINT,
+    SPREAD,
     axis_of,
     quantities_of,
     roles_of,
@@ -58,6 +59,8 @@ FIRST = (
     *("temperature", "current", "speed", "torque", "power", "vehicle_speed"),
     *("voltage", "share", "water_flow", "air_flow", "frequency", "resistance"),
 )  # of several quantities that have a unit, the likelier before the others
+SIGNALS = ("V", "A", "mA")  # of amplifiers and transmitters
+QUALITY = ("q", "qc", "qual", "st", "sts")
 ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
@@ -65,6 +68,7 @@ ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
+NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
@@ -106,7 +110,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 
 
 def _read(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the temperatures of parts that a model made, and extremes, where others were read."""
+    """Without the temperatures that a model made, and extremes, where others were read."""
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
@@ -116,7 +120,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         for g in every
     ]
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
-    models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])} and roles_of(label)}
+    models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) == len(hot):
         return every
     return [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
@@ -168,6 +172,12 @@ def _left_out(source: Source, column: str) -> str:
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
+    if (parts := PATH.split(label))[1:] and parts[-1].strip().lower() in QUALITY:  # TI101.PV beside TI101.Q
+        return "the quality of a reading"
+    if words & SPREAD:
+        return "a spread of readings, not a reading"
+    if unit_of(unit_text) in SIGNALS and quantities_of(label) == ["temperature"]:
+        return f"named a temperature, but in {unit_text}"
     if words & NOTHING and unit_of(unit_text) in WEAK:
         return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
@@ -249,7 +259,7 @@ def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and np.unique(values).size > 0.1 * values.size
     if not (smooth and (absolute or celsius)):
         return "", "", ""
-    return "temperature", "values", "no name: a temperature, by its values?"
+    return "temperature", "values", f"{NAMELESS}: a temperature, by its values?"
 
 
 def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, str]:

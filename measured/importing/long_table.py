@@ -26,9 +26,10 @@ def side_by_side(
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
     temperatures of parts go on between them.
     """
-    key = next((j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])), None)
-    if key is None:
+    keys = [j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])]
+    if not keys:
         return {}, []
+    key = keys[0]
     values = [j for j, name in enumerate(names) if j != key and set(tokens(name)) & VALUES]
     times = [
         j
@@ -41,17 +42,23 @@ def side_by_side(
     value, unit = (values[0], "") if values else (rest[0], f" {names[rest[0]]}")
     series: dict[str, dict[Any, Any]] = {}
     clocks = list(zip(*(columns[j] for j in times), strict=True))
-    for signal, instant, reading in zip(columns[key], clocks, columns[value], strict=True):
+    signals = columns[key]
+    for j in (j for j in rest if j != value and _is_key(columns[j])):  # what tells signals apart besides: a place
+        if len(set(zip(clocks, signals))) < 0.9 * len(clocks):
+            signals = [f"{signal} {word}" for signal, word in zip(signals, columns[j], strict=True)]
+    for signal, instant, reading in zip(signals, clocks, columns[value], strict=True):
         if signal is not None and str(signal).strip():
             series.setdefault(f"{signal}{unit}", {})[instant] = reading
     instants: list[tuple[Any, ...]] = max((list(readings) for readings in series.values()), key=len)
-    notes = []
+    notes, lost = [], len(clocks) - sum(map(len, series.values()))
+    if lost:
+        notes.append(f"{Path(where).name}: {lost} readings share signal and time with another, and are left out")
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         instants = _in_order(dict.fromkeys(clocks))
-        notes = [
+        notes.append(
             f"{Path(where).name}: {what}; all but temperatures of parts hold until the next reading of their signal"
-        ]
+        )
         for signal, readings in series.items():
             roles = roles_of(signal)
             if roles[:1] not in BOUNDARIES and (roles or "temperature" in quantities_of(signal)):

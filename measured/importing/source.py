@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geom.description.names import plain_header
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
-from measured.headers.rows import UNIT_NAMES, Layout, layout
+from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
 from measured.headers.words import is_time, quantities_of, roles_of
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
@@ -31,6 +31,10 @@ TEXT = 0.2  # share of cells that are words from which a column holds no reading
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
+BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
+SCALED = re.compile(
+    r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
+)  # x0.1 °C, 1/10 °C, 10 mA
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -99,6 +103,7 @@ def read_source(file: Path) -> Source:
     suffix = file.suffix.lower()
     if suffix in BOOKS:
         rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))
+        rows = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
         plan = layout(rows, str(file))
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
@@ -116,7 +121,10 @@ def source_of_recording(file: Path, table: DataTable) -> Source:
         if (beside := side_by_side(names, columns, str(file)))[0]:
             return _source(file, [*beside[0]], [*beside[0].values()], {}, (*beside[1], *table.notes), table.start)
     units = {name: table.units.get(column, "") for name, column in zip(names, table.columns, strict=True)}
-    return _source(file, names, [*table.cells.values()], units, table.notes, table.start)
+    source = _source(file, names, [*table.cells.values()], units, table.notes, table.start)
+    remarks = {n: r for n, c in zip(names, table.columns, strict=True) if roles_of(r := table.remarks.get(c, ""))}
+    labels = {n: remarks.get(n, label) if not roles_of(label) else label for n, label in source.labels.items()}
+    return replace(source, labels=labels)
 
 
 def _formulas(file: Path) -> list[str]:
@@ -163,6 +171,12 @@ def _source(
     if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}
+    for n in cells:
+        before, inside = m.groups() if (m := BRACKETED.fullmatch(n)) else (n, "")
+        if (scaled := SCALED.fullmatch(units.get(n, "") or inside)) and is_unit(scaled[3]):
+            factor = float(scaled[2].replace(",", ".")) ** (-1 if scaled[1] else 1)
+            cells[n], split[n], units = as_numbers(cells[n]) * factor, (before, scaled[3]), {**units, n: ""}
+            notes = [*notes, f"{file.name}: '{n}' is read in units of {factor:g} {scaled[3]}"]
     stems = Counter(label for label, unit in split.values() if unit)
     split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
     unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}

@@ -19,7 +19,18 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from measured.headers.words import CHANNELS, LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
 from measured.importing.draft import Draft
-from measured.importing.guess import AXES, ELSE, IN_HEADER, NUMBERED, RELATIVE, UNKNOWN, Array, Guess, in_memory
+from measured.importing.guess import (
+    AXES,
+    ELSE,
+    IN_HEADER,
+    NAMELESS,
+    NUMBERED,
+    RELATIVE,
+    UNKNOWN,
+    Array,
+    Guess,
+    in_memory,
+)
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -113,8 +124,14 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
+        left = next(
+            (f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])),
+            "",
+        )
         raise InputError(
-            "no column is a temperature of a machine", files, "a column with degC or K, or a name such as T_winding"
+            f"no column is a temperature of a machine{left}",
+            files,
+            "a column with degC or K, or a name such as T_winding",
         )
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
@@ -144,7 +161,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
-        for doubt in (UNKNOWN, RELATIVE, IN_HEADER):
+        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS):
             if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
         if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_reading, number
-from measured.headers.rows import SAMPLE, Layout, layout
+from measured.headers.rows import SAMPLE, Layout, layout, transposed
 from measured.recordings.csv_file import Body, chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
@@ -29,7 +29,8 @@ LETTERS = re.compile(
     r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšžğış℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
 )
 INTERVAL = re.compile(
-    r"(?im)^\W*(?:delta_x|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall|scan interval)"
+    r"(?im)^\W*(?:delta_x|hresolution|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall"
+    r"|scan interval)"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
@@ -61,6 +62,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         lines = [line.replace('"', "") for line in lines]
     sign = delimiter(lines)
     head = split_cells(lines[: 2 * SAMPLE], sign)
+    if transposed(head):
+        head = [*map(list, zip(*(row for row in head if len(row) > 1), strict=False))]
+        lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
     if keys := _keys(head):
         rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None

@@ -35,7 +35,7 @@ class DataTable:
     any kind with None where nothing was read
 
     units : column -> unit as the file keeps it, apart from the name;  start : of its clock (s since 1970), if known
-    notes : what is doubtful in the file;  line : of its first row
+    notes : what is doubtful in the file;  line : of its first row;  remarks : column -> what the file says it is
     """
 
     cells: Mapping[str, Any]
@@ -43,6 +43,7 @@ class DataTable:
     start: float | None = None
     notes: tuple[str, ...] = ()
     line: int = HEADER
+    remarks: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, columns: Iterable[tuple[object, Any]], file: Path, **about: Any) -> DataTable:

@@ -40,6 +40,7 @@ TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
 GRAIN = 1e-6  # s, below which two instants are one
+ABOUT = (("label", "name", "signal"), ("unit", "units"))  # of a signal, in structs of MATLAB
 Signal = tuple[str, Array, Array]
 Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
 BOOK = "an Excel workbook"
@@ -276,13 +277,20 @@ def _unpacked(file: Path, head: str) -> Iterator[int]:
 
 
 def _vectors(one: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Array]]:
-    """Numbers of one dimension by the names that lead to them; a Simulink signal by its label."""
+    """Numbers of one dimension by the names that lead to them; a signal whose struct has its name and unit by these."""
     if isinstance(one, Mapping):
-        if isinstance(label := one.get("label"), str) and label and "values" in one:
-            yield from _vectors(one["values"], (*path[:-1], label))
+        about = {str(key).lower(): inside for key, inside in one.items()}
+        label, unit = (next((w for k in keys if isinstance(w := about.get(k), str) and w), "") for keys in ABOUT)
+        if (key := next((k for k in ("values", "data", "value") if k in about), "")) and (label or unit):
+            name = label or (path or ("column",))[-1]
+            yield from _vectors(about[key], (*path[:-1], f"{name} [{unit}]" if unit else name))
             return
+        lists = [[*v] for v in one.values() if isinstance(v, list | np.ndarray) and all(isinstance(w, str) for w in v)]
         for name, inside in one.items():
-            if not str(name).startswith("__"):
+            columns = next((v for v in lists if np.ndim(inside) == 2 and len(v) == np.shape(inside)[1]), None)
+            if columns:  # names beside a matrix
+                yield from _vectors(dict(zip(columns, np.asarray(inside).T, strict=True)), path)
+            elif not str(name).startswith("__"):
                 yield from _vectors(inside, (*path, str(name)))
     elif isinstance(one, np.ndarray) and one.dtype.kind in "fiub":
         for j, column in enumerate(one.T if one.ndim == 2 else [one][: one.ndim == 1], 1):
@@ -322,6 +330,7 @@ def _tdms(file: Path, group: str) -> Contents:
         timeless = all("wf_increment" not in c.properties for _, c in channels)
         return columns, {
             "units": {name: str(c.properties.get("unit_string", "")) for name, c in by_name},
+            "remarks": {name: str(c.properties.get("description", "")) for name, c in by_name},
             "start": _since_1970(starts[0]) if starts else None,
             "notes": (f"{file.name}: {TIMELESS}",) * timeless,
         }
@@ -355,7 +364,8 @@ def _mf4(file: Path) -> Contents:
             if len(s.samples) > 0 and s.samples.ndim == 1
         ]
         units = {c.name: c.unit or "" for g in mdf.groups for c in g.channels}
-        return joined(signals), {"units": units, "start": _since_1970(mdf.start_time)}
+        remarks = {c.name: c.comment or "" for g in mdf.groups for c in g.channels}
+        return joined(signals), {"units": units, "remarks": remarks, "start": _since_1970(mdf.start_time)}
 
 
 def _since_1970(instant: Any) -> float | None:

@@ -21,6 +21,7 @@ HISTORY = [
         "number": 1,
         "action": "calibrate",
         "effect": None,
+        "words": "calibrate",
         "tests": [
             {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 3.1, "after": 0.71}},
             {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 6.4, "after": 4.85}},
@@ -30,6 +31,7 @@ HISTORY = [
         "number": 2,
         "action": "add",
         "effect": "convection@flange.right",
+        "words": "forced convection by vehicle wind at flange.right",
         "tests": [
             {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 0.71, "after": 0.68}},
             {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 4.85, "after": 0.93}},

@@ -187,7 +187,7 @@ def _last_runs(test: Test) -> deque[tuple[Network, dict[str, float], Run]]:
 
 
 def steps(folder: Folder) -> list[dict[str, Any]]:
-    """The revisions as pictures and the report want them: number, action, effect, tests."""
+    """The revisions as pictures and the report want them: number, action, effect, the step in words, tests."""
     roles = {t.name: t.role for t in folder.case.tests}
     return [
         {
@@ -195,6 +195,7 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
             "action": r.action,
             "effect": r.effect,
             "effects": list(r.effects),
+            "words": step_words(folder.case, r),
             "why": r.why,
             "tests": [
                 {"name": name, "role": roles[name], "rmse_K": {"before": before, "after": after}}
@@ -211,6 +212,15 @@ def added_words(case: Case, names: Iterable[str]) -> str:
     from validation.effects import effect
 
     return " and ".join(effect(name, scene_of(case)).statement for name in names)
+
+
+def step_words(case: Case, step: Revision) -> str:
+    """What a step added, as an engineer says it; what it did where it added nothing."""
+    from validation.revision.revise import TOGETHER
+
+    if step.action == "add":
+        return added_words(case, step.effect.split(TOGETHER))
+    return f"{step.action} {step.effect or ''}".strip()
 
 
 def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:

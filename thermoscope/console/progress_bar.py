@@ -185,15 +185,15 @@ class ProgressBar:
             return self.part
         return self.part + self.piece * (1.0 - exp(-(here - self.counted_s) / self.counted_s * self.part / self.piece))
 
-    def words(self, message: str) -> str:
-        """The message with share and time left."""
-        remaining = self.left()
-        return f"{message} ({_remaining(remaining)})" if remaining else message
-
 
 def _word(stage: str) -> str:
     """Of a stage without the number of its block."""
     return stage.rpartition(" ")[2]
+
+
+def _line(message: str, remaining: tuple[float, float] | None) -> str:
+    """The message with share and time left."""
+    return f"{message} ({_remaining(remaining)})" if remaining else message
 
 
 def _remaining(remaining: tuple[float, float]) -> str:
@@ -215,7 +215,7 @@ def progress() -> Iterator[Progress]:
             yield tell
         whole.leave()
         return
-    with _remembering(f"{_command()} {next(_blocks)}") as stages, _display(stages) as tell:
+    with remembering(f"{_command()} {next(_blocks)}", _case()) as stages, _display(stages) as tell:
         yield tell
 
 
@@ -225,7 +225,7 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 
     shortest_s : what takes less has neither (s)
     """
-    with _remembering(_command(), shortest_s) as stages:
+    with remembering(_command(), _case(), shortest_s) as stages:
         token = _whole.set(stages)
         try:
             yield
@@ -234,13 +234,16 @@ def one_bar(shortest_s: float = WORTH_S) -> Iterator[None]:
 
 
 @contextmanager
-def _remembering(key: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
-    """Stages that know how long they took the last time, of this very case where they can."""
+def remembering(command: str, case: str, shortest_s: float = WORTH_S) -> Iterator[ProgressBar]:
+    """Stages that know how long they took the last time, of this very case where they can.
+
+    command, case : whose stages these are: "explain diagnose 0", its path;  shortest_s : as of a ProgressBar (s)
+    """
     # What the cache knows; nothing where it is damaged or was never written
-    durations, keys = _stages_in(cache_folder() / FILE), [f"{key}{_case()}", key]
+    durations, keys = _stages_in(cache_folder() / FILE), [f"{command} {case}".rstrip(), command]
     memory = next((durations[k] for k in keys if durations.get(k)), None)
     same_case = bool(durations.get(keys[0]))
-    stages = ProgressBar(memory or _usual().get(key, {}), shortest_s=shortest_s, same_case=same_case)
+    stages = ProgressBar(memory or _usual().get(command, {}), shortest_s=shortest_s, same_case=same_case)
     try:
         yield stages
         stages.leave()
@@ -260,9 +263,9 @@ def _command() -> str:
 
 
 def _case() -> str:
-    """What the command is about, where it stands behind its words: " /home/me/motor"."""
+    """What the command is about, where it stands behind its words: "/home/me/motor"."""
     words = sys.argv[1:4]
-    return "" if len(words) < 3 or any(word.startswith("-") for word in words) else f" {Path(words[2]).absolute()}"
+    return "" if len(words) < 3 or any(word.startswith("-") for word in words) else str(Path(words[2]).absolute())
 
 
 @contextmanager
@@ -272,18 +275,29 @@ def _display(stages: ProgressBar) -> Iterator[Progress]:
     from validation.counting import listening
 
     console = Console(stderr=True)
-    with _bar(stages, console) if console.is_terminal else _lines(stages) as tell, listening(tell):
+
+    def say(words: str, share: float | None) -> None:
+        print(visible(words), file=sys.stderr, flush=True)
+
+    with _bar(stages, console) if console.is_terminal else timed_lines(stages, say) as tell, listening(tell):
         yield tell
 
 
 @contextmanager
-def _lines(stages: ProgressBar) -> Iterator[Progress]:
-    """One line a stage, and one whenever there was none for a while."""
+def timed_lines(
+    stages: ProgressBar, show: Callable[[str, float | None], None], quiet_s: float = QUIET_S
+) -> Iterator[Progress]:
+    """One line a stage, and one whenever there was none for a while.
+
+    show : is given a line with its time left, and the share done where it is known
+    quiet_s : the longest time without a line (s)
+    """
     now, stop, spoken = [""], Event(), [stages.clock()]
 
     def say() -> None:
         spoken[0] = stages.clock()
-        print(visible(stages.words(now[0])), file=sys.stderr, flush=True)
+        remaining = stages.left()
+        show(_line(now[0], remaining), remaining and remaining[0])
 
     def tell(message: str) -> None:
         now[0] = now[0] if ALONE.fullmatch(message) else message
@@ -291,8 +305,8 @@ def _lines(stages: ProgressBar) -> Iterator[Progress]:
             say()
 
     def remind() -> None:
-        while not stop.wait(max(QUIET_S - (stages.clock() - spoken[0]), 0.1)):
-            if now[0] and stages.clock() - spoken[0] >= QUIET_S:
+        while not stop.wait(max(quiet_s - (stages.clock() - spoken[0]), 0.1)):
+            if now[0] and stages.clock() - spoken[0] >= quiet_s:
                 say()
 
     reminder = Thread(target=remind, daemon=True)

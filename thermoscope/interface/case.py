@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ from geom.table import Table, TableResult
 from geom.text import counted, table
 from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
+from thermoscope.interface.notebook import Progress, hearing, silent
 from thermoscope.parts import explained
 
 if TYPE_CHECKING:
@@ -24,19 +25,14 @@ if TYPE_CHECKING:
     from validation.inference.result import Diagnosis
     from validation.revision.revise import Revision
 
-Progress = Callable[[str], None]
-
-
-def silent(message: str) -> None:
-    """No progress."""
-
 
 @dataclass(frozen=True)
 class Case(TableResult):
     """Measurements and the model held against them.
 
     folder : what the files hold, with the model as it stands here;  on_disk : the history that model.toml holds
-    steps : what was done since, oldest first;  progress : is told what is going on
+    steps : what was done since, oldest first
+    progress : is told what is going on; in a notebook that names none, a bar shows it
     """
 
     folder: Folder
@@ -96,7 +92,8 @@ class Case(TableResult):
 
         Source: ASME V&V 20-2009 (expanded uncertainty).
         """
-        return self.folder.compared
+        with hearing(self.progress, "test compare", str(self.folder.settings.path)):
+            return self.folder.compared
 
     def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = ()) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
@@ -107,7 +104,8 @@ class Case(TableResult):
         """
         from thermoscope.commands.explain.diagnose import diagnosed
 
-        return diagnosed(self.folder, self.progress, without, only)[0]
+        with hearing(self.progress, "explain diagnose", str(self.folder.settings.path)) as tell:
+            return diagnosed(self.folder, tell, without, only)[0]
 
     def add(self, effect: str) -> Case:
         """With the effect "kind@place", calibrated on all tests but the held-out ones.
@@ -117,19 +115,22 @@ class Case(TableResult):
         from thermoscope.commands.model.revise import meant
         from validation.revision.revise import add
 
-        return self._after(add(self.folder.case, meant(self.folder, effect), self.progress))
+        with hearing(self.progress, "model add", str(self.folder.settings.path)) as tell:
+            return self._after(add(self.folder.case, meant(self.folder, effect), tell))
 
     def remove(self, effect: str) -> Case:
         """Without the effect, calibrated again. Raises InputError if the model does not hold it."""
         from validation.revision.revise import remove
 
-        return self._after(remove(self.folder.case, effect, self.progress))
+        with hearing(self.progress, "model add", str(self.folder.settings.path)) as tell:
+            return self._after(remove(self.folder.case, effect, tell))
 
     def calibrate(self) -> Case:
         """With what case.toml leaves free fitted to the calibration tests; intervals are in `steps[-1].parameters`."""
         from validation.revision.revise import calibrate
 
-        return self._after(calibrate(self.folder.case, progress=self.progress))
+        with hearing(self.progress, "model calibrate", str(self.folder.settings.path)) as tell:
+            return self._after(calibrate(self.folder.case, progress=tell))
 
     def save(self, anyway: bool = False) -> Case:
         """Write the steps to model.toml, one revision each.  anyway : also those that were not accepted
@@ -174,11 +175,14 @@ class Case(TableResult):
 
 
 def open(path: str | Path, progress: Progress = silent) -> Case:
-    """A case: a folder with case.toml, or the name of a case that comes along.  progress : is told what is going on
+    """A case: a folder with case.toml, or the name of a case that comes along.
+
+    progress : is told what is going on; in a notebook that names none, a bar shows it
 
     Raises InputError: file, key or column, what is wrong with it, and what would be right.
     """
-    folder = load_case(find_case(path), progress)
+    with hearing(progress, "open", str(path)) as tell:
+        folder = load_case(find_case(path), tell)
     return Case(folder, folder.history, progress=progress)
 
 

@@ -13,7 +13,7 @@ from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted, table
 from thermoscope.case_folder.folder import load_machine_file
-from thermoscope.interface.case import Progress, silent
+from thermoscope.interface.notebook import Progress, hearing, silent
 from thermoscope.parts import explained
 
 if TYPE_CHECKING:
@@ -145,11 +145,13 @@ def build(
 
     accuracy : percent of a part's own rise that the network may be wrong by; None: the size that a case runs
     size_m : of the mesh's triangles (m)
+    progress : is told what is going on; in a notebook that names none, a bar shows it
     Raises InputError: the key of the file, what is wrong with it, and what would be right.
     """
     from thermoscope.commands.model.build import built_from
 
-    return Machine(built_from(load_machine_file(Path(machine)), accuracy, progress, size_m)[0])
+    with hearing(progress, "model build", str(machine)) as tell:
+        return Machine(built_from(load_machine_file(Path(machine)), accuracy, tell, size_m)[0])
 
 
 def machines() -> tuple[str, ...]:

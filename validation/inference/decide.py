@@ -75,7 +75,10 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     something = 1.0 - sum(p for h, p in rows if h.nothing)
     if 1.0 - something > SILENT:
         return Decision("adequate", (), something)
-    if sum(p for h, p in rows if h.heat) > 0.5 * something and not catalogue_explains(hypotheses):
+    heat = sum(p for h, p in rows if h.heat)
+    # a name that has less beside such heat than an abstention costs is not told, however much it explains
+    told = catalogue_explains(hypotheses) and something - heat > (1.0 - SURE) * something
+    if heat > 0.5 * something and not told:
         return Decision("outside", (), something)
     every = [(frozenset(h.members), p) for h, p in rows]
     groups = [smallest_cover(every)]

@@ -33,7 +33,7 @@ class Report:
 
     comparison, diagnosis : documents of `compare` and `diagnose`; earlier : the diagnosis is of the model before its
         last step, and the verdict is that of the comparison
-    history : revisions, each with number, action, effect and tests as in `add`
+    history : revisions, each with number, action, effect and tests as in `add`, and the step in words
     parameters : as in `add` and `calibrate`
     curves : one Comparison per test, the most telling first
     pictures : caption -> PNG (path or bytes)
@@ -106,7 +106,7 @@ def _error(r: Report) -> str:
     last = r.history[-1]
     most = max(error for path in errors.error_paths(r.history).values() for error in path)
     bars = errors.before_after(last["tests"], floor_K=floor, most_K=most)
-    title = f"Last step ({last['action']} {last.get('effect') or ''}".strip() + "): tests in bold were never used."
+    title = f"Last step: {last['words']}. Tests in bold were never used."
     stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
         "The error, step by step",

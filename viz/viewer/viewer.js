@@ -699,7 +699,7 @@ class Viewer {
       const at = place(s);
       const text = `${s.name}  ${signed(s.residual)} K`, wide = x.measureText(text).width + 12 * scale, tall = 22 * scale;
       const room = c.width - 100 * scale - wide;
-      const left = Math.max(0, at[0] < c.width * 0.45 ? at[0] - wide - 26 * scale : Math.min(at[0] + 26 * scale, room));
+      const left = Math.max(4 * scale, at[0] < c.width * 0.45 ? at[0] - wide - 26 * scale : Math.min(at[0] + 26 * scale, room));
       let top = at[1] - tall / 2;
       const over = (y) => y < 0 || y + tall > c.height || taken.some((t) => left < t[0] + t[2] && left + wide > t[0] && y < t[1] + t[3] && y + tall > t[1]);
       for (let k = 1; over(top) && k < 30; k++) top = at[1] - tall / 2 + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * tall * 1.1;
@@ -718,7 +718,8 @@ class Viewer {
     x.moveTo(share * width, 0.08 * height); x.lineTo(share * width, height); x.stroke();
     for (const [state, side] of [[this.left, -1], [this.right, 1]]) {
       x.textAlign = side < 0 ? "right" : "left";
-      x.fillText(data.revisions[state], share * width + 8 * side * scale, height - 40 * scale);
+      const room = (side < 0 ? share : 1 - share) * width - 16 * scale;
+      x.fillText(data.revisions[state], share * width + 8 * side * scale, height - 40 * scale, Math.max(room, 1));
     }
     x.textAlign = "left";
   }

@@ -682,7 +682,7 @@ FORMATS: dict[str, Format] = {
         ["", "Current", "Twinding", "Troom"],
         before='"BlockNumber",1\n"TraceName","Current","Twinding","Troom"\n"BlockSize",90,90,90\n"VUnit","A","C","C"\n'
         '"SampleRate",0.2,0.2,0.2\n"HResolution",5.0,5.0,5.0\n"HOffset",0.0,0.0,0.0\n"HUnit","s","s","s"\n\n',
-        doubt="no unit of 'column 1': seconds are assumed",
+        doubt="rows 5 s apart as the lines before its header say",
     ),
     "a clock at the end of a path": Format(
         "tIWA",

@@ -20,7 +20,6 @@ from measured.importing.case_files import read_timed
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
-from measured.importing.target import Target
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
@@ -97,6 +96,11 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         ("t [s],Torque [%],T_winding [°C]", "tMW", "'Torque [%]': relative to a nominal torque that is not given: a"),
         ("t [s],Current [p.u.],T_winding [°C]", "tIW", "The only heat was left out: 'Current [p.u.]'"),
         ("t [s],Current (x!),T_winding [°C]", "tIW", "'Current (x!)': unit 'x!' unknown: A assumed."),
+        (
+            "t [s],I [A],T_winding [V],frame [°C]",
+            "tIWH",
+            "The winding was not placed: 'T_winding [V]' looks like winding",
+        ),
         ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured, a bearing alone."),
     ],
 )
@@ -238,6 +242,24 @@ def test_channels_of_a_tdms_without_increments_have_the_times_of_their_channel(t
     assert any("rows are taken as 1 s apart" in note for note in read_source(tmp_path / "without.tdms").notes)
 
 
+def test_channels_of_a_tdms_are_what_their_descriptions_say(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "a.tdms") as out:
+        out.write_segment(
+            [
+                ChannelObject("g", name, S[c], {"wf_increment": 5.0, "unit_string": unit, "description": what})
+                for name, c, unit, what in (
+                    ("ai0", "W", "°C", "Winding U"),
+                    ("ai1", "A", "°C", "Room"),
+                    ("ai2", "I", "A", ""),
+                )
+            ]
+        )
+    source = read_source(tmp_path / "a.tdms")
+    assert source.labels == {"time_s": "time", "ai0": "Winding U", "ai1": "Room", "ai2": "ai2"}
+
+
 def test_a_negative_increment_of_a_waveform_is_refused(tmp_path):
     from nptdms import ChannelObject, TdmsWriter
 
@@ -351,9 +373,15 @@ def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
     assert (
         capsys.readouterr().out.replace("\n", " ").startswith("'T_winding' starts at 240 degC: is it in other units?")
     )
-    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [°C]", S["t"], S["W"], S["W"]))
+    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [x10 °C]", S["t"], S["W"], S["W"]))
     source = read_source(tmp_path / "b.csv")
-    assert "'0.1°C'" in guesses(source, ("t [s]",), Target())[0].doubt
+    assert source.notes == ("b.csv: 'T_winding [0.1°C]' is read in units of 0.1 °C",)
+    assert "T_b" in source.labels["T_b [x10 °C]"]
+
+
+def test_a_recording_of_rises_alone_is_refused_by_their_name(tmp_path):
+    with pytest.raises(InputError, match=r"'Übertemperatur Wicklung in K' is left out: a difference of temperatures"):
+        written(tmp_path, table("t in s,Übertemperatur Wicklung in K,I in A", S["t"], S["W"] - 22, S["I"]))
 
 
 def test_the_air_that_comes_out_is_not_the_room(tmp_path):
@@ -420,6 +448,21 @@ def test_a_row_for_every_reading_in_a_parquet_file(tmp_path):
 
 def test_tenths_of_degrees_are_no_degrees():
     assert unit_of(split_unit("T_winding [0.1 degC]")[1]) == ""
+
+
+def test_signals_of_matlab_that_are_named_in_their_structs(tmp_path):
+    from scipy.io import savemat
+
+    signals = [("T_winding", "°C", S["W"]), ("T_amb", "°C", S["A"]), ("i_rms", "A", S["I"])]
+    kinds = [("Name", "O"), ("Unit", "O"), ("Data", "O")]
+    X, Y = np.array([("", "s", S["t"])], kinds), np.array(signals, kinds)
+    savemat(tmp_path / "a.mat", {"rec": {"X": X, "Y": Y, "Description": "run"}})
+    source = read_source(tmp_path / "a.mat")
+    assert list(source.cells) == ["X [s]", "T_winding [°C]", "T_amb [°C]", "i_rms [A]"]
+    assert clock_of(source).seconds == pytest.approx(S["t"])
+    names = np.array(["t_s", "T_coil"], object)
+    savemat(tmp_path / "b.mat", {"data": np.column_stack([S["t"], S["W"]]), "names": names})
+    assert list(read_source(tmp_path / "b.mat").cells) == ["t_s", "T_coil"]
 
 
 def test_vectors_in_structs_of_matlab(tmp_path):
@@ -516,6 +559,51 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
     .replace("\n", ",4711\n", 2)
     .replace(",4711", "", 1),
     "a camera that counts its frames": of(("Frame", *PLAIN), "ftWHAI"),
+    "remarks under the names": of(("Time[s]", "U1-1[C]", "U1-2[C]", "U1-3[C]", "U2-1[A]"), "tWHAI").replace(
+        "\n", "\nComment,Winding,Frame,Room,Current\n", 1
+    ),
+    "a unit over a group of names": ",Temperatures [°C],,,Electrical\n"
+    + of(("t [s]", "Winding U", "Frame", "Room", "I1 [A]"), "tWHAI"),
+    "few units under names that repeat": "Bench,,Winding,,Frame,,Room,,Supply,\n"
+    + of(("Time", "No", *["Temp", "Status"] * 3, "Current", "Status"), "tfWfHfAfIf").replace(
+        "\n", "\ns,,degC,,degC,,degC,,A,\n", 1
+    ),
+    "settings of every column": '"TraceName","T_COIL","T_FRAME","T_AMB","I"\n"VUnit","C","C","C","A"\n'
+    '"HResolution",5.0,5.0,5.0,5.0\n"HUnit","s","s","s","s"\n"Date","2025/03/14","2025/03/14"\n'
+    '"Time","08:52:31.0","08:52:31.0"\n' + table("", *("" if c == "-" else S[c] for c in "-WHAI")),
+    "tags of instruments": of(
+        (
+            "time_s",
+            "M101.TI_Winding.PV",
+            "M101.TI_Winding.Q",
+            "M101.TI_Frame.PV",
+            "P.TI_Ambient.PV",
+            "M101.II_Motor.PV",
+        ),
+        "tWfHAI",
+    ).replace("M101.II_Motor.PV", "M101.II_Current.PV"),
+    "a model's short name": of((*PLAIN, "T_winding_mdl [C]"), "tWHAIH"),
+    "tenths of degrees": table(
+        "t [s],T_winding (x0.1 °C),T_frame [1/10 °C],T_amb [0.1°C],I [10 mA]",
+        *(S["t"], *(10 * S[c] for c in "WHA"), 100 * S["I"]),
+    ),
+    "an instant in several columns": table(
+        "Year,DOY,HHMM,Sec,Winding_C,Frame_C,Room_C,I_A",
+        *("2025", "73", 2355 + (S["t"] // 60) % 5 if S["t"][-1] < 300 else 800 + S["t"] // 60, S["t"] % 60),
+        *(S[c] for c in "WHAI"),
+    ),
+    "a place beside what is measured": "#group,false,false\n,_time,_value,_field,location\n"
+    + "".join(
+        f",{5 * k},{S[c][k]:.2f},{field},{place}\n"
+        for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], ["winding", "frame", "room", "L1"])
+        for k in range(len(S["t"]))
+    ),
+    "a signal in every row": "".join(
+        ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN, "tWHAI", strict=True)
+    ),
+    "columns told by their numbers": "".join(f"# column {k + 1}: {name}\n" for k, name in enumerate(PLAIN))
+    + of([], "tWHAI").lstrip("\n"),
+    "an estimate of no part, and a spread": of((*PLAIN, "Motor temp estimated [C]", "T_winding_Std [C]"), "tWHAIHB"),
     "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
 }
 

@@ -2,13 +2,14 @@
 
 import json
 import re
+import sys
 import time
 from itertools import pairwise
 
 import pytest
 
 from thermoscope.console import progress_bar
-from thermoscope.console.progress_bar import ProgressBar, one_bar, progress
+from thermoscope.console.progress_bar import ProgressBar, one_bar, progress, remembering, timed_lines
 
 
 class Clock:
@@ -40,7 +41,7 @@ def test_the_second_time_share_and_time_left_are_known():
     share, seconds = again.left()
     assert share == pytest.approx(0.5)
     assert seconds == pytest.approx(5.0)
-    assert again.words("fitting") == "fitting (50 %, about 5 s left)"
+    assert progress_bar._line("fitting", again.left()) == "fitting (50 %, about 5 s left)"
 
 
 def test_the_share_never_falls():
@@ -169,9 +170,8 @@ def test_a_line_of_80_columns_keeps_its_times():
     assert "…" in text
 
 
-def test_a_pipe_hears_of_a_long_stage(capsys, monkeypatch):
-    monkeypatch.setattr(progress_bar, "QUIET_S", 0.2)
-    with progress_bar._lines(ProgressBar({"running": 60.0})) as tell:
+def test_a_pipe_hears_of_a_long_stage(capsys):
+    with timed_lines(ProgressBar({"running": 60.0}), lambda words, share: print(words, file=sys.stderr), 0.2) as tell:
         tell("running the model")
         time.sleep(1.0)
     assert len(capsys.readouterr().err.splitlines()) > 2
@@ -182,11 +182,11 @@ def test_a_case_is_remembered_for_itself(tmp_path, monkeypatch):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
     for case, seconds in (("small", 3.0), ("large", 300.0)):
         monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
-        with progress_bar._remembering("test compare") as stages:
+        with remembering("test compare", progress_bar._case()) as stages:
             stages.took["running"] = seconds
     for case, seconds in (("small", 3.0), ("large", 300.0), ("new", 300.0)):
         monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
-        with progress_bar._remembering("test compare") as stages:
+        with remembering("test compare", progress_bar._case()) as stages:
             assert stages.last == {"running": seconds}
 
 
@@ -195,9 +195,9 @@ def test_what_was_built_and_kept_is_not_waited_for_again(tmp_path, monkeypatch):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
     monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", "case"])
     first = {"reading": 1.0, "network": 100.0, "preparing": 2.0, "checking": 50.0, "running": 3.0}
-    with progress_bar._remembering("test compare") as stages:
+    with remembering("test compare", progress_bar._case()) as stages:
         stages.took |= first
-    with progress_bar._remembering("test compare") as stages:
+    with remembering("test compare", progress_bar._case()) as stages:
         assert stages.last == {"reading": 1.0, "preparing": 2.0, "running": 3.0}
         stages.took |= first  # so that another case knows a first run
     clock = Clock()

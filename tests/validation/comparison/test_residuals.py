@@ -50,3 +50,11 @@ def test_blocks_average_what_was_read():
 
 def test_a_million_samples_make_no_more_blocks_than_wanted():
     assert len(groups(1_000_000)) <= 180
+
+
+def test_a_sensor_slower_than_the_inputs_keeps_all_that_it_reads():
+    """One row of ten, blocks of three: no block is half read, and each of those that are read is as good as the next."""
+    y, read = np.arange(60.0), np.arange(60) % 10 == 0
+    blocks = Blocks(np.arange(0, 60, 3), 1)
+    blocks.add(0, y[:, None], read.astype(float))
+    np.testing.assert_allclose(blocks.means()[:, 0], y[read])

@@ -1,5 +1,8 @@
 """Results show themselves: what a notebook would display carries the numbers and is safe to show."""
 
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 from fictional import documents
 
@@ -67,3 +70,18 @@ def test_every_public_result_is_a_table_and_a_frame():
 def test_what_is_long_is_cut_and_counted():
     table = Table("t", ["n"], [[i] for i in range(100)])
     assert "and 70 more" in table.html()
+
+
+def test_long_work_in_a_notebook_shows_a_bar_that_goes_when_it_ends(monkeypatch):
+    seen = []
+    display = SimpleNamespace(HTML=str, display=lambda first, display_id: SimpleNamespace(update=seen.append))
+    shell = SimpleNamespace(kernel=True)
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell, display=display))
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    ts.open("tclab").compare()
+    assert any("<progress" in line for line in seen)
+    assert seen[-1] == ""
+    count = len(seen)
+    del shell.kernel  # a terminal's
+    ts.open("tclab").compare()
+    assert len(seen) == count

@@ -49,21 +49,21 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
 
     tell("field against network")
     point = bearable(built)
+    field, solver = (built.field, None) if size is None else (size.reduction.field, size.reduction.solver)
     loads = None if size is None else size.reduction.loads
-    solver = None if size is None else size.reduction.solver
     shares = loss_shares(built.machine, built.network)
-    check = compare(built.field, built.network, point, solver=solver, loads=loads, shares=shares)
+    check = compare(field, built.network, point, solver=solver, loads=loads, shares=shares)
     tell("laws point by point")
-    local = with_local_laws(built.field, built.network, point, check, shares, loads, solver).T
+    local = with_local_laws(field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
-    formulas = analytical_checks(built.machine, built.field, check)
+    formulas = analytical_checks(built.machine, field, check)
     responsible = {part.place: check.responsible(part.place) for part in check.parts}
     return {
         "operating_point": point,
         "crosscheck": [
             {
                 **vars(part),
-                "local_max_C": float(local[built.field.blocks[part.place].dofs].max()),
+                "local_max_C": float(local[field.blocks[part.place].dofs].max()),
                 "responsible": None if link is None else link.link,
             }
             for part, link in zip(check.parts, responsible.values(), strict=True)

@@ -14,12 +14,12 @@ from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import (
-    added_words,
     before_last,
     by_interest,
     fields,
     instant_words,
     readings,
+    step_words,
     temperature_range,
 )
 from thermoscope.commands.open_case import needs_geometry, open_case
@@ -80,12 +80,10 @@ def film(
 
 def model_words(folder: Folder) -> tuple[str, str]:
     """The model before its last step and as it is, in words: by what the step added, where it added something."""
-    from validation.revision.revise import TOGETHER
-
     last = folder.history.last
     if last.action != "add":
         return "the model before its last step", "the model now"
-    added = added_words(folder.case, last.effect.split(TOGETHER))
+    added = step_words(folder.case, last)
     return f"without {added}", f"with {added}"
 
 

@@ -107,7 +107,9 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), runs.before_last(folder)
     others = [runs.at_revision(folder, r) for r in revisions(folder)[2:]]
     conductivity = {part.name: machine.conductivity(part.name) for part in machine.parts}
-    names = [f"{r.number}: {r.effect or (r.action if r.number else 'as it was')}" for r in revisions(folder)] or ["now"]
+    names = [
+        f"{r.number}: {runs.step_words(folder.case, r) if r.number else 'as it was'}" for r in revisions(folder)
+    ] or ["now"]
 
     def played(test: Test) -> Recorded:
         times, now = runs.fields(folder.case, test, nodes, FRAMES)
