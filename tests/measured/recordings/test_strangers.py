@@ -601,7 +601,7 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         for k in range(len(S["t"]))
     ),
     "time in one word of Japanese": table(
-        "経過時間[分],巻線[℃],機壳[℃],室温[℃],電流[A]", S["t"] / 60, *(S[c] for c in "WHAI")
+        "経過時間[秒],巻線[℃],機壳[℃],室温[℃],電流[A]", S["t"], *(S[c] for c in "WHAI")
     ).encode("cp932", "ignore"),
     "a limit beside readings": table(
         ",".join((*PLAIN, "T_winding max allowed [C]")), *(S[c] for c in "tWHAI"), "155.0"
@@ -640,6 +640,7 @@ def test_a_winding_a_frame_the_room_and_a_current(tmp_path, kind):
 
 
 def test_hours_and_minutes_in_a_row_of_units(tmp_path):
+    assert (unit_of("分"), unit_of("h:min")) == ("min", "")
     rows = "".join(f"{m // 60}:{m % 60:02d}\t{20 + m}\n" for m in range(90))
     (tmp_path / "a.txt").write_text(f"Time\tWinding\nh:min\t°C\n{rows}")
     assert clock_of(read_source(tmp_path / "a.txt")).seconds == pytest.approx(60.0 * np.arange(90))
