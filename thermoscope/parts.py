@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from importlib.util import find_spec
 
 from geom.errors import MissingDependency
@@ -47,6 +48,7 @@ EXTRAS = {
         Extra("cluster", ("distributed",), "runs on a Dask cluster"),
     )
 }
+SLOW = ("cadquery",)  # 1.5 s to import, and what is built already never does
 # Command -> packages without which it does nothing, whatever its case.
 NEEDS = {
     "build": ("cadquery", "skfem"),
@@ -68,9 +70,13 @@ def message(fault: ModuleNotFoundError) -> str:
 
 
 def required(packages: Iterable[str]) -> None:
-    """Raises MissingDependency for the first package that is not installed: to be asked before any work."""
+    """Raises MissingDependency for the first package that cannot be imported: to be asked before any work."""
     for package in packages:
-        if find_spec(package) is None:
+        try:
+            there = find_spec(package) and (package in SLOW or import_module(package))
+        except ImportError:
+            there = None
+        if there is None:
             raise MissingDependency(message(ModuleNotFoundError(name=package)))
 
 

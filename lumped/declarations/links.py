@@ -125,7 +125,7 @@ def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
     difference, per_area = table.numbers("difference_K"), "h_W_m2K" in table
-    value = table.numbers("h_W_m2K" if per_area else "G_W_K")
+    value = table.numbers("h_W_m2K", of="W_m2K") if per_area else table.numbers("G_W_K", of="W_K")  # zero at rest
     rising = all(b > a for a, b in pairwise(difference))
     if len(value) != len(difference) or not rising or not value:
         raise table.error("difference_K and its values do not match", "two lists of one length, differences rising")

@@ -127,4 +127,5 @@ def is_time(label: str) -> bool:
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
     last = PATH.split(label)[-1].strip()
-    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts
+    written = any(k in label for k in CLOCKS if k[0] >= IDEOGRAPHS)  # without blanks, as in Japanese
+    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts or written

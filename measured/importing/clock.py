@@ -147,7 +147,7 @@ def in_time_order(source: Source) -> Source:
     step = np.diff(clock.seconds[order])
     back = int((np.diff(clock.seconds) < 0).sum())
     counts_down = clock.start is None and back > step.size / 2
-    if step.min() <= 0 or step.max() > EVEN * np.median(step) or counts_down:
+    if not 0 < step.max() / EVEN <= np.median(step) <= step.min() * EVEN or counts_down:
         return source
     cells = {n: c[order] if isinstance(c, np.ndarray) else [c[i] for i in order] for n, c in source.cells.items()}
     note = (

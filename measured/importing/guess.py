@@ -110,7 +110,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 
 
 def _read(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the temperatures that a model made, and extremes, where others were read."""
+    """Without the temperatures that a model made, that never change, and extremes, where others were read."""
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
@@ -120,6 +120,10 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         for g in every
     ]
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
+    parts = [c for c in hot if roles_of(hot[c])[:1] not in ([Role.AMBIENT], [Role.COOLANT])]
+    still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
+    if still != {*parts}:
+        every = [g.without("never changes: a limit, or a dead sensor") if g.column in still else g for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) == len(hot):
         return every

@@ -36,6 +36,7 @@ INTERVAL = re.compile(
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 LOGGED = re.compile(r"^(\d\S*[ T]\d\d:\S+)\s[^=\n]*?((?:\s[^\W\d]\w*=[^\s=]+)+)\s*$", re.MULTILINE)  # of a program
+SERIES = (("name", "label", "channel", "signal", "title"), ("unit", "units"))  # of readings, in JSON
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
@@ -111,11 +112,22 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
         table = zip(*columns.values(), strict=True)
         every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
     rows = [_flat(one) for one in every]
+    if named := _series(rows):
+        rows = [dict(zip(named, row, strict=False)) for row in zip(*named.values(), strict=False)]
     names = tuple(dict.fromkeys(name for row in rows for name in row))
     titles = {path.rpartition(".")[2]: title for path, title in outer.items() if path[-1:].isdigit() and title}
     return Layout(tuple(str(titles.get(name, name)) for name in names), ("",) * len(names), 0, len(names)), [
         [row.get(name) for row in rows] for name in names
     ]
+
+
+def _series(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:
+    """Readings by names with their units, of objects that hold a name and a list each; empty for any others."""
+    lists = [[value for value in row.values() if isinstance(value, list)] for row in rows]
+    heads = [[next((row[k] for k in keys if isinstance(row.get(k), str)), "") for keys in SERIES] for row in rows]
+    if len(rows) < 2 or any(len(one) != 1 for one in lists) or not all(name for name, _ in heads):
+        return {}
+    return {f"{name} [{unit}]" if unit else name: one for (name, unit), (one,) in zip(heads, lists, strict=True)}
 
 
 def _frame(one: dict[str, Any]) -> Any:

@@ -283,6 +283,7 @@ def _vectors(one: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
         label, unit = (next((w for k in keys if isinstance(w := about.get(k), str) and w), "") for keys in ABOUT)
         if (key := next((k for k in ("values", "data", "value") if k in about), "")) and (label or unit):
             name = label or (path or ("column",))[-1]
+            yield from _vectors(about.get("time"), (*path, "time"))
             yield from _vectors(about[key], (*path[:-1], f"{name} [{unit}]" if unit else name))
             return
         lists = [[*v] for v in one.values() if isinstance(v, list | np.ndarray) and all(isinstance(w, str) for w in v)]

@@ -159,7 +159,7 @@ def test_limits_are_allowed_and_what_is_beyond_is_not(key):
 
 def test_a_key_has_the_bounds_of_its_unit():
     assert bounds("stator_C_J_K") == UNITS["J_K"]
-    assert bounds("h_W_m2K") == UNITS["W_m2K"]
+    assert bounds("housing_h_W_m2K") == UNITS["W_m2K"]
     assert bounds("anything_degC").low == -100.0
 
 

@@ -124,12 +124,19 @@ def test_measured_loss_less_copper_injects_the_measured_sum(data):
     assert_allclose(total, (12000.0 - 50.0 * 2000.0 * np.pi / 30) * TIME, rtol=1e-9, atol=1e-3)
 
 
+def _conductance(document, G_W_K):
+    document["links"]["winding-stator"].pop("R_K_W")
+    document["links"]["winding-stator"]["G_W_K"] = G_W_K
+
+
 SLIPS = {
     "missing unit": (lambda d: d["nodes"]["rotor"].update(C=1.0), r"nodes.rotor.*'C'.*C_J_K"),
     "unknown key": (lambda d: d["links"]["winding-stator"].update(colour=1), "links.winding-stator.*'colour'"),
     "unknown section": (lambda d: d.update(link={}), "'link'.*did you mean 'links'"),
     "unknown node": (lambda d: d["links"]["winding-stator"].update(between=["winding", "statr"]), "'statr'.*'stator'"),
     "no coefficient": (lambda d: d["links"]["winding-stator"].pop("R_K_W"), "winding-stator.*mechanism.*G_W_K"),
+    "no conductance": (lambda d: _conductance(d, 0), "winding-stator.*G_W_K = 0 is not possible; a number from 1e-09"),
+    "hardly any": (lambda d: _conductance(d, 1e-300), "winding-stator.*G_W_K = 1e-300 is not possible"),
     "two coefficients": (lambda d: d["links"]["winding-stator"].update(G_W_K=1.0), "G_W_K and R_K_W both given"),
     "h without area": (lambda d: d["links"]["stator-jacket"].pop("area_m2"), "stator-jacket.*area_m2"),
     "negative": (lambda d: d["nodes"]["stator"].update(C_J_K=-5.0), "C_J_K = -5.0"),

@@ -460,6 +460,8 @@ def test_signals_of_matlab_that_are_named_in_their_structs(tmp_path):
     source = read_source(tmp_path / "a.mat")
     assert list(source.cells) == ["X [s]", "T_winding [°C]", "T_amb [°C]", "i_rms [A]"]
     assert clock_of(source).seconds == pytest.approx(S["t"])
+    savemat(tmp_path / "c.mat", {"m": {"T_coil": {"Time": S["t"], "Data": S["W"], "Unit": "degC"}}})
+    assert clock_of(read_source(tmp_path / "c.mat")).seconds == pytest.approx(S["t"])
     names = np.array(["t_s", "T_coil"], object)
     savemat(tmp_path / "b.mat", {"data": np.column_stack([S["t"], S["W"]]), "names": names})
     assert list(read_source(tmp_path / "b.mat").cells) == ["t_s", "T_coil"]
@@ -598,6 +600,23 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], ["winding", "frame", "room", "L1"])
         for k in range(len(S["t"]))
     ),
+    "time in one word of Japanese": table(
+        "経過時間[秒],巻線[℃],機壳[℃],室温[℃],電流[A]", S["t"], *(S[c] for c in "WHAI")
+    ).encode("cp932", "ignore"),
+    "a limit beside readings": table(
+        ",".join((*PLAIN, "T_winding max allowed [C]")), *(S[c] for c in "tWHAI"), "155.0"
+    ),
+    "signals of JSON by their names": json.dumps(
+        {
+            "device": "X",
+            "channels": [
+                {"name": name, "unit": unit, "data": [*S[c]]}
+                for name, unit, c in zip(
+                    ("time", "winding", "frame", "room", "current"), ("s", *["degC"] * 3, "A"), "tWHAI"
+                )
+            ],
+        }
+    ),
     "a signal in every row": "".join(
         ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN, "tWHAI", strict=True)
     ),
@@ -618,6 +637,20 @@ def test_a_winding_a_frame_the_room_and_a_current(tmp_path, kind):
     assert np.array([c.y for c in test.channels]) == pytest.approx(np.array([S["W"], S["H"]]), abs=0.006)
     assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
     assert test.inputs["current_A"] == pytest.approx(S["I"], abs=0.006)
+
+
+def test_hours_and_minutes_in_a_row_of_units(tmp_path):
+    assert (unit_of("分"), unit_of("h:min")) == ("min", "")
+    rows = "".join(f"{m // 60}:{m % 60:02d}\t{20 + m}\n" for m in range(90))
+    (tmp_path / "a.txt").write_text(f"Time\tWinding\nh:min\t°C\n{rows}")
+    assert clock_of(read_source(tmp_path / "a.txt")).seconds == pytest.approx(60.0 * np.arange(90))
+
+
+def test_rows_of_a_clock_that_was_set_back_are_not_shuffled_into_each_other(tmp_path):
+    stamps = [6 * k - 400 * (k > 60) for k in range(120)]
+    (tmp_path / "a.csv").write_text("t [s],T_coil [C]\n" + "".join(f"{t},{20 + k}\n" for k, t in enumerate(stamps)))
+    with pytest.raises(InputError, match="runs back by 394 s in row 62"):
+        read_timed(tmp_path / "a.csv", None)
 
 
 @pytest.mark.parametrize("stamp", ["%Y. %m. %d. %H:%M:%S", "%Y.%m.%d. %H:%M:%S", "%Y.%m.%d %H:%M:%S"])

@@ -8,7 +8,8 @@ from importlib.metadata import distribution
 
 import pytest
 
-from thermoscope.parts import EXTRAS
+from geom.errors import MissingDependency
+from thermoscope.parts import EXTRAS, NEEDS, required
 
 PYPI = {
     "skfem": "scikit-fem",
@@ -124,3 +125,11 @@ def test_a_missing_part_is_said_before_any_work_and_is_the_right_one(case):
         assert code == 2, (words, text)
         assert right in text
         assert not [line for line in text.splitlines() if not line.startswith(("error: ", "#"))], text
+
+
+def test_a_package_that_cannot_be_imported_is_said_before_any_work(tmp_path, monkeypatch):
+    (tmp_path / "pymoo.py").write_text('raise ImportError("a library of it is gone")')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "pymoo", raising=False)
+    with pytest.raises(MissingDependency, match=r"'pymoo' is not installed: pip install 'thermoscope\[optimise\]'"):
+        required(NEEDS["optimise"])
