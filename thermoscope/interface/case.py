@@ -98,16 +98,17 @@ class Case(TableResult):
         """
         return self.folder.compared
 
-    def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = ()) -> Diagnosis:
+    def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = (), quick: bool = False) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
 
         without, only : kinds of effects, "kind@place" or "sensors" to leave out, or to ask about alone
+        quick : stop at the first odds, which are preliminary and not kept
 
         Source: Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773 (probabilities from evidence).
         """
         from thermoscope.commands.explain.diagnose import diagnosed
 
-        return diagnosed(self.folder, self.progress, without, only)[0]
+        return diagnosed(self.folder, self.progress, without, only, quick)[0]
 
     def add(self, effect: str) -> Case:
         """With the effect "kind@place", calibrated on all tests but the held-out ones.
