@@ -84,10 +84,16 @@ from validation.scope import Scope, odds_factor
 from validation.yardstick.network_terms import network_terms
 
 Progress = Callable[[str], None]
+Known = Callable[[Callable[[], Diagnosis]], None]
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
 EVERYTHING = Scope()
+PRELIMINARY = "preliminary odds, from a search that goes on without --quick"
 CONFUSIONS = 12  # candidates whose traces are compared
+
+
+def untold(so_far: object) -> None:
+    """Nobody is told what is known so far."""
 
 
 @one_blas_thread
@@ -98,6 +104,8 @@ def diagnose(
     plan: bool = True,
     budget: Mapping[str, float] = NO_BUDGET,
     scope: Scope = EVERYTHING,
+    quick: bool = False,
+    known: Known = untold,
 ) -> Diagnosis:
     """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
 
@@ -106,7 +114,8 @@ def diagnose(
 
     Parameters: `kinds` restricts the catalogue; `progress` is told what is being done; `plan`: also rank the next tests
     and sensors; `budget` channel -> error (K) of the model's own numbers there, what moves no reading by more is not
-    named; `scope` what is asked about. Returns: the verdict with its odds and tables.
+    named; `scope` what is asked about; `quick`: stop at the first odds, which are preliminary; `known` is told of what
+    works out the same while the search goes on. Returns: the verdict with its odds and tables.
     """
     check_names(case, [*scope.without, *scope.only], "what to leave out")
     check_names(case, case.odds, "[odds] of case.toml")
@@ -115,24 +124,37 @@ def diagnose(
     training = case.training()
     training = replace(training, tests=without(training.tests, broken))
     bases = base_hypotheses(training, progress)
-    posterior = infer(training, kinds, progress, scope)
-    wrong, small = wrong_bases(bases), fidelity_error(whole, case, posterior)
-    budget = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
-    choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), budget))
-    left = remainder(posterior, choice, posterior.single)
-    choice = consistent_decision(choice, checks(case, posterior, choice, budget, left))
-    if wrong:  # nothing else is accused of what the base does
-        choice = Decision("data", (), choice.sure)
+    wrong = wrong_bases(bases)
+
+    def result(posterior: Posterior, preliminary: bool) -> Diagnosis:
+        small = fidelity_error(whole, case, posterior)
+        most = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
+        choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), most))
+        if not preliminary:
+            left = remainder(posterior, choice, posterior.single)
+            choice = consistent_decision(choice, checks(case, posterior, choice, most, left))
+        if wrong:  # nothing else is accused of what the base does
+            choice = Decision("data", (), choice.sure)
+        found = PlainFaults(tuple(broken), tuple(wrong))
+        return tabulate(case, posterior, choice, found, bases, plan and not preliminary, scope, preliminary)
+
+    posterior = infer(training, kinds, progress, scope, quick, lambda first: known(lambda: result(first, True)))
     progress("writing the tables")
-    return tabulate(case, posterior, choice, PlainFaults(tuple(broken), tuple(wrong)), bases, plan, scope)
+    return result(posterior, quick)
 
 
 def infer(
-    case: Case, kinds: Sequence[str] | None = None, progress: Progress = no_progress, scope: Scope = EVERYTHING
+    case: Case,
+    kinds: Sequence[str] | None = None,
+    progress: Progress = no_progress,
+    scope: Scope = EVERYTHING,
+    quick: bool = False,
+    known: Callable[[Posterior], None] = untold,
 ) -> Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight.
 
-    Parameters: as of `diagnose`. Returns: every hypothesis with its log evidence over that of nothing.
+    Parameters: as of `diagnose`; `known` is told the first odds. Returns: every hypothesis with its log evidence over
+    that of nothing.
     """
     fit = calibrated_case(case, progress)
     progress("scoring the catalogue")
@@ -161,6 +183,10 @@ def infer(
     larger = joined(evidence, more, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
+    first_odds = Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
+    known(first_odds)
+    if quick:
+        return first_odds
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
     update, noise = retimed(evidence, hypotheses, end_reach(scan), fine_refit), refit_noise(hypotheses)
     if noise is not None or update is not evidence:
@@ -204,6 +230,7 @@ def tabulate(
     bases: Sequence[BaseDeviance],
     plan: bool,
     scope: Scope,
+    preliminary: bool = False,
 ) -> Diagnosis:
     """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
     e, members = posterior.evidence, [k for g in choice.groups for k in g][:ROWS]
@@ -218,7 +245,7 @@ def tabulate(
     words = sentence(verdict, posterior, choice, rows, pulls, broken, left) + unsteady_words(posterior, choice)
     return Diagnosis(
         verdict=verdict,
-        words="; ".join(filter(None, [scope.words(case.odds), words])),
+        words="; ".join(filter(None, [PRELIMINARY * preliminary, scope.words(case.odds), words])),
         named=tuple(g[0] for g in groups),
         groups=groups,
         candidates=rows,
@@ -243,6 +270,7 @@ def tabulate(
         checks=choice.checks,
         without=scope.without,
         only=scope.only,
+        preliminary=preliminary,
         stated_odds=tuple((name, o.share, o.reason) for name, o in case.odds.items()),
     )
 

@@ -27,6 +27,7 @@ Only = Annotated[
     list[str] | None,
     typer.Option("--only", metavar="EFFECT|sensors", help="Ask about these alone, and unknown heat; several."),
 ]
+Quick = Annotated[bool, typer.Option("--quick", help="Stop at the first odds, which are preliminary.")]
 Anyway = Annotated[bool, typer.Option("--anyway", help="Write it even if it is not accepted.")]
 Machine = Annotated[str, typer.Argument(metavar="MACHINE", help="A machine or STEP file, or a name that comes along.")]
 # Percent of a part's rise that a network may be off by: contacts and films, known to 10 to 20 %, move it more, and

@@ -95,17 +95,18 @@ class Case(TableResult):
         with hearing(self.progress, "test compare", str(self.folder.settings.path)):
             return self.folder.compared
 
-    def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = ()) -> Diagnosis:
+    def diagnose(self, without: Sequence[str] = (), only: Sequence[str] = (), quick: bool = False) -> Diagnosis:
         """Which effect is missing, with its probability and size; kept in the case's out/, as the command does.
 
         without, only : kinds of effects, "kind@place" or "sensors" to leave out, or to ask about alone
+        quick : stop at the first odds, which are preliminary and not kept
 
         Source: Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773 (probabilities from evidence).
         """
         from thermoscope.commands.explain.diagnose import diagnosed
 
         with hearing(self.progress, "explain diagnose", str(self.folder.settings.path)) as tell:
-            return diagnosed(self.folder, tell, without, only)[0]
+            return diagnosed(self.folder, tell, without, only, quick)[0]
 
     def add(self, effect: str) -> Case:
         """With the effect "kind@place", calibrated on all tests but the held-out ones.

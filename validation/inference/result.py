@@ -280,6 +280,7 @@ class Diagnosis(TableResult):
     checks : what the verdict was held against; what contradicts one has changed it
     without, only : what the user left out of the question, see Scope
     stated_odds : effect, factor and reason of odds that differ in this case
+    preliminary : the search was stopped at its first odds
     """
 
     verdict: Verdict
@@ -309,6 +310,7 @@ class Diagnosis(TableResult):
     without: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
     stated_odds: tuple[tuple[str, float, str], ...] = ()
+    preliminary: bool = False
 
     def __repr__(self) -> str:
         likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]
@@ -330,6 +332,7 @@ class Diagnosis(TableResult):
         return {
             "verdict": self.verdict,
             "words": self.words,
+            "preliminary": self.preliminary,
             "named": list(self.named),
             "groups": [list(g) for g in self.groups],
             "candidates": [c.document() for c in self.candidates],

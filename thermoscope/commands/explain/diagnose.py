@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from shlex import join, quote
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from geom.table import cell
@@ -12,7 +13,7 @@ from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
-from thermoscope.console.options import Case, Json, Only, Without
+from thermoscope.console.options import Case, Json, Only, Quick, Without
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation import tables
@@ -21,42 +22,73 @@ if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
     from validation.inference.result import Diagnosis
 
+LONG_S = 120.0  # after which who waits is told what is known
 RIVALS = 3  # named in a sentence
 EXPLANATIONS, ROWS = 5, 10  # shown of them and of candidates
 
 
-def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None) -> int:
+def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None, quick: Quick = False) -> int:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
     with progress() as tell:
-        folder = open_case(case, tell)
+        folder, so_far = open_case(case, tell), SoFar(tell)
         try:
-            diagnosis, document = diagnosed(folder, tell, without or (), only or ())
+            diagnosis, document = diagnosed(folder, so_far.tell, without or (), only or (), quick, so_far.learn)
         except KeyboardInterrupt:
-            _stopped(folder, case)
+            _stopped(folder, so_far, case)
             raise
     give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
 
-def _stopped(folder: Folder, called: str) -> None:
-    """What is known of a diagnosis that the user stopped: the comparison, where it is at hand or quick."""
-    if folder.built is None or folder.stored is not None:
+class SoFar:
+    """What a diagnosis that goes on knows already: shown once it has taken LONG_S, and where the user stops it."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.progress, self.begun, self.shown = progress, monotonic(), False
+        self.known: Callable[[], Diagnosis] | None = None
+
+    def learn(self, known: Callable[[], Diagnosis]) -> None:
+        """Told what works out the diagnosis as far as it is known."""
+        self.known = known
+
+    def tell(self, message: str) -> None:
+        """Progress, and after LONG_S, once, what is known."""
+        self.progress(message)
+        if self.known and not self.shown and monotonic() - self.begun > LONG_S:
+            self.shown = True
+            notes([f"after {LONG_S / 60:.0f} min: {self.known().words}"])
+
+
+def _stopped(folder: Folder, so_far: SoFar, called: str) -> None:
+    """What is known of a diagnosis that the user stopped: its first odds, or before there are any the comparison, where
+    it is at hand or quick."""
+    if so_far.known:
+        document = so_far.known().document()
+        give({}, None, lambda: diagnosis_summary(document, called))
+    elif folder.built is None or folder.stored is not None:
         document = folder.compared.document()
         first, more = tables.comparison_tables(document)[0], f"thermoscope test compare {quote(called)}"
         give({}, None, lambda: Summary(document["words"], [first], more))
-    notes(["stopped: a verdict weighs all hypotheses, so there is none yet; a diagnosis of before stays in out/"])
+    what = "its odds are preliminary" if so_far.known else "a verdict weighs all hypotheses, so there is none yet"
+    notes([f"stopped: {what}; a diagnosis of before stays in out/"])
 
 
 def diagnosed(
-    folder: Folder, tell: Progress, without: Sequence[str] = (), only: Sequence[str] = ()
+    folder: Folder,
+    tell: Progress,
+    without: Sequence[str] = (),
+    only: Sequence[str] = (),
+    quick: bool = False,
+    known: Callable[[Callable[[], Diagnosis]], None] | None = None,
 ) -> tuple[Diagnosis, dict[str, Any]]:
-    """What is missing in an open case, and the document of it, which is kept in the case's out/.
+    """What is missing in an open case, and the document of it, which is kept in the case's out/ unless preliminary.
 
-    without, only : what is left out of the question, see Scope
+    without, only : what is left out of the question, see Scope;  quick, known : see `validation.diagnose`
     """
     from lumped.condensation.error_budget import ErrorBudget
     from validation import diagnose as search
     from validation.comparison.error_budget import documents
+    from validation.diagnosis import untold
     from validation.inference.conditions import check_names
     from validation.parameters.unknowns import strain_words
     from validation.scope import Scope
@@ -66,11 +98,13 @@ def diagnosed(
     check_names(folder.case, [*without, *only], "what to leave out")
     budgets = folder.budgets
     worst = ErrorBudget.worst(budgets.values()).total_K
-    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=worst, scope=scope)
+    told = known or untold
+    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=worst, scope=scope, quick=quick, known=told)
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     document["strained"] = strain_words(folder.case)
-    save_diagnosis(folder, document)
+    if not quick:
+        save_diagnosis(folder, document)
     return diagnosis, document
 
 
