@@ -6,7 +6,7 @@ its sides of contacts and films at nominal coefficients), so the separate pieces
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from fem.matrices.assembly import Block, FieldModel, Trace
 from fem.solvers.local import local_solutions, of_unit_energy
 from fem.solvers.solve import Solve, Solver
+from fem.solvers.two_processes import in_two_processes
 
 Floats = NDArray[np.float64]
 SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
@@ -159,10 +160,18 @@ def principals(
     field: FieldModel, S: Floats, energy: Mapping[str, sp.csr_array], local: Mapping[str, Floats]
 ) -> dict[str, Principal]:
     """What each part's field can look like, by energy, from snapshots S (n, n_snapshot) and the part's own `local`."""
-    return {
-        name: _principal(block, np.hstack([S[block.dofs], local[name]]), energy[name])
-        for name, block in field.blocks.items()
-    }
+    return _each(field, energy, lambda name, block: np.hstack([S[block.dofs], local[name]]))
+
+
+def _each(
+    field: FieldModel, energy: Mapping[str, sp.csr_array], seen: Callable[[str, Block], Floats]
+) -> dict[str, Principal]:
+    """Of every part, from what was seen of it, in two processes where there is room."""
+
+    def principal(name: str) -> Principal:
+        return _principal(field.blocks[name], seen(name, field.blocks[name]), energy[name])
+
+    return dict(zip(field.blocks, in_two_processes(principal, list(field.blocks), field.n), strict=True))
 
 
 def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
@@ -225,8 +234,9 @@ def enriched(
 ) -> dict[str, Principal]:
     """Principal fields with more solutions S (n, k) among the snapshots."""
     S = of_unit_energy(S, field.stiffness(films, contacts))
-    out = {}
-    for name, block in field.blocks.items():
+
+    def seen(name: str, block: Block) -> Floats:
         fields = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
-        out[name] = _principal(block, np.column_stack([fields, S[block.dofs]]), energy[name])
-    return out
+        return np.column_stack([fields, S[block.dofs]])
+
+    return _each(field, energy, seen)

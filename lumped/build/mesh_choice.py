@@ -46,6 +46,7 @@ MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 
 MOST_BESIDE = 300_000  # of both meshes that are solved at once: of 360,000 they took 4.5 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
 ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
+BEGIN = 0.5  # of the unknowns that are condensed: a first mesh beyond has fewer elements across slots and bars
 IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
 ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
 WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
@@ -106,7 +107,7 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, IDLE, ALIKE, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, BEGIN, IDLE, ALIKE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
@@ -297,9 +298,12 @@ def _one_part_finer(
 
 
 def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
-    """The first mesh, coarser where it is too large, with the largest triangles that are there at all: small parts
+    """The first mesh, coarser where it leaves no room, with the largest triangles that are there at all: small parts
     have smaller ones anyway."""
-    while looks.size(how)[1] > most and looks.size(coarser := how.along("across", 2.0))[0] < looks.size(how)[0]:
+    while (
+        looks.size(how)[1] > BEGIN * most
+        and ACTS * looks.size(coarser := how.along("across", 2.0))[1] < looks.size(how)[1]
+    ):
         how = coarser
     while looks.size(finer := how.along("size_m", 0.5))[0] < ACTS * looks.size(how)[0] and finer.size_m > SMALLEST_M:
         how = finer

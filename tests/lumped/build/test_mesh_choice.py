@@ -92,10 +92,44 @@ def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
     """Without a finer one three times what a coarser one moves is told, way by way."""
     monkeypatch.setattr(mesh_choice, "MOST_SOLVED", 2000)
     monkeypatch.setattr(mesh_choice, "MOST_QUADRATIC", 2000)
+    monkeypatch.setattr(mesh_choice, "BEGIN", 1.0)
     found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=2000)
     assert not found.met
     assert found.percent["winding"] == pytest.approx(900.0 * low(FIRST), rel=0.1)
     assert max(second_order) == 2000
+
+
+def test_a_first_mesh_that_leaves_no_room_begins_with_fewer_elements_across(second_order, monkeypatch):
+    """Where 2,000 of 2,500 unknowns were spent on slots and bars, the axis could not be refined."""
+    monkeypatch.setitem(LOST, "across", 0.0)
+    found = chosen_mesh(MACHINE, 2.5, FIRST, silent, most=2500)
+    assert found.met
+    assert halved(found.meshing, "across") < 1.0 < halved(found.meshing, "axial_m")
+
+
+def test_a_look_ahead_is_of_meshes_that_were_not_looked_at(second_order):
+    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
+    other, third = FIRST.along("axial_m", 0.5), FIRST.along("size_m", 0.5)
+    looks.solve([FIRST], [FIRST, other, third])
+    assert set(looks.rises) == {FIRST, other}
+    looks.solve([FIRST, other], [third])
+    assert third not in looks.rises
+
+
+def test_a_step_that_is_enough_is_taken_before_one_part_is_tried(second_order, monkeypatch):
+    """Thinner ends leave little here, but all that is missing: no mesh with smaller triangles of one part is solved."""
+
+    def hot(point, how):
+        low = 0.016 * 0.25 ** how.ends.count("stator.core") + 0.024 * halved(how, "size_m") ** -2.0
+        return {p: T * (1.0 - low) for p, T in EXACT.items()}
+
+    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    none = dict.fromkeys(mesh_choice._linear(MACHINE), np.zeros((2, 2)))
+    monkeypatch.setattr(mesh_choice, "_linear_losses", lambda point, how: (hot(point, how), none))
+    monkeypatch.setattr(mesh_choice, "_one_part_finer", lambda *of: pytest.fail("tried"))
+    found = chosen_mesh(MACHINE, 6.5, FIRST, silent)
+    assert found.met
+    assert found.meshing.ends == ("stator.core",)
 
 
 def test_an_order_that_does_not_show_is_not_assumed(second_order, monkeypatch):
