@@ -37,19 +37,21 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shared")]
 from aiohttp import web  # noqa: E402
 from small_case import small_case  # noqa: E402
 
-from extras.workbench.serve import bench  # noqa: E402
+from extras.workbench.machines import Bench  # noqa: E402
 from extras.workbench.steps import comparing_job  # noqa: E402
 from extras.workbench.tabs import Tabs  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
+from thermoscope.plugin import DROP_BYTES  # noqa: E402
 
 COMMANDS = {
-    "calibrate": ("calibrate", "{case}", "--anyway"),
-    "add": ("add", "{case}", "convection@flange", "--anyway"),
-    "undo": ("undo", "{case}"),
-    "improve": ("improve", "{case}", "--yes", "--most", "1"),
+    "calibrate": ("model", "calibrate", "{case}", "--anyway"),
+    "add": ("model", "add", "{case}", "convection@flange", "--anyway"),
+    "undo": ("model", "undo", "{case}"),
+    "improve": ("explain", "improve", "{case}", "--yes", "--most", "1"),
     "new": (
+        "test",
         "new",
         "{case}/tests/stand.csv",
         "{case}/tests/road.csv",
@@ -105,9 +107,9 @@ def ran(name: str, case: Path) -> int:
 async def pressed(case: Path) -> int:
     """The workbench with a tab in which "Calibrate" is pressed; 2 where the page then shows an error."""
     os.environ["TRAME_ARGS"] = "--server"
-    opened = bench(load_case(case))
+    opened = Bench(load_case(case))
     await opened.compared(comparing_job)
-    tabs = Tabs(opened)
+    tabs = Tabs(opened, DROP_BYTES.most)
     with suppress(web.HTTPFound):  # on to the tab that was made
         await tabs.new(None)  # type: ignore[arg-type]
     session = next(iter(tabs.open.values())).session
