@@ -281,14 +281,16 @@ class ModelError:
         return next(iter(self.columns.values())).shape[1]
 
     @property
-    def own(self) -> int:
+    def model_columns(self) -> int:
         """How many columns are the model's: the first."""
         return self.size - self.steps
 
     def bounded(self, most: float) -> ModelError:
         """With the model's columns of each record scaled down together to `most` (K, one sigma) in sum."""
         scaled = {
-            key: np.hstack([x[:, : self.own] * min(1.0, most / max(self.sums[key], 1e-12)), x[:, self.own :]])
+            key: np.hstack(
+                [x[:, : self.model_columns] * min(1.0, most / max(self.sums[key], 1e-12)), x[:, self.model_columns :]]
+            )
             for key, x in self.columns.items()
         }
         return replace(self, columns=scaled)

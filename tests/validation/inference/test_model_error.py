@@ -52,7 +52,7 @@ def test_doubts_of_a_record_are_bounded_in_sum_and_scaled_together(case):
     free, tight = (model_error(network(), case.tests, {}, {**USUAL, "total": x}) for x in (1.0, 0.01))
     for test in case.tests:
         for c in test.channels:
-            whole, scaled = (x.columns[test.name, c.name][:, : x.own] for x in (free, tight))
+            whole, scaled = (x.columns[test.name, c.name][:, : x.model_columns] for x in (free, tight))
             assert total_sd(scaled) == pytest.approx(min(most, total_sd(whole)))
             assert tight.sums[test.name, c.name] == pytest.approx(total_sd(whole))
             np.testing.assert_allclose(scaled * total_sd(whole), whole * total_sd(scaled), atol=1e-9)
@@ -118,7 +118,9 @@ def test_a_flow_meter_may_be_off_in_one_test_alone(case):
     """The kinds of flow come once for all tests, then for each test, where the others have nothing."""
     error, names = model_error(network(), case.tests, {}), [t.name for t in case.tests]
     first = error.names.index(f"flow of air in {names[0]}")
-    assert error.names[first : error.own] == tuple(f"flow of {x} in {n}" for x in ("air", "liquid") for n in names)
+    assert error.names[first : error.model_columns] == tuple(
+        f"flow of {x} in {n}" for x in ("air", "liquid") for n in names
+    )
     for s in segments(network(), case.tests, {}):
         columns, k = error.of(s), names.index(s.test)
         own = columns[:, first + k]
@@ -224,7 +226,7 @@ def test_steps_are_doubted_where_the_clock_is_not_and_never_scaled_down():
     assert input_steps(heated(np.arange(0.0, 300.0, 1.0), 100.5)[1]) == []
     net, slow, _ = heated(np.arange(0.0, 3600.0, 60.0), 1000.0)
     coarse = model_error(net, [replace(slow, channels=(replace(slow.channels[0], sigma_K=99.0),))], {})
-    assert not coarse.columns["run", "body"][:, coarse.own :].any()
+    assert not coarse.columns["run", "body"][:, coarse.model_columns :].any()
     sizes = []
     for step in (20.0, 60.0, 180.0):
         net, test, _ = heated(np.arange(0.0, 3600.0, step), 1000.0)
