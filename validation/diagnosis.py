@@ -84,7 +84,7 @@ from validation.scope import Scope, odds_factor
 from validation.yardstick.network_terms import network_terms
 
 Progress = Callable[[str], None]
-Known = Callable[[Callable[[], Diagnosis]], None]
+Report = Callable[[Callable[[], Diagnosis]], None]
 NO_BUDGET: Mapping[str, float] = MappingProxyType({})
 RIVALS = 4  # of a group are compared with each other where a plan is wanted
 EVERYTHING = Scope()
@@ -105,7 +105,7 @@ def diagnose(
     budget: Mapping[str, float] = NO_BUDGET,
     scope: Scope = EVERYTHING,
     quick: bool = False,
-    known: Known = untold,
+    report: Report = untold,
 ) -> Diagnosis:
     """Diagnose a case on its calibrate and validate tests; held-out tests are predicted once, after.
 
@@ -114,7 +114,7 @@ def diagnose(
 
     Parameters: `kinds` restricts the catalogue; `progress` is told what is being done; `plan`: also rank the next tests
     and sensors; `budget` channel -> error (K) of the model's own numbers there, what moves no reading by more is not
-    named; `scope` what is asked about; `quick`: stop at the first odds, which are preliminary; `known` is told of what
+    named; `scope` what is asked about; `quick`: stop at the first odds, which are preliminary; `report` is told of what
     works out the same while the search goes on. Returns: the verdict with its odds and tables.
     """
     check_names(case, [*scope.without, *scope.only], "what to leave out")
@@ -135,10 +135,10 @@ def diagnose(
             choice = consistent_decision(choice, checks(case, posterior, choice, most, left))
         if wrong:  # nothing else is accused of what the base does
             choice = Decision("data", (), choice.sure)
-        found = PlainFaults(tuple(broken), tuple(wrong))
-        return tabulate(case, posterior, choice, found, bases, plan and not preliminary, scope, preliminary)
+        faults = PlainFaults(tuple(broken), tuple(wrong))
+        return tabulate(case, posterior, choice, faults, bases, plan and not preliminary, scope, preliminary)
 
-    posterior = infer(training, kinds, progress, scope, quick, lambda first: known(lambda: result(first, True)))
+    posterior = infer(training, kinds, progress, scope, quick, lambda first: report(lambda: result(first, True)))
     progress("writing the tables")
     return result(posterior, quick)
 
@@ -149,11 +149,11 @@ def infer(
     progress: Progress = no_progress,
     scope: Scope = EVERYTHING,
     quick: bool = False,
-    known: Callable[[Posterior], None] = untold,
+    report: Callable[[Posterior], None] = untold,
 ) -> Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight.
 
-    Parameters: as of `diagnose`; `known` is told the first odds. Returns: every hypothesis with its log evidence over
+    Parameters: as of `diagnose`; `report` is told the first odds. Returns: every hypothesis with its log evidence over
     that of nothing.
     """
     fit = calibrated_case(case, progress)
@@ -184,7 +184,7 @@ def infer(
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
     first_odds = Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
-    known(first_odds)
+    report(first_odds)
     if quick:
         return first_odds
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew

@@ -22,6 +22,7 @@ from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperat
 from measured.case import Channel, Test
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import lag, setting
+from validation.calibration.input_steps import InputStep, input_steps, recorded_inputs, with_steps
 from validation.comparison.linearisation import Segment, largest_rise, segments
 from validation.comparison.predict import heat_model, record
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
@@ -32,6 +33,7 @@ from validation.threads import side_by_side
 Array = NDArray[np.float64]
 SQUARED = ("current", "torque")  # quantities whose square makes heat
 SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
+FELT = 0.1  # of what a good model may be wrong by: a hundredth of its variance that inputs stepped early or late
 LEAST_W_K = 1e-9  # of a link that heat passes: what doubts are shares of
 
 
@@ -261,13 +263,15 @@ class ModelError:
     """columns : (test, channel) -> (n, d) change of the readings (K) by one deviation of each doubt;  names (d,)
 
     law : share of itself (one sigma) that an effect's amplitude is wrong by because its law is
-    sums : (test, channel) -> K, one sigma of all doubts together before they were scaled down
+    sums : (test, channel) -> K, one sigma of the model's doubts together before they were scaled down
+    steps : how many of the columns, the last, are of when inputs stepped: the record's doubt, not the model's
     """
 
     columns: Mapping[tuple[str, str], Array]
     names: tuple[str, ...]
     law: float = USUAL["law"]
     sums: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    steps: int = 0
 
     def of(self, segment: Segment) -> Array:
         return self.columns[segment.test, segment.channel]
@@ -276,9 +280,19 @@ class ModelError:
     def size(self) -> int:
         return next(iter(self.columns.values())).shape[1]
 
+    @property
+    def model_columns(self) -> int:
+        """How many columns are the model's: the first."""
+        return self.size - self.steps
+
     def bounded(self, most: float) -> ModelError:
-        """With the columns of each record scaled down together to `most` (K, one sigma) in sum."""
-        scaled = {key: x * min(1.0, most / max(self.sums[key], 1e-12)) for key, x in self.columns.items()}
+        """With the model's columns of each record scaled down together to `most` (K, one sigma) in sum."""
+        scaled = {
+            key: np.hstack(
+                [x[:, : self.model_columns] * min(1.0, most / max(self.sums[key], 1e-12)), x[:, self.model_columns :]]
+            )
+            for key, x in self.columns.items()
+        }
         return replace(self, columns=scaled)
 
     def beside(self, segment: Segment, p: int) -> Segment:
@@ -310,14 +324,19 @@ def model_error(
         beside = placements(network, test, values, doubt, sensed or tests)
         here = np.array([float(t.name == test.name) for t in sensed or tests])
         flow = of_inputs(network, test, values, doubt, parts, here)
-        columns = {s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel]]) for s in parts}
+        late = of_steps(network, test, values, doubt, parts, sensed or tests)
+        columns = {
+            s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel], late[s.channel]])
+            for s in parts
+        }
         return every, {(s.test, s.channel): columns[s.channel] for s in parts}
 
     each = side_by_side(of_test, tests, lambda test: len(test.time))
     names = named(network, each[-1][0], doubt, sensed or tests)
     columns = {key: x for _, of in each for key, x in of.items()}
-    sums = {key: total_sd(x) for key, x in columns.items()}
-    return ModelError(columns, names, doubt["law"], sums).bounded(doubt["total"] * machine_rise(sensed or tests))
+    late = sum(len(input_steps(t)) for t in sensed or tests)
+    sums = {key: total_sd(x[:, : x.shape[1] - late]) for key, x in columns.items()}
+    return ModelError(columns, names, doubt["law"], sums, late).bounded(doubt["total"] * machine_rise(sensed or tests))
 
 
 def machine_rise(tests: Sequence[Test]) -> float:
@@ -335,7 +354,10 @@ def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Se
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once)
+    late = [
+        f"input steps near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t in tests for s in input_steps(t)
+    ]
+    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
 
 
 def of_inputs(
@@ -352,6 +374,38 @@ def of_inputs(
         columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
     every = [np.column_stack([c[i] for c in columns]) for i, _ in enumerate(plain)]
     return {s.channel: np.hstack([x, np.kron(x[:, :2], here)]) for s, x in zip(plain, every, strict=True)}
+
+
+def of_steps(
+    network: Network,
+    test: Test,
+    values: Mapping[str, float],
+    doubt: Doubt,
+    plain: Sequence[Segment],
+    tests: Sequence[Test],
+) -> dict[str, Array]:
+    """Channel -> (n, k): each step of the inputs of all tests, moved by a deviation; zero in other tests, and where all
+    steps of the test together are small beside what a good model may be wrong by.
+
+    plain : the test as recorded
+    """
+    every = [(t.name == test.name, s) for t in tests for s in input_steps(t)]
+    steps = [s for here, s in every if here]
+    early = segments(network, [with_steps(test, steps)], values) if steps else plain
+
+    def moved(late: Sequence[InputStep]) -> list[Array]:
+        sd = doubt["step in sample"] * late[0].wider
+        new = segments(network, [with_steps(test, steps, late)], values)
+        return [sd * (a.r - b.r) for a, b in zip(early, new, strict=True)]
+
+    whole = moved(steps) if steps else []
+    small = FELT * np.sqrt(max(len(steps), 1))  # moved together, they do so much more than each by chance
+    felt = any(np.sqrt(np.mean(x**2)) > small * s.model_K for x, s in zip(whole, plain, strict=False))
+    nothing = [np.zeros_like(s.r) for s in plain]
+    columns = [moved([s]) if felt and here else nothing for here, s in every]
+    return {
+        s.channel: np.column_stack([np.empty((s.r.size, 0)), *(c[i] for c in columns)]) for i, s in enumerate(plain)
+    }
 
 
 def _flow(network: Network, test: Test, doubt: Doubt, quantity: str) -> dict[str, float]:

@@ -59,7 +59,7 @@ class Decision:
     """groups : per thing that is missing the causes that may be it, most probable first;  sure : P(something)
 
     others : what halves of the instants would decide, where that is something else
-    checks : what it was held against
+    checks : what it was held against;  withheld : what is not told, since a half says that nothing is missing
     """
 
     verdict: Verdict
@@ -67,6 +67,7 @@ class Decision:
     sure: float
     others: tuple[Decision, ...] = ()
     checks: tuple[Check, ...] = ()
+    withheld: Decision | None = None
 
 
 def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
@@ -75,10 +76,7 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
     something = 1.0 - sum(p for h, p in rows if h.nothing)
     if 1.0 - something > SILENT:
         return Decision("adequate", (), something)
-    heat = sum(p for h, p in rows if h.heat)
-    # a name that has less beside such heat than an abstention costs is not told, however much it explains
-    told = catalogue_explains(hypotheses) and something - heat > (1.0 - SURE) * something
-    if heat > 0.5 * something and not told:
+    if sum(p for h, p in rows if h.heat) > 0.5 * something and not catalogue_explains(hypotheses):
         return Decision("outside", (), something)
     every = [(frozenset(h.members), p) for h, p in rows]
     groups = [smallest_cover(every)]
@@ -199,13 +197,16 @@ def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, fl
 
 
 def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decision]) -> Decision:
-    """The decision on all instants, with no more claimed than either half of them would."""
+    """The decision on all instants, with no more claimed than either half of them would, and nothing where one of them
+    says that nothing is missing."""
     choice = without_twins(posterior.evidence, decision(posterior), ())
     claimed = [k for g in choice.groups for k in g]
     halves = [
         without_twins(posterior.evidence, decision(half_posterior(posterior, first)), claimed) for first in (0, 1)
     ]
     other = tuple(d for d in halves if differs(choice, d))
+    if silent := tuple(d for d in other if d.verdict == "adequate"):
+        return Decision("adequate", (), choice.sure, silent, withheld=choice)
     if not other or not choice.groups:
         return replace(choice, others=other)
     groups = choice.groups

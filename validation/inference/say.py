@@ -14,6 +14,7 @@ from geom.table import percent
 from measured.case import Case, Test
 from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
+from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.base import Effect, ReadingEffect
@@ -72,10 +73,10 @@ def final_verdict(
 
 def prior_pulls(fit: Fit) -> tuple[tuple[str, float, float], ...]:
     """Parameters that calibration pulls further from their prior than one in twenty fits does any: name, value,
-    deviations; and those at a physical bound beyond two deviations."""
+    deviations; and those at a physical bound beyond two deviations. A sensor that follows at once is at none."""
     pull = fit.theta / fit.unknowns.sd
-    limit = -float(ndtri(0.025 / pull.size))
-    hit = (np.abs(pull) > limit) | (fit.at_bound & (np.abs(pull) > 2.0))
+    limit, lags = -float(ndtri(0.025 / pull.size)), np.array([head(p) == "lag" for p in fit.unknowns.parameters])
+    hit = (np.abs(pull) > limit) | (fit.at_bound & ~lags & (np.abs(pull) > 2.0))
     order = [int(j) for j in np.argsort(-np.abs(pull)) if hit[j]]
     return tuple((fit.unknowns.names[j], fit.values[fit.unknowns.names[j]], float(pull[j])) for j in order)
 
@@ -347,7 +348,7 @@ def record_doubts(fit: Fit) -> tuple[RecordDoubt, ...]:
     """What the doubts of a model add up to at each record, the largest first."""
     error, rows = fit.error, []
     for s in fit.parts if error else ():
-        square = np.mean(error.of(s) ** 2, axis=0)  # type: ignore[union-attr]
+        square = np.mean(error.of(s)[:, : error.model_columns] ** 2, axis=0)  # type: ignore[union-attr, index]
         most = error.names[int(np.argmax(square))]  # type: ignore[union-attr]
         total = error.sums.get((s.test, s.channel), 0.0)  # type: ignore[union-attr]
         rows.append(RecordDoubt(s.channel, s.test, total, float(np.sqrt(np.sum(square))), most))
@@ -361,9 +362,10 @@ def rms(r: Array) -> float:
 def _remainder(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit, measure: InnerProduct) -> Remainder:
     error, doubt, model_K = rms(s.r), "", 0.0
     if fit.error is not None:
-        parts = fit.error.of(s) * measure.doubts(fit.parts)
-        model_K = error - rms(s.r - parts.sum(axis=1))
-        doubt = fit.error.names[int(np.argmax(np.mean(parts**2, axis=0)))]
+        parts, k = fit.error.of(s) * measure.doubts(fit.parts), fit.error.model_columns
+        left = s.r - parts[:, k:].sum(axis=1)  # when inputs stepped is no fault of the model
+        model_K = rms(left) - rms(left - parts[:, :k].sum(axis=1))
+        doubt = fit.error.names[int(np.argmax(np.mean(parts[:, :k] ** 2, axis=0)))]
     effect, p, less = second_effect(posterior, lead, s)
     name, how = ("", "") if effect is None else (effect.name, effect.effect.isolating_test)
     return Remainder(s.channel, s.test, error, max(model_K, 0.0), doubt, name, p, less, how)
@@ -400,7 +402,8 @@ def sentence(
         rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults(), left) if broken.names else ""
         return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
-        words = f"no evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        evidence = "no sure evidence" if choice.withheld else "no evidence"
+        words = f"{evidence} of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
         return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
@@ -448,8 +451,14 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     if not choice.others:
         return ""
     effects, d = posterior.evidence.effects, choice.others[0]
-    other = " and ".join(" or ".join(effects[k].statement for k in g[:2]) for g in d.groups)
-    other = other or {"adequate": "nothing is missing"}.get(d.verdict, "heat of unknown cause")
+
+    def claim(x: Decision) -> str:
+        every = " and ".join(" or ".join(effects[k].statement for k in g[:2]) for g in x.groups)
+        return every or {"adequate": "nothing is missing"}.get(x.verdict, "heat of unknown cause")
+
+    other = claim(d)
+    if choice.withheld:
+        return f"; {claim(choice.withheld)} is not told: every second reading alone says {other}"
     how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
     claimed = "" if choice.verdict in ("adequate", "outside") else how
     if d.groups and d.groups == choice.groups:

@@ -53,7 +53,7 @@ def test_a_million_samples_make_no_more_blocks_than_wanted():
 
 
 def test_a_sensor_slower_than_the_inputs_keeps_all_that_it_reads():
-    """One row of ten, blocks of three: none is half read, and each of those that are read is as good as the next."""
+    """One row of ten, blocks of three: no block is half read, and those that are read are alike."""
     y, read = np.arange(60.0), np.arange(60) % 10 == 0
     blocks = Blocks(np.arange(0, 60, 3), 1)
     blocks.add(0, y[:, None], read.astype(float))

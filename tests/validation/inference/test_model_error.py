@@ -9,10 +9,11 @@ from playground import Truth, network
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower
-from measured.case import Test
+from measured.case import Channel, Recorded, Test
 from measured.doubt import USUAL
 from measured.sensors.operators import lag
 from validation.calibration.calibrate import InnerProduct, minimise
+from validation.calibration.input_steps import MOST, input_steps
 from validation.calibration.model_error import alone, joints, jumps, lumping_errors, model_error, total_sd, with_doubts
 from validation.comparison.linearisation import largest_rise, segments
 from validation.noise import first_noise
@@ -51,7 +52,7 @@ def test_doubts_of_a_record_are_bounded_in_sum_and_scaled_together(case):
     free, tight = (model_error(network(), case.tests, {}, {**USUAL, "total": x}) for x in (1.0, 0.01))
     for test in case.tests:
         for c in test.channels:
-            whole, scaled = free.columns[test.name, c.name], tight.columns[test.name, c.name]
+            whole, scaled = (x.columns[test.name, c.name][:, : x.model_columns] for x in (free, tight))
             assert total_sd(scaled) == pytest.approx(min(most, total_sd(whole)))
             assert tight.sums[test.name, c.name] == pytest.approx(total_sd(whole))
             np.testing.assert_allclose(scaled * total_sd(whole), whole * total_sd(scaled), atol=1e-9)
@@ -117,7 +118,9 @@ def test_a_flow_meter_may_be_off_in_one_test_alone(case):
     """The kinds of flow come once for all tests, then for each test, where the others have nothing."""
     error, names = model_error(network(), case.tests, {}), [t.name for t in case.tests]
     first = error.names.index(f"flow of air in {names[0]}")
-    assert error.names[first:] == tuple(f"flow of {x} in {n}" for x in ("air", "liquid") for n in names)
+    assert error.names[first : error.model_columns] == tuple(
+        f"flow of {x} in {n}" for x in ("air", "liquid") for n in names
+    )
     for s in segments(network(), case.tests, {}):
         columns, k = error.of(s), names.index(s.test)
         own = columns[:, first + k]
@@ -185,3 +188,63 @@ def test_what_jumps_between_samples_is_doubted_by_what_its_square_would_gain():
     assert jumps(net, test, USUAL) == {"current_A": pytest.approx(np.sqrt(steps / straight))}
     ramp = replace(test, inputs={**inputs, "current_A": np.linspace(0.0, 100.0, time.size)})
     assert jumps(net, ramp, USUAL) == {}
+
+
+def heated(time, on_s):
+    """A body that a loss warms from some instant on, and a sensor on it; rows at some times."""
+    net = bare_network("one", {"body": 2000.0}, ("ambient",))
+    loss = node_source(net, "loss", "constant", {"body": 1.0}, InputPower(100.0, (("power", 1.0, 1.0),)))
+    net = net.extended([node_link(net, "film", "film", "body", "ambient", Fixed(2.0))], [loss], ())
+    fine = np.unique(np.concatenate([time, [on_s - 1e-3, on_s + 1e-3]]))
+    power = (fine > on_s).astype(float)
+    row = net.places["body"].mean
+    sensor = Channel("body", "body", row, 0.0 * time, 0.01)
+    test = Test(
+        "run", "calibrate", time, {"power": np.interp(time, fine, power)}, {"ambient": 20.0 + 0.0 * time}, (sensor,)
+    )
+    exact = replace(test, recorded=Recorded(fine, {"power": power}, time, test.inputs))
+    return net, test, exact
+
+
+def test_a_step_between_two_rows_is_doubted_by_what_its_time_makes():
+    """Of all times between two rows that of a load's step is open: one column has what that comes to (1 / sqrt(12))."""
+    time = np.arange(0.0, 3000.0, 100.0)
+    error = model_error(heated(time, 1050.0)[0], [heated(time, 1050.0)[1]], {})
+    (column,) = error.columns["run", "body"][:, -error.steps :].T
+    late = []
+    for at in np.linspace(1000.5, 1099.5, 34):
+        net, _, exact = heated(time, at)
+        late.append(-segments(net, [exact], {})[0].r)
+    after = time > 1100.0
+    np.testing.assert_allclose(np.abs(column[after]), np.std(late, axis=0)[after], rtol=0.05)
+    assert error.names[-1] == "input steps near 1000 s of run"
+
+
+def test_steps_are_doubted_where_the_clock_is_not_and_never_scaled_down():
+    """Rows of a second say when to the second, a coarse sensor does not feel it; more time between rows leaves a larger
+    doubt, whatever the sum."""
+    assert input_steps(heated(np.arange(0.0, 300.0, 1.0), 100.5)[1]) == []
+    net, slow, _ = heated(np.arange(0.0, 3600.0, 60.0), 1000.0)
+    coarse = model_error(net, [replace(slow, channels=(replace(slow.channels[0], sigma_K=99.0),))], {})
+    assert not coarse.columns["run", "body"][:, coarse.model_columns :].any()
+    sizes = []
+    for step in (20.0, 60.0, 180.0):
+        net, test, _ = heated(np.arange(0.0, 3600.0, step), 1000.0)
+        error = model_error(net, [test], {}, {**USUAL, "total": 1e-9})
+        assert total_sd(error.columns["run", "body"][:, : -error.steps]) < 1e-6
+        sizes.append(total_sd(error.columns["run", "body"][:, -error.steps :]))
+    np.testing.assert_allclose(np.array(sizes[1:]) / sizes[:-1], 3.0, rtol=0.2)
+
+
+def test_neighbouring_steps_of_a_restless_input_are_moved_together():
+    """More steps than are moved by themselves: the squares of a group come to one; falls go the other way."""
+    time = np.arange(0.0, 6000.0, 60.0)
+    _, test, _ = heated(time, 100.0)
+    restless = replace(test, inputs={"power": np.arange(time.size) % 2.0})
+    steps = input_steps(restless)
+    assert len(steps) == MOST
+    assert sum(s.row.size for s in steps) == time.size - 1
+    for s in steps:
+        assert np.sum(s.share**2) == pytest.approx(1.0)
+        np.testing.assert_array_equal(np.sign(s.share), np.where(s.row % 2, -1.0, 1.0))
+    assert steps[0].wider > input_steps(test)[0].wider > 1.0

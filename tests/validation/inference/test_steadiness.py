@@ -69,7 +69,6 @@ def instants(p):
 @pytest.mark.parametrize(
     ("on_half", "groups", "says"),
     [
-        (Decision("adequate", (), 0.4), ((0,),), "says nothing is missing"),
         (Decision("named", ((1,),), 0.9), ((0, 1),), "says brush contact drop at commutator"),
         (Decision("group", ((0, 2),), 0.9), ((0, 2),), "cannot tell them apart"),
     ],
@@ -79,6 +78,21 @@ def test_a_name_that_half_of_the_instants_do_not_give_is_withheld(on_half, group
     choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)
     assert (choice.verdict, choice.groups, choice.sure) == ("group", groups, 0.95)
     assert f"every second reading alone {says}" in unsteady_words(posterior(), choice)
+
+
+@pytest.mark.parametrize(
+    ("whole", "withheld"),
+    [
+        (Decision("named", ((0,),), 0.95), "forced convection by vehicle wind at flange.right"),
+        (Decision("outside", (), 0.95), "heat of unknown cause"),
+    ],
+)
+def test_nothing_is_told_where_half_of_the_instants_say_that_nothing_is_missing(whole, withheld):
+    half = Decision("adequate", (), 0.4)
+    choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
+    assert (choice.verdict, choice.groups, choice.sure) == ("adequate", (), 0.95)
+    told = unsteady_words(posterior(), choice)
+    assert told == f"; {withheld} is not told: every second reading alone says nothing is missing"
 
 
 def test_the_order_within_a_group_is_no_other_verdict():

@@ -45,31 +45,31 @@ class SoFar:
 
     def __init__(self, progress: Progress) -> None:
         self.progress, self.begun, self.shown = progress, monotonic(), False
-        self.known: Callable[[], Diagnosis] | None = None
+        self.result: Callable[[], Diagnosis] | None = None
 
-    def learn(self, known: Callable[[], Diagnosis]) -> None:
+    def learn(self, result: Callable[[], Diagnosis]) -> None:
         """Told what works out the diagnosis as far as it is known."""
-        self.known = known
+        self.result = result
 
     def tell(self, message: str) -> None:
         """Progress, and after LONG_S, once, what is known."""
         self.progress(message)
-        if self.known and not self.shown and monotonic() - self.begun > LONG_S:
+        if self.result and not self.shown and monotonic() - self.begun > LONG_S:
             self.shown = True
-            notes([f"after {LONG_S / 60:.0f} min: {self.known().words}"])
+            notes([f"after {LONG_S / 60:.0f} min: {self.result().words}"])
 
 
 def _stopped(folder: Folder, so_far: SoFar, called: str) -> None:
     """What is known of a diagnosis that the user stopped: its first odds, or before there are any the comparison, where
     it is at hand or quick."""
-    if so_far.known:
-        document = so_far.known().document()
+    if so_far.result:
+        document = so_far.result().document()
         give({}, None, lambda: diagnosis_summary(document, called))
     elif folder.built is None or folder.stored is not None:
         document = folder.compared.document()
         first, more = tables.comparison_tables(document)[0], f"thermoscope test compare {quote(called)}"
         give({}, None, lambda: Summary(document["words"], [first], more))
-    what = "its odds are preliminary" if so_far.known else "a verdict weighs all hypotheses, so there is none yet"
+    what = "its odds are preliminary" if so_far.result else "a verdict weighs all hypotheses, so there is none yet"
     notes([f"stopped: {what}; a diagnosis of before stays in out/"])
 
 
@@ -79,11 +79,11 @@ def diagnosed(
     without: Sequence[str] = (),
     only: Sequence[str] = (),
     quick: bool = False,
-    known: Callable[[Callable[[], Diagnosis]], None] | None = None,
+    report: Callable[[Callable[[], Diagnosis]], None] | None = None,
 ) -> tuple[Diagnosis, dict[str, Any]]:
     """What is missing in an open case, and the document of it, which is kept in the case's out/ unless preliminary.
 
-    without, only : what is left out of the question, see Scope;  quick, known : see `validation.diagnose`
+    without, only : what is left out of the question, see Scope;  quick, report : see `validation.diagnose`
     """
     from lumped.condensation.error_budget import ErrorBudget
     from validation import diagnose as search
@@ -98,8 +98,9 @@ def diagnosed(
     check_names(folder.case, [*without, *only], "what to leave out")
     budgets = folder.budgets
     worst = ErrorBudget.worst(budgets.values()).total_K
-    told = known or untold
-    diagnosis = search(folder.case, folder.settings.kinds, tell, budget=worst, scope=scope, quick=quick, known=told)
+    diagnosis = search(
+        folder.case, folder.settings.kinds, tell, budget=worst, scope=scope, quick=quick, report=report or untold
+    )
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     document["strained"] = strain_words(folder.case)
