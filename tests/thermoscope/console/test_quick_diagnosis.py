@@ -27,12 +27,8 @@ def test_first_odds_are_those_that_a_whole_search_tells_on_its_way():
     assert [o["probability"] for o in quick["odds"]] == pytest.approx([o["probability"] for o in told[0]["odds"]])
     assert (quick["preliminary"], whole.document()["preliminary"]) == (True, False)
     assert PRELIMINARY not in whole.words
-<<<<<<< HEAD:tests/thermoscope/commands/test_quick_diagnosis.py
-    assert quick["odds"][0]["hypothesis"].partition(":")[0] == whole.odds[0].hypothesis.partition(":")[0]  # but ends
-=======
     first, last = (x.partition(":")[0] for x in (quick["odds"][0]["hypothesis"], whole.odds[0].hypothesis))
     assert first == last  # its ends may differ
->>>>>>> w-odds:tests/thermoscope/console/test_quick_diagnosis.py
 
 
 def test_quick_odds_are_marked_in_terminal_and_document_and_not_kept(case, tmp_path, capsys):
