@@ -124,15 +124,11 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        left = next(
-            (f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])),
-            "",
+        doubts = (
+            f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])
         )
-        raise InputError(
-            f"no column is a temperature of a machine{left}",
-            files,
-            "a column with degC or K, or a name such as T_winding",
-        )
+        what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
+        raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
