@@ -13,7 +13,7 @@ import numpy as np
 from geom.errors import InputError
 from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
-from measured.headers.words import is_time, quantities_of, roles_of
+from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
 
 SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
@@ -72,10 +72,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     if above and any(above[-1][width // 2 :]):  # names of groups over those of columns
         # Merged cells are of the group of the first of them.
         groups = [*accumulate(above[-1], lambda group, cell: cell or group)]
-        once = [
-            names.count(n) == 1 and ((len(n) > 1 and _informative([n])) or not _informative([g]))
-            for g, n in zip(groups, names)
-        ]
+        told = [len(n) > 1 and _informative([n]) and not {*tokens(split_unit(n)[0])} <= SETPOINT | READ for n in names]
+        once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, told)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
     if not any(map(roles_of, names)) and (remarks := next((r for r in others if any(map(roles_of, r[1:]))), None)):

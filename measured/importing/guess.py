@@ -25,9 +25,9 @@ from measured.headers.words import (
     QUANTITY,
     READ,
     ROLES,
-    SETPOINT,
     SPREAD,
     axis_of,
+    is_setpoint,
     quantities_of,
     roles_of,
     tokens,
@@ -286,7 +286,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:
-    if SETPOINT & set(tokens(label)):
+    if is_setpoint(label):
         return base.without("a set point, not a reading")
     place, other = target.place_of(label)
     if not place:
@@ -312,7 +312,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
         inlet = bool(g.place) and not INLET & words
-        return bool(SETPOINT & words), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
+        return is_setpoint(g.column), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
@@ -320,7 +320,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             continue
         if key not in owner:
             owner[key] = g.column
-        elif g.feeds and g.feeds not in target.inputs and not SETPOINT & set(tokens(g.column)):
+        elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
