@@ -132,5 +132,5 @@ def is_time(label: str) -> bool:
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit", "tick"))
     last = PATH.split(label)[-1].strip()
-    written = any(k in label for k in CLOCKS if k[0] >= IDEOGRAPHS)  # without blanks, as in Japanese
-    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts or written
+    inside = any(k in label for k in CLOCKS if k[0] >= IDEOGRAPHS)  # without blanks, as in Japanese
+    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts or inside

@@ -167,8 +167,8 @@ def _left_out(source: Source, column: str) -> str:
     if (count := int(np.isfinite(values).sum())) < LEAST:
         return f"read {count} {'time' if count == 1 else 'times'} in all"
     unit_text, label = source.units[column], source.labels[column]
-    unit, named = unit_of(unit_text), quantities_of(label)
-    if (unit == "mV" and "voltage" not in named) or (unit in SIGNALS and named == ["temperature"]):
+    unit, quantities = unit_of(unit_text), quantities_of(label)
+    if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
         return f"in {unit}: of a sensor, no reading of its own"
     if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
