@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
@@ -13,7 +13,7 @@ import numpy as np
 from geom.errors import InputError
 from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
-from measured.headers.words import is_time, quantities_of, roles_of
+from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
 
 SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
@@ -71,11 +71,10 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     groups = [""] * width
     if above and any(above[-1][width // 2 :]):  # names of groups over those of columns
         # Merged cells are of the group of the first of them.
-        groups = [*accumulate(above[-1], lambda group, cell: cell or group)]
-        once = [
-            names.count(n) == 1 and ((len(n) > 1 and _informative([n])) or not _informative([g]))
-            for g, n in zip(groups, names)
-        ]
+        merged: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
+        groups = list(merged)
+        clear = [len(n) > 1 and _informative([n]) and not {*tokens(split_unit(n)[0])} <= SETPOINT | READ for n in names]
+        once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
     if not any(map(roles_of, names)) and (remarks := next((r for r in others if any(map(roles_of, r[1:]))), None)):
@@ -86,8 +85,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     unit_cells = _padded(rows[units] if units is not None else [], width)
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
     unit_cells[0] *= is_time(names[0]) or is_unit(unit_cells[0])  # what stands before units is the row's own label
-    own = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
-    unit_cells = [u if mine else split_unit(group)[1] for u, mine, group in zip(unit_cells, own, groups)]
+    has_unit = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
+    unit_cells = [u if has else split_unit(group)[1] for u, has, group in zip(unit_cells, has_unit, groups)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
 
 
@@ -154,8 +153,8 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
 def _legend(before: Sequence[Row], width: int) -> tuple[str, ...]:
     """What lines before the readings say of every column by its number, "" where they do not."""
     lines = (NUMBERED.fullmatch(" ".join(str(c) for c in row if c is not None).strip()) for row in before)
-    said = {int(m[1]): m[2].strip() for m in lines if m}
-    return tuple(said.values()) if [*said] in ([*range(width)], [*range(1, width + 1)]) else ("",) * width
+    labels = {int(m[1]): m[2].strip() for m in lines if m}
+    return tuple(labels.values()) if [*labels] in ([*range(width)], [*range(1, width + 1)]) else ("",) * width
 
 
 def transposed(rows: Sequence[Row]) -> bool:

@@ -116,6 +116,11 @@ def roles_of(name: str) -> list[Role]:
     return sorted(hits, key=lambda role: hits[role])
 
 
+def is_setpoint(name: str) -> bool:
+    """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
+    return bool(SETPOINT & set(tokens(re.sub(r"(?i)\bsp ?\d+", " ", name))))
+
+
 def _inside(word: str, words: frozenset[str]) -> bool:
     return any((len(k) >= SHORTEST or k[0] >= IDEOGRAPHS) and k in word for k in words)
 
@@ -125,7 +130,7 @@ def is_time(label: str) -> bool:
     words = re.split(r"[\W\d_]+", label.lower().strip())
     if "temps" in words and roles_of(label):
         return False
-    starts = label.lower().startswith(("timestamp", "x_value", "zeit"))
+    starts = label.lower().startswith(("timestamp", "x_value", "zeit", "tick"))
     last = PATH.split(label)[-1].strip()
-    written = any(k in label for k in CLOCKS if k[0] >= IDEOGRAPHS)  # without blanks, as in Japanese
-    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts or written
+    inside = any(k in label for k in CLOCKS if k[0] >= IDEOGRAPHS)  # without blanks, as in Japanese
+    return last == "t" or last.lower() in LAST or bool(CLOCKS & set(words[:2])) or starts or inside

@@ -25,9 +25,9 @@ from measured.headers.words import (
     QUANTITY,
     READ,
     ROLES,
-    SETPOINT,
     SPREAD,
     axis_of,
+    is_setpoint,
     quantities_of,
     roles_of,
     tokens,
@@ -167,11 +167,10 @@ def _left_out(source: Source, column: str) -> str:
     if (count := int(np.isfinite(values).sum())) < LEAST:
         return f"read {count} {'time' if count == 1 else 'times'} in all"
     unit_text, label = source.units[column], source.labels[column]
-    if unit_of(unit_text) == "mV" and "voltage" not in quantities_of(label):
-        return "in mV: of a sensor, no reading of a voltage"
-    if not unit_text and (match := FOREIGN.search(label)) and match[1][0].isdigit():  # [0.1 °C]
-        return f"its unit '{match[1]}' is of nothing a model reads"
-    if unit_text and not unit_of(unit_text):
+    unit, quantities = unit_of(unit_text), quantities_of(label)
+    if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
+        return f"in {unit}: of a sensor, no reading of its own"
+    if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
@@ -180,9 +179,7 @@ def _left_out(source: Source, column: str) -> str:
         return "the quality of a reading"
     if words & SPREAD:
         return "a spread of readings, not a reading"
-    if unit_of(unit_text) in SIGNALS and quantities_of(label) == ["temperature"]:
-        return f"named a temperature, but in {unit_text}"
-    if words & NOTHING and unit_of(unit_text) in WEAK:
+    if words & NOTHING and unit in WEAK:
         return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
     return "a number that names a row" if identifies and _counts_on(source, column) else ""
@@ -289,7 +286,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:
-    if SETPOINT & set(tokens(label)):
+    if is_setpoint(label):
         return base.without("a set point, not a reading")
     place, other = target.place_of(label)
     if not place:
@@ -315,7 +312,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
         inlet = bool(g.place) and not INLET & words
-        return bool(SETPOINT & words), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
+        return is_setpoint(g.column), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
@@ -323,7 +320,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             continue
         if key not in owner:
             owner[key] = g.column
-        elif g.feeds and g.feeds not in target.inputs and not SETPOINT & set(tokens(g.column)):
+        elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")

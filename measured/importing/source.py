@@ -167,7 +167,7 @@ def _source(
     start: float | None = None,
 ) -> Source:
     pairs = [(name, _with_colons(cells)) for name, cells in zip(names, columns, strict=True)]
-    cells = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
+    cells: dict[str, Any] = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
     if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
     split = {n: split_unit(n) for n in cells}

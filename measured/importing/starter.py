@@ -17,7 +17,7 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
-from measured.headers.words import CHANNELS, LOSS, QUANTITY, SETPOINT, quantities_of, roles_of, tokens
+from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
 from measured.importing.draft import Draft
 from measured.importing.guess import (
     AXES,
@@ -124,15 +124,11 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        left = next(
-            (f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])),
-            "",
+        doubts = (
+            f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])
         )
-        raise InputError(
-            f"no column is a temperature of a machine{left}",
-            files,
-            "a column with degC or K, or a name such as T_winding",
-        )
+        what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
+        raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
@@ -161,6 +157,10 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
+        rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
+        if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
+            how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
+            out.setdefault("ambient", f"the room was not placed: {how}")
         for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS):
             if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
@@ -198,7 +198,7 @@ def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is no temperature."""
     if g.place and g.quantity == "temperature":
         return g.place  # as the user said
-    if g.quantity != "temperature" or SETPOINT & set(tokens(label)):
+    if g.quantity != "temperature" or is_setpoint(label):
         return ""
     words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
     role = next(iter(roles_of(label)), None)

@@ -112,8 +112,8 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
         table = zip(*columns.values(), strict=True)
         every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
     rows = [_flat(one) for one in every]
-    if named := _series(rows):
-        rows = [dict(zip(named, row, strict=False)) for row in zip(*named.values(), strict=False)]
+    if series := _series(rows):
+        rows = [dict(zip(series, row, strict=False)) for row in zip(*series.values(), strict=False)]
     names = tuple(dict.fromkeys(name for row in rows for name in row))
     titles = {path.rpartition(".")[2]: title for path, title in outer.items() if path[-1:].isdigit() and title}
     return Layout(tuple(str(titles.get(name, name)) for name in names), ("",) * len(names), 0, len(names)), [

@@ -69,6 +69,16 @@ def test_what_is_too_much_is_refused_by_name_and_read_with_the_limit_raised(
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.csv.gz"])
+def test_as_many_lines_as_the_limit_says_are_read_and_one_more_is_not(tmp_path, monkeypatch, name):
+    file = text(tmp_path / name)
+    monkeypatch.setenv("THERMOSCOPE_MOST_ROWS", str(len(ROWS) + 1))  # with its header
+    assert read_source(file).rows == len(ROWS)
+    monkeypatch.setenv("THERMOSCOPE_MOST_ROWS", str(len(ROWS)))
+    with pytest.raises(InputError, match=f"holds at least {len(ROWS) + 1} rows; at most {len(ROWS)} rows"):
+        read_source(file)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.csv.gz"])
 def test_rows_of_nothing_count(tmp_path, monkeypatch, name):
     file = text(tmp_path / name, end=",,\n" * 1000)
     monkeypatch.setenv("THERMOSCOPE_MOST_ROWS", "500")

@@ -29,7 +29,7 @@ from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
 
 S = signals(5.0)
-S["K"] = S["W"] + 273.15
+S["K"], S["k"] = S["W"] + 273.15, 1000 * S["t"]
 ROOM = f"{22:.2f}"
 NAMES = ("Winding U", "Ambient", "Current")
 
@@ -617,6 +617,9 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
             ],
         }
     ),
+    "wanted and read in a group": ",Temperatures,,,Current,\n"
+    + of(("t [s]", "Winding °C", "Frame °C", "Room °C", "Soll A", "Ist A"), "tWHAHI"),
+    "spots of a camera": of(("t [s]", "Bx1 winding [C]", "El1 frame [C]", "Sp1 ambient [C]", "I [A]"), "tWHAI"),
     "a signal in every row": "".join(
         ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN, "tWHAI", strict=True)
     ),
