@@ -164,12 +164,12 @@ def principals(
 
 
 def _each(
-    field: FieldModel, energy: Mapping[str, sp.csr_array], seen: Callable[[str, Block], Floats]
+    field: FieldModel, energy: Mapping[str, sp.csr_array], columns: Callable[[str, Block], Floats]
 ) -> dict[str, Principal]:
-    """Of every part, from what was seen of it, in two processes where there is room."""
+    """Of every part, from fields (n, k) of it, in two processes where there is room."""
 
     def principal(name: str) -> Principal:
-        return _principal(field.blocks[name], seen(name, field.blocks[name]), energy[name])
+        return _principal(field.blocks[name], columns(name, field.blocks[name]), energy[name])
 
     return dict(zip(field.blocks, in_two_processes(principal, list(field.blocks), field.n), strict=True))
 
@@ -197,9 +197,9 @@ def bases(
     favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in principal}
     least = _least(np.concatenate([p.strength * favour[n] for n, p in principal.items()]), len(principal), recipe)
     counts = {name: int(np.sum(p.strength * favour[name] > least)) for name, p in principal.items()}
-    kept = {name: basis for name, basis in (last or {}).items() if len(basis.capacity) == counts[name]}
+    unchanged = {name: basis for name, basis in (last or {}).items() if len(basis.capacity) == counts[name]}
     return {
-        name: kept.get(name) or _shaped(block, principal[name].fields[:, : counts[name]], energy[name])
+        name: unchanged.get(name) or _shaped(block, principal[name].fields[:, : counts[name]], energy[name])
         for name, block in field.blocks.items()
     }
 
@@ -235,8 +235,8 @@ def enriched(
     """Principal fields with more solutions S (n, k) among the snapshots."""
     S = of_unit_energy(S, field.stiffness(films, contacts))
 
-    def seen(name: str, block: Block) -> Floats:
+    def columns(name: str, block: Block) -> Floats:
         fields = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
         return np.column_stack([fields, S[block.dofs]])
 
-    return _each(field, energy, seen)
+    return _each(field, energy, columns)

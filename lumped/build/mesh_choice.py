@@ -155,14 +155,14 @@ class _Looks:
         self.solve([how])
         return self.rises[how]
 
-    def solve(self, meshes: Iterable[Meshing], ahead: Iterable[Meshing] = ()) -> None:
+    def solve(self, meshes: Iterable[Meshing], candidates: Iterable[Meshing] = ()) -> None:
         """Look at those that were not, two at a time where both are small enough.
 
-        ahead : of these, which may be asked for next, one is looked at beside a single one
+        candidates : of these, which may be asked for next, one is looked at beside a single one
         """
         new = sorted({how for how in meshes if how not in self.rises}, key=lambda how: -self.size(how)[1])
         if len(new) == 1:
-            others = (how for how in ahead if how not in self.rises and how not in new)
+            others = (how for how in candidates if how not in self.rises and how not in new)
             new += [how for how in others if self.size(how)[1] + self.size(new[0])[1] <= MOST_BESIDE][:1]
         sizes = [*(self.size(how)[1] for how in new), 0]
         large = [how for how, *pair in zip(new, sizes, sizes[1:], strict=False) if sum(pair) > MOST_BESIDE]
@@ -224,8 +224,8 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     while True:
         first = replace(looks.first, quadratic=how.quadratic)
         others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
-        ahead = (other.along(way, 0.5) for way, other in others.items() if way not in WAYS)
-        looks.solve([how, first, *others.values()], ahead)
+        candidates = (other.along(way, 0.5) for way, other in others.items() if way not in WAYS)
+        looks.solve([how, first, *others.values()], candidates)
         for way, other in others.items():
             ways[way] = _looked_further(ways[way], other == how.along(way, 0.5), looks.moved(how, other))
         linear = looks.moved(first, looks.every)

@@ -255,3 +255,13 @@ def test_network_and_field_with_streaming_air(field, films, network, solver):
 def uniform(network, system):
     """States of a machine at 1 degC everywhere."""
     return np.array(["#" not in network.states[i] for i in system.solid], float)
+
+
+def test_means_alone_need_no_solution(field, films, monkeypatch):
+    """The same links as those of a network that could have shapes, too."""
+    means = reduce(field, films, CONTACTS, FLUIDS, recipe=Recipe(shifts=(), random_points=0)).network(max_states=0)
+    monkeypatch.setattr(Solver, "factor", lambda *of: pytest.fail("solved"))
+    alone = reduce(field, films, CONTACTS, FLUIDS, recipe=Recipe(max_states=0)).network()
+    one, other = (linear(network, films, CONTACTS) for network in (means, alone))
+    assert np.array_equal(one.A, other.A)
+    assert np.array_equal(one.C, other.C)
