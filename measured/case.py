@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.integration.record import instants
 from lumped.integration.signals import Signals
@@ -17,7 +18,6 @@ from lumped.model.network import Network, Parameter, Row
 from lumped.transfer.laws import CLOCK, RUNNING
 from measured.doubt import USUAL, Doubt, Odds
 
-Array = NDArray[np.float64]
 Role = Literal["calibrate", "validate", "hold-out"]
 
 

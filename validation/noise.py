@@ -23,12 +23,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.doubt import FORM, USUAL
 
 if TYPE_CHECKING:
     from validation.comparison.linearisation import Segment
 
-Array = NDArray[np.float64]
 TAU, ELL = FORM["fast time"], FORM["slow time"]
 FLOOR_K = FORM["resolved"]
 

@@ -14,16 +14,14 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.block import Block, block_of
 from fem.matrices.elements import HasTensor
 from fem.matrices.surface import Film, Touch, Trace, touch_of, trace_of
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 __all__ = ["Block", "FieldModel", "Film", "HasTensor", "Touch", "Trace", "assemble"]
 

@@ -7,15 +7,13 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices import kernels
 from fem.matrices.elements import Elements, HasTensor
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -18,14 +18,13 @@ from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from fem.matrices import kernels
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 RIM = np.array([[0, 1], [0, 2], [1, 2]])  # edges of a facet
 ALIKE = 1e-6  # of an edge's length: nearer points of the plane, or levels, are the same

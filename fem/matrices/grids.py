@@ -8,10 +8,10 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Naming = Callable[[Floats], NDArray[np.str_]]
 
 FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])

@@ -7,18 +7,16 @@ from functools import cache
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fem.matrices import kernels
 from fem.matrices.block import Block, renumbered
 from fem.matrices.elements import RIM, hats, pattern
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,11 @@ from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
+from geom.arrays import Array as Floats
 from geom.constants import ALPHA_CU, SIGMA, ZERO_C
 from geom.errors import InputError
-
-Floats = NDArray[np.float64]
 
 
 class Term(Protocol):

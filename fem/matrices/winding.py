@@ -20,10 +20,10 @@ from skfem import Basis, BilinearForm, ElementQuad2, ElementTriP2, MeshQuad, Mes
 from skfem.helpers import dot, grad
 
 from fem.matrices.material import Conductivity, wound
+from geom.arrays import Array as Floats
 from geom.description.materials import Mixture, winding_conductivity
 from geom.errors import InputError
 
-Floats = NDArray[np.float64]
 FORMULA_UP_TO = 0.65  # of copper and enamel (Simpson, Wrobel, Mellor 2013); denser wires by their unit cell
 
 

@@ -15,8 +15,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0]]).T / 1.0
 BALANCE = 0.35  # the smaller half holds at least this share

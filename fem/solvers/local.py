@@ -11,13 +11,12 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.multifrontal import analyse, factorise
 from fem.solvers.two_processes import in_two_processes
+from geom.arrays import Array as Floats
 
-Floats = NDArray[np.float64]
 Point = tuple[Mapping[str, float], Mapping[str, float]]  # films and contacts (W/m2/K)
 
 

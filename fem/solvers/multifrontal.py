@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from fem.solvers.dissection import Tree, dissect
+from geom.arrays import Array as Floats
+from geom.arrays import Ints
 from geom.errors import InputError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -11,15 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from fem.matrices.assembly import FieldModel
 from fem.matrices.terms import Term
 from fem.solvers.solve import Fluids, Solve, Steady, film_columns, from_fixed, refuse_unknown_fluid, shed
+from geom.arrays import Array as Floats
 from geom.errors import InputError
 
-Floats = NDArray[np.float64]
 START = 20.0  # degC
 ENOUGH = 1e-9  # K
 POLISH = 1e-6  # K; far below what any thermocouple tells, far above rounding in 16 digits

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
+from geom.arrays import Array as Floats
 from geom.errors import InputError
 
-Floats = NDArray[np.float64]
 POSITIVE_DEFINITE = 2  # PARDISO's word for real, symmetric and positive definite
 
 

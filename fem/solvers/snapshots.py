@@ -17,8 +17,8 @@ from fem.matrices.assembly import Block, FieldModel, Trace
 from fem.solvers.local import local_solutions, of_unit_energy
 from fem.solvers.solve import Solve, Solver
 from fem.solvers.two_processes import in_two_processes
+from geom.arrays import Array as Floats
 
-Floats = NDArray[np.float64]
 SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
 
 

@@ -8,14 +8,13 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.multifrontal import Factor, Symbolic, analyse, factorise
 from fem.solvers.two_processes import in_two_processes
+from geom.arrays import Array as Floats
 from geom.errors import InputError
 
-Floats = NDArray[np.float64]
 Inverse = Callable[[Floats], Floats]
 A = TypeVar("A")
 B = TypeVar("B")

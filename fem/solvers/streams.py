@@ -14,14 +14,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.solve import Fluids
+from geom.arrays import Array as Floats
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh, Patch
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.matrices.terms import Term
 from fem.solvers.newton import even, summed
 from fem.solvers.solve import Fluids, Solve, film_columns, from_fixed, refuse_unknown_fluid
+from geom.arrays import Array as Floats
 from geom.errors import InputError
 
-Floats = NDArray[np.float64]
 Drive = Callable[[float], tuple[float, Mapping[str, float]]]
 GAMMA = 2 - np.sqrt(2)
 ENOUGH = 1e-8  # K, change of the last iteration where terms depend on temperature

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Ints
 from geom.errors import InputError
 from lumped.model.network import Array, Row
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from fem.matrices.elements import Elements
 
-Ints = NDArray[np.int64]
 SNAP_M = 3e-3  # a thermocouple this far outside its part is taken to sit on the surface
 
 

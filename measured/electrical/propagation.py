@@ -15,11 +15,10 @@ from itertools import product
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 
-Array = NDArray[np.float64]
 DRAWS = 20_000  # hold a 95 % interval within 1 % (GUM supplement 1 asks for more where tails matter)
 CORNERS = 12  # inputs up to which all corners are visited
 

@@ -12,13 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.errors import InputError
 from measured.electrical.meters import Meter
 from measured.electrical.propagation import PropagatedUncertainty, Reading, propagate
 
-Array = NDArray[np.float64]
 # 1/K: the middle of the published 0.392 to 0.393 %/K, and half its width.
 COPPER = Reading("beta", 0.3925e-2, 0.0005e-2)
 NDFEB = Reading("alpha", -0.105e-2, 0.005e-2)  # 1/K: the middle of -0.10 to -0.11 %/K, and half its width

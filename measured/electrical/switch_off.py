@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 
-Array = NDArray[np.float64]
 DELAYS_S = ((50.0, 30.0), (200.0, 90.0), (5000.0, 120.0))  # rated power up to (kW) -> delay allowed (s)
 FACTOR = 1.5  # the rule's own: the first minute falls 1.5 times as far as the second
 

@@ -11,8 +11,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
 from measured.headers.words import CLOCKS, VOCABULARY, is_time, tokens
@@ -20,7 +20,6 @@ from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME, joined
 from measured.recordings.units import QUANTITIES
 
-Array = NDArray[np.float64]
 INSTANT = re.compile(
     r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])\s?(?P<b>\d{1,2})[-/.]\s?(?P<c>\d{1,2}|\d{4})\.?"
     r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
@@ -38,7 +38,6 @@ from measured.importing.target import Target
 from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
 from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
-Array = NDArray[np.float64]
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name

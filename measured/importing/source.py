@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.names import plain_header
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
@@ -26,7 +26,6 @@ from measured.recordings.data_table import DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, workbook_rows
 from measured.recordings.units import QUANTITIES
 
-Array = NDArray[np.float64]
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")

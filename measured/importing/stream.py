@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import IO, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from geom.limits import BYTES, COLUMNS
 from measured.headers.cells import number
@@ -23,7 +23,6 @@ from measured.recordings.csv_file import check_row
 from measured.recordings.data_table import DataTable
 from measured.recordings.formats import TIME
 
-Array = NDArray[np.float64]
 FIRST = 200  # lines that are waited for until there is a table in them
 
 

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from measured.recordings.data_table import Column, DataTable
 
-Array = NDArray[np.float64]
 AGREE = 0.8  # correlation below which the records do not show the same thing
 EARLY, LATER = 0.05, 0.10  # of a column's range; the line through both crossings tells where the change began
 NOISE_TIMES = 6.0  # in standard deviations of the noise: a change, not a wobble

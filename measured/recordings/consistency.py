@@ -6,8 +6,8 @@ import difflib
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.model.network import Network
 from lumped.schemas.reader import suggestion
@@ -16,7 +16,6 @@ from measured.recordings.sheet import Column, Sheet
 from measured.recordings.tables import Samples
 from measured.recordings.units import QUANTITIES
 
-Array = NDArray[np.float64]
 NOISE = 0.02  # of the largest reading: as far below zero a power meter may read when nothing flows
 NEAR = 0.8  # likeness of two names from which one is taken as a slip of the other
 AMOUNTS = ("_W", "_percent")  # inputs whose laws take the amount, so that a sign would be lost

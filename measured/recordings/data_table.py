@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.schemas.reader import suggestion
 from measured.headers.layout import MISSING
 
-Array = NDArray[np.float64]
 Column = NDArray[Any]
 HEADER = 2  # line of the first row of numbers
 PIECE = 50_000  # rows that are turned into Python's numbers at once, which take ten times as much memory

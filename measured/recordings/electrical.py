@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.schemas.reader import Table
 from measured.electrical.meters import OHMMETER, VOLTMETER, Meter, Range
@@ -31,7 +31,6 @@ from measured.electrical.switch_off import Cooling, Extrapolated, exponentials, 
 from measured.recordings.data_table import pairs
 from measured.recordings.formats import read_recording, recording
 
-Array = NDArray[np.float64]
 QUANTITIES = ("resistance", "back_emf")
 LEAST_K = 0.1  # no meter makes a channel surer than that
 METHODS: Mapping[str, Callable[[Cooling, float], Extrapolated]] = {

@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.schemas.bounds import bounds
 from lumped.schemas.reader import Table, excerpt
 from measured.recordings.data_table import as_number, is_missing, numbers
 
-Array = NDArray[np.float64]
 WORDS = {"on": 1.0, "off": 0.0}
 
 

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, MissingDependency
 from geom.limits import BYTES, CELLS
 from geom.plugins import plugins
@@ -29,7 +29,6 @@ from measured.headers.rows import first_row_layout
 from measured.recordings.csv_file import HEAD, csv_pieces, in_rows, joined_parts
 from measured.recordings.data_table import DataTable
 
-Array = NDArray[np.float64]
 Columns = Iterable[tuple[object, Any]]  # pairs of a name and its values
 Reader = Callable[[Path], Mapping[str, Any]]  # name -> values; a pandas DataFrame is one too
 READERS: Mapping[str, Reader] = plugins("formats")  # of other packages: name without its dot -> reader

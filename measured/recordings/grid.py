@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from geom.limits import INSTANTS
 from measured.recordings.tables import Samples
 
-Array = NDArray[np.float64]
 LEAST = 3  # instants
 LONGEST_S = 3.2e7  # a year
 COARSE = 10.0  # times sample_s

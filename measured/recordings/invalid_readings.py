@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array
 
 KINDS = {
     "nines of loggers": (9999.0, 9999.9, 99999.0, 999.9, 999.0, -999.0, -999.9, -9999.0),

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.roles import Role as BodyRole
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Row, Source
@@ -21,7 +21,6 @@ from measured.recordings.sheet import Column, Sheet
 from measured.recordings.tables import Samples, standing_still
 from measured.sensors.sampling import SampleStep, sample_step
 
-Array = NDArray[np.float64]
 NONE = np.empty(0)
 ALTERNATING = 0.25  # share of the samples at which the sign changes: no machine is reversed that often
 COOL = (BodyRole.BEARING, BodyRole.SHAFT, BodyRole.FOOT, BodyRole.BASE, BodyRole.TEST_BED)  # little heat arises there

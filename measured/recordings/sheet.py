@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from lumped.schemas.bounds import TINY
@@ -21,8 +21,6 @@ from measured.recordings.electrical import QUANTITIES as ELECTRICAL
 from measured.recordings.electrical import Electrical, read_electrical
 from measured.recordings.events import Events, read_events
 from measured.recordings.units import QUANTITIES, checked_input, checked_unit, converted, memory_quantity, usual_sigma
-
-Array = NDArray[np.float64]
 
 FIRST = "first-readings"
 MAX_GAP_S = 120.0  # over which an input is drawn straight; machines move little in two minutes

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ZERO_C
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
@@ -22,7 +23,6 @@ from measured.recordings.sheet import Column, Recorder, Sheet
 from measured.recordings.units import LARGEST, QUANTITIES, SWITCHED, converted
 from measured.sensors.faults import longest_run
 
-Array = NDArray[np.float64]
 GAP, USUAL = 3.5, 95  # times the usual step; percentile of all: rows of up to twenty signals may come in bursts
 FROZEN_SHARE, FROZEN_MOVE_K = 0.2, 2.0  # of the test without a change, while the others move by more
 LEAST = 3  # rows of a test

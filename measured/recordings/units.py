@@ -12,16 +12,13 @@ from math import isfinite, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import ZERO_C
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.schemas.reader import excerpt, suggestion
 from measured.recordings.quantity import Quantity
-
-Array = NDArray[np.float64]
-
 
 QUANTITIES: dict[str, Quantity] = {
     "temperature": Quantity({"degC": (1, 0), "K": (1, -ZERO_C), "degF": (5 / 9, -160 / 9)}),

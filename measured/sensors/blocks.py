@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from geom.arrays import Array
+
 INSTANTS = 180  # a fit looks at: matrices of a test stay below a megabyte
 
 

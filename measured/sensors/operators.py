@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from lumped.model.sites import ambient
 from lumped.numerics.jit import entry
 from measured.case import Channel, Test
 
-Array = NDArray[np.float64]
 OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0  # degC, at which sensors are compared

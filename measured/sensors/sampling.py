@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.assembly import Pattern, assembly
 from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers
@@ -24,7 +24,6 @@ from lumped.model.network import Network, Row
 from lumped.transfer.terms_value import separated, turned
 from measured.sensors.blocks import INSTANTS
 
-Array = NDArray[np.float64]
 Sensor = tuple[str, Row, float, float]  # name, row over z, sigma (K), lag (s)
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0)  # s: those people choose
 TOLERANCE = 0.5  # of a sensor's standard deviation: its residual is then 12 % larger than it need be

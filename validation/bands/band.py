@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from lumped.model.multipliers import values_of
 from lumped.model.network import Row
@@ -20,7 +20,6 @@ from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import Watch
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 NONE = np.empty(0)
 NUMBERS = 2**20  # of a stretch: 8 MB, and some copies, stay near the processor; a longer one waits for its memory
 

@@ -19,8 +19,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.one_thread import one_blas_thread
 from lumped.model.multipliers import parameter_values
@@ -34,7 +34,6 @@ from validation.comparison.linearisation import Segment, segments
 from validation.comparison.moved_inputs import FLOWS, moved_inputs
 from validation.parameters.unknowns import nuisances, working
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
@@ -20,7 +21,6 @@ from validation.comparison.linearisation import Segment, segments
 from validation.noise import Noise, first_noise, fit_noise
 from validation.parameters.unknowns import Unknowns
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
 STATIONARY = 0.1  # of a posterior standard deviation

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.case import Recorded, Test
 from measured.doubt import USUAL
 
-Array = NDArray[np.float64]
 STEP = 0.1  # of an input's largest value: a smaller change between two rows is a hundredth of the variance of a step
 MOST = 12  # moved by themselves in a test: of more, neighbours are moved together by what they come to
 MOSTLY = 0.95  # of the rows with a step: three steps in the time of a row

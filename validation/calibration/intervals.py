@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit
 from validation.parameters.unknowns import to_value
 
-Array = NDArray[np.float64]
 UNINFORMED = 0.9  # of its prior sd: a parameter that data narrow by less than a tenth was not seen
 TRADES = 0.7  # correlation: half of the one's variance is the other's
 

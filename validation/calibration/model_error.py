@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.model.quantities import AIR, LIQUID
@@ -30,7 +30,6 @@ from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE
 from validation.parameters.reference import mean_factor
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 SQUARED = ("current", "torque")  # quantities whose square makes heat
 SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
 FELT = 0.1  # of what a good model may be wrong by: a hundredth of its variance that inputs stepped early or late

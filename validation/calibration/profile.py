@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.constants import NORMAL_95
 from measured.case import Test
@@ -19,7 +18,6 @@ from validation.calibration.calibrate import CachedSegments, Fit, Progress, mini
 from validation.calibration.intervals import Profile
 from validation.parameters.unknowns import Unknowns, to_value
 
-Array = NDArray[np.float64]
 CLOSE = 0.03  # of the deviance of a 95 % interval: moves its end by less than 2 %
 LOOKS = 8  # at a curve that is near a parabola; each is a fit
 

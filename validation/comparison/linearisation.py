@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.compiled import FIT
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
@@ -17,7 +17,6 @@ from measured.sensors.blocks import INSTANTS, Blocks, groups
 from validation.comparison.predict import Watch
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
 SHORTEST = 500  # samples of a stretch
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.integration.compiled import READINGS, Precision
 from lumped.integration.simulate import Record, Stand, simulate
 from lumped.model.network import Network, Parameter
@@ -32,7 +32,6 @@ from measured.sensors.operators import (
 )
 from validation.effects.time_window import IN, lasts
 
-Array = NDArray[np.float64]
 MOVING = tuple(f"{kind}:" for kind in SHIFTS)
 CACHED_NUMBERS = 100_000  # of a run whose readings are cached: a clock or a sensor that differs needs no new one
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut

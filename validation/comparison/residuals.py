@@ -10,15 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaincc, kolmogorov
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from measured.case import Test
 from measured.sensors.blocks import groups
 from validation.comparison.linearisation import Segment
 
-Array = NDArray[np.float64]
 LAGS = 20  # usual for the test of Ljung and Box; more lose power
 
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import ThermoscopeError
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network
@@ -24,7 +24,6 @@ from measured.doubt import USUAL, Doubt
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import predict, record, thermal
 
-Array = NDArray[np.float64]
 COVERAGE = 2.0  # standard uncertainties: 95 %
 RULE = f"within: rms up to {COVERAGE:g} u, u of reading, inputs and arithmetic"
 

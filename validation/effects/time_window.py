@@ -9,15 +9,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.transfer.laws import CLOCK, RUNNING, Inputs
 
 if TYPE_CHECKING:
     from measured.case import Test
 
-Array = NDArray[np.float64]
 Span = tuple[float, float]
 NUMBER = r"\d+(?:\.\d+)?"
 PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")

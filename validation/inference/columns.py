@@ -12,8 +12,8 @@ from itertools import permutations
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Test
@@ -24,8 +24,6 @@ from validation.effects.registry import extended
 
 if TYPE_CHECKING:
     from validation.calibration.calibrate import Fit
-
-Array = NDArray[np.float64]
 
 
 class WithColumns(Protocol):

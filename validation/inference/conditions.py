@@ -37,7 +37,6 @@ from validation.parameters.unknowns import scene_of
 from validation.scope import SENSORS
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 Values = Mapping[str, float]
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "input.factor")  # where the catalogue has them

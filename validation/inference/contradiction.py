@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from lumped.model.network import Network, Parameter
@@ -22,7 +21,6 @@ from validation.inference.score import fit_score
 from validation.parameters.unknowns import to_value
 from validation.tables import TableRow
 
-Array = NDArray[np.float64]
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ
 FAR = 5.0  # factor from which tangents tell no size
 

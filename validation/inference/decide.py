@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.doubt import COSTS
 from validation.calibration.calibrate import CachedSegments, Fit
 from validation.calibration.model_error import ModelError
@@ -23,7 +23,6 @@ from validation.inference.hypotheses import Weighed, best_first, inclusion, prob
 from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
 
-Array = NDArray[np.float64]
 Group = tuple[int, ...]
 SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
 EXPLAINS = 0.9  # of the evidence of heat of unknown cause: a law that is off by a third leaves it a tenth

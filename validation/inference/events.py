@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
@@ -34,7 +35,6 @@ from validation.inference.evidence import Evidence, joined
 from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
 
-Array = NDArray[np.float64]
 Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
 GRID_POINTS = 15  # instants around each end

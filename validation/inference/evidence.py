@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from geom.arrays import Array
 from geom.errors import InputError, NoSolution
 from lumped.model.multipliers import parameter_values, values_of
 from lumped.model.network import Network, Parameter
@@ -58,7 +59,6 @@ from validation.parameters.reference import effect_sizes
 from validation.parameters.unknowns import Unknowns, at_level, case_reference, scene_of, unbound, widened, working
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 Jump = tuple[float, Sequence[Array]]  # a large amplitude, and what it does to every segment (K)
 NO_JUMPS: Mapping[str, Jump] = MappingProxyType({})

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from measured.doubt import PRIOR, RARE, SHARPNESS, temper
 from validation.effects.base import Effect
@@ -23,7 +24,6 @@ from validation.inference.columns import Linearised
 if TYPE_CHECKING:
     from validation.calibration.calibrate import Fit
 
-Array = NDArray[np.float64]
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work

@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.network import Network
 from measured.case import Case, Test
 from validation.calibration.calibrate import calibrated, no_progress
@@ -25,8 +25,6 @@ from validation.inference.decide import Posterior
 from validation.inference.evidence import with_members
 from validation.parameters.unknowns import working
 from validation.threads import side_by_side
-
-Array = NDArray[np.float64]
 
 
 def low_fidelity_case(case: Case, progress: Callable[[str], None] = no_progress) -> Case:

@@ -13,10 +13,10 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.special import logsumexp
 
+from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from lumped.model.sites import solids
 from lumped.transfer.laws import Fixed, Inputs
@@ -33,7 +33,6 @@ from validation.inference.score import Gram, gram
 from validation.noise import Noise
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 KNOT_S = 180.0  # between knots of a heat; chosen: shorter ones cost time, and masses smooth what they would show
 MEMORY_S = (FORM["heat step"], FORM["heat time"])
 JITTER = 1e-6  # of the variance, so that equal knots have a factor

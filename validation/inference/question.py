@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.doubt import SHARPNESS, USUAL
 from validation.effects.base import Effect, place_words
 from validation.effects.during import During
@@ -21,7 +21,6 @@ from validation.inference.evidence import Evidence
 from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.result import Question
 
-Array = NDArray[np.float64]
 WORTH = 0.1  # nats: an answer that tells less is not worth a question
 LIKE = 0.3  # of the time in either: then a question speaks of a hypothesis's event
 THINGS = {

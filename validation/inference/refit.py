@@ -8,8 +8,8 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from measured.case import Case
 from measured.doubt import PRIOR
@@ -42,7 +42,6 @@ from validation.inference.hypotheses import (
 from validation.noise import Noise
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 WarmFits = Mapping[Members, Fit]
 Neighbour = tuple[int, Fit, Mapping[int, Sequence[Array]]]  # a cause, its fit alone, and tangents of others there

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.table import percent
 from measured.case import Case, Test
@@ -44,7 +44,6 @@ from validation.inference.result import (
 )
 from validation.inference.stretches import ALIKE
 
-Array = NDArray[np.float64]
 Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed

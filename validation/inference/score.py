@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.special import log_ndtr, logsumexp
 
+from geom.arrays import Array
 from lumped.model.once import once
 from measured.doubt import SIZES
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from validation.comparison.linearisation import Segment
     from validation.noise import Noise
 
-Array = NDArray[np.float64]
 Signs = NDArray[np.int64]
 
 

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.doubt import FORM, USUAL
 from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import nodes
@@ -26,7 +27,6 @@ from validation.inference.hypotheses import stretch_count
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, average_size, fit_score
 
-Array = NDArray[np.float64]
 Pulse = tuple[Span, float]  # when, and its level (W) against what is usual in the test
 PLACES = 4  # of most evidence, whose curves are searched for change points
 PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its level, and a half more for either

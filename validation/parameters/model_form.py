@@ -12,8 +12,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.transfer.laws import (
     CONSTANT,
@@ -31,7 +31,6 @@ from lumped.transfer.ranges import within_silence
 from measured.doubt import USUAL, Doubt
 from validation.effects.build import copy_link, copy_source
 
-Array = NDArray[np.float64]
 REFERENCE_RISE_K = 40.0  # a usual rise: there an exponent moves no coefficient
 REFERENCE_DEGC = 40.0  # a usual temperature of a bearing
 # K, each about twice the last: the logarithm of a rise is nearly straight between two.

@@ -10,14 +10,13 @@ from collections.abc import Collection, Mapping, Sequence
 from math import fsum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.network import Network
 from lumped.model.quantities import INPUTS
 from lumped.transfer.laws import CLOCK, Law
 from measured.case import Reference, SignalReference, Test
 
-Array = NDArray[np.float64]
 LOADS = ("current", "torque")  # quantities that grow with the load
 DIGITS = 9  # of what is stored: memory and file hold the same number
 STILL = 0.1  # of its mean: an input that changes by less is one value

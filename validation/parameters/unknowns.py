@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from lumped.transfer.laws import Law
@@ -22,7 +22,6 @@ from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts
 
-Array = NDArray[np.float64]
 LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
 LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 3  # in a sentence

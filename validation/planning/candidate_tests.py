@@ -6,14 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.description.roles import Role
 from lumped.model.network import Network
 from lumped.model.sites import role
 from measured.case import Test
 
-Array = NDArray[np.float64]
 OVERLOAD = 1.3  # of the root mean square current, for as long as a winding takes to follow
 Inputs = dict[str, Array]
 Change = Callable[[Array, Inputs, Inputs, Network], tuple[Inputs, Inputs]]

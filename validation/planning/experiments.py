@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
 from geom.errors import ThermoscopeError
 from lumped.model.multipliers import values_of
 from measured.case import Test
@@ -25,8 +22,6 @@ from validation.planning.rivals import (
     separation,
     widened_error,
 )
-
-Array = NDArray[np.float64]
 
 
 def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:

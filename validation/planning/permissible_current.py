@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.integration.compiled import Precision
 from lumped.integration.simulate import simulate
@@ -30,7 +30,6 @@ from validation.inference.result import CurrentLevel
 from validation.planning.candidate_tests import Experiment, candidate_tests, inputs_measuring
 from validation.threads import side_by_side
 
-Array = NDArray[np.float64]
 BEARABLE_C = 80.0  # what the least of a machine bears: magnets without a suffix (80), class Y insulation (90)
 MARGIN = 0.01  # of the rise that currents may make: the search ends at most so far below the limit
 TRIALS = 8  # runs of a search at most; two or three do

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.model.multipliers import values_of
 from measured.case import Test
@@ -24,7 +23,6 @@ from validation.inference.score import Gram, fit_prior, score, total
 from validation.noise import Noise
 from validation.parameters.unknowns import Unknowns, nuisances
 
-Array = NDArray[np.float64]
 Gaps = dict[tuple[int, int], float]
 GAP, DECISIVE = 10.0, 20.0  # deviance from which two begin to come apart, and from which a test decides
 CHECKED = 2  # of the best plans are refitted: each costs as much as a refit of the diagnosis

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.model.network import Network, Place
 from lumped.model.sites import outside, turns
@@ -17,7 +16,6 @@ from validation.inference.result import Experiment
 from validation.inference.score import Gram
 from validation.planning.rivals import CompetingModels, Plan, refitted_gains, separable_pairs, separation, widened_error
 
-Array = NDArray[np.float64]
 SIGMA_K = 0.5  # of a further thermocouple, as a sheet's usual
 PREFIX = "planned: "
 HOURS = {"outside": 0.5, "inside": 4.0, "air": 2.0, "turning": 16.0}  # to mount one, from the bench's own practice

@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.case import Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
 from validation.parameters.unknowns import to_value
 
-Array = NDArray[np.float64]
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.errors import InputError, ThermoscopeError
 from lumped.model.network import Network
 from measured.case import Case, Model, Test
@@ -20,7 +20,6 @@ from validation.planning.candidate_tests import Experiment, candidate_tests
 from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
 from validation.revision.revise import add
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 UNCHANGED = "nothing missing"  # the hypothesis that the model is right as it is
 

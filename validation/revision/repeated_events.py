@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
@@ -26,7 +25,6 @@ from validation.inference.hypotheses import LENGTHS, stretch_count
 from validation.noise import first_noise
 from validation.parameters.unknowns import effects_of, standing
 
-Array = NDArray[np.float64]
 MOST_KNOTS = 96  # instants at which it may begin at first: each is a column of one run
 FIRST_RUNS = 4  # stretches that tangents like best are run
 LESS = 0.7  # of the error outside the stretch: what the event must bring it to, to be the explanation

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from validation.yardstick.free_network import loss_factors
 from validation.yardstick.records import Columns, Record
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

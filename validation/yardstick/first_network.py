@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.one_thread import one_blas_thread
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
@@ -34,7 +35,6 @@ from validation.yardstick.free_network import (
 from validation.yardstick.records import Columns, Record
 from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
 
-Array = NDArray[np.float64]
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
 FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
 UNDRIVEN = 0.6  # price of heat that follows no input: above that of a square, so that a constant current heats

@@ -19,9 +19,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from validation.yardstick.records import Columns, Record
 
-Array = NDArray[np.float64]
 Shape = tuple[float, float]  # exponent, and the share of the largest size from which on it acts
 
 

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from validation.yardstick.records import Record
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

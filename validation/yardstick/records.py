@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.case import Test
 
-Array = NDArray[np.float64]
 MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait
 MOST_WORK = 1e11  # multiplications of all fits together: some 20 s on one core
 FEWEST_ROWS = 2_000  # of all tests together: fewer would not show what happens within a test

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from measured.case import Case
 from validation.yardstick.free_network import (
     FreeNetwork,
@@ -19,7 +19,6 @@ from validation.yardstick.free_network import (
 )
 from validation.yardstick.records import Columns, Record
 
-Array = NDArray[np.float64]
 SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not worth a name
 
 

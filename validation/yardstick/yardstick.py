@@ -13,8 +13,8 @@ from itertools import pairwise, product
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geom.arrays import Array
 from geom.one_thread import one_blas_thread
 from lumped.model.network import Network
 from lumped.model.once import once
@@ -25,7 +25,6 @@ from validation.yardstick.persistence import usual_rise
 from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
 
-Array = NDArray[np.float64]
 WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
 LINE, SQUARE = (1.0, 0.0), (2.0, 0.0)
 POWERS = (
