@@ -118,7 +118,7 @@ def roles_of(name: str) -> list[Role]:
 
 def is_setpoint(name: str) -> bool:
     """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
-    return bool(SETPOINT & set(tokens(re.sub(r"(?i)\bsp ?\d+", " ", name))))
+    return bool(SETPOINT & set(tokens(re.sub(r"(?i)\b[s]p ?\d+", " ", name))))
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:
