@@ -35,7 +35,7 @@ from measured.headers.words import (
 from measured.importing.clock import is_second_clock
 from measured.importing.source import Source
 from measured.importing.target import Target
-from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
+from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
 from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
 Array = NDArray[np.float64]
@@ -66,6 +66,7 @@ UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
+THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
@@ -149,7 +150,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
     if quantity not in SWITCHED and source.is_switch(column):
         return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
-    codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
+    codes = values[coded(values, FAR) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
     if quantity != "temperature" and codes.size:
         base = replace(base, doubt=f"is {codes[0]:g} a reading, or a logger's code?")
     if out := _impossible(source, base):
@@ -191,9 +192,9 @@ def _impossible(source: Source, g: Guess) -> str:
     finite = values[np.isfinite(values)]
     low, high = (COLDEST, HOTTEST) if g.quantity == "temperature" else (-LARGEST, LARGEST)
     if not finite.size:
-        return "holds nothing but a logger's codes"
+        return CODES_ALONE
     worst = finite[np.argmax(np.maximum(low - finite, finite - high))]
-    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} that can be"
+    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} {THAT_CAN_BE}"
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:

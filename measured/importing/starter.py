@@ -21,11 +21,13 @@ from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quanti
 from measured.importing.draft import Draft
 from measured.importing.guess import (
     AXES,
+    CODES_ALONE,
     ELSE,
     IN_HEADER,
     NAMELESS,
     NUMBERED,
     RELATIVE,
+    THAT_CAN_BE,
     UNKNOWN,
     Array,
     Guess,
@@ -157,6 +159,9 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
+        for _, g in hot_left:
+            if any(doubt in g.doubt for doubt in LOST):
+                out.setdefault(g.column, f"'{g.column}' is left out: {g.doubt}")
         rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
         if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
             how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
@@ -191,6 +196,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
 
 
 ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
+LOST = (THAT_CAN_BE, CODES_ALONE)  # of temperatures, which were expected to be read
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 

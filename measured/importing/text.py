@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,10 @@ INTERVAL = re.compile(
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
-LOGGED = re.compile(r"^(\d\S*[ T]\d\d:\S+)\s[^=\n]*?((?:\s[^\W\d]\w*=[^\s=]+)+)\s*$", re.MULTILINE)  # of a program
+PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
+LOGGED = re.compile(
+    rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE
+)  # of a program
 SERIES = (("name", "label", "channel", "signal", "title"), ("unit", "units"))  # of readings, in JSON
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
@@ -53,7 +57,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
     if len(LOGGED.findall(text[:10_000])) > 9:
-        text = "".join("\t".join([time, *pairs.split()]) + "\n" for time, pairs in LOGGED.findall(text))
+        text = "".join("\t".join([time, *re.findall(PAIR, pairs)]) + "\n" for time, pairs in LOGGED.findall(text))
     if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
         return *table, notes, None
     lines = text.splitlines(keepends=True)
@@ -67,7 +71,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         head = [*map(list, zip(*(row for row in head if len(row) > 1), strict=False))]
         lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
     if keys := _keys(head):
-        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
+        every = [_by_key(row) for row in split_cells(lines, sign) if any(row)]
+        rows = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
+        odd = f"{file.name}: {len(every) - len(rows)} lines without the names of the others are left out"
+        notes += [odd] * (len(rows) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
@@ -173,17 +180,23 @@ def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | N
         return None
 
 
-def _raw(rows: list[list[str]], width: int) -> Columns:
+def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:
     return [[row[j] if j < len(row) else None for row in rows] for j in range(width)]
 
 
+def _by_key(row: list[str]) -> dict[str, str]:
+    """Name -> cell of a row such as "T1: 23.5, T2: 24.1"; "" for the first without one."""
+    pairs = [m.groups() if (m := KEYED.fullmatch(c)) else ("", c) for c in row]
+    return dict(reversed(pairs))
+
+
 def _keys(rows: list[list[str]]) -> list[str]:
-    """The names in rows such as "T1: 23.5, T2: 24.1", where all have the same."""
+    """The names in such rows, where most have the same."""
     patterns = [tuple(m[1] if (m := KEYED.fullmatch(c)) else "" for c in row) for row in rows if any(row)]
     same = max(set(patterns), key=patterns.count, default=())
     return (
         list(same)
-        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.9 * len(patterns)
+        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.5 * len(patterns)
         else []
     )
 

@@ -672,3 +672,43 @@ def test_one_number_more_than_names_is_refused(tmp_path, end):
     (tmp_path / "a.csv").write_text("t [s],T_coil [C],T_amb [C],I [A]\n" + "\n".join(rows))
     with pytest.raises(InputError, match="5 values under 4 names"):
         read_source(tmp_path / "a.csv")
+
+
+def test_lines_without_the_names_of_most_are_no_rows(tmp_path):
+    """A serial monitor's log of a sketch that first says what it found."""
+    rows = [(f"12:{k // 12:02d}:{5 * k % 60:02d}.120", w, i) for k, (w, i) in enumerate(zip(S["W"], S["I"]))]
+    lines = [f"{at} -> Tmotor={w:.2f}C I={i:.2f}A" for at, w, i in rows]
+    head = ["=~=~ log 2026.03.28 =~=~", "11:59:58.000 -> heat run", "11:59:59.000 -> found 3 sensors"]
+    (tmp_path / "a.log").write_text("\n".join([*head, *lines[:50], "12:04:10.000 -> retry", *lines[50:]]))
+    source, clock = read_timed(tmp_path / "a.log", None)
+    assert clock.seconds == pytest.approx(S["t"])
+    assert source.numbers("Tmotor") == pytest.approx(S["W"], abs=0.006)
+    assert source.units["I"] == "A"
+
+
+@pytest.mark.parametrize("between", [" - bench - INFO - ", " INFO:bench: ", " "])
+def test_a_blank_between_number_and_unit_in_a_line_of_names(tmp_path, between):
+    stamps = [datetime.fromtimestamp(1762157670 + t, UTC).strftime("%Y-%m-%d %H:%M:%S,250") for t in S["t"]]
+    lines = [f"{at}{between}winding={w:.2f} degC I={i:.2f} A" for at, w, i in zip(stamps, S["W"], S["I"])]
+    (tmp_path / "a.log").write_text("\n".join([*lines[:5], f"{stamps[5]} - bench - DEBUG - output on", *lines[5:]]))
+    source, clock = read_timed(tmp_path / "a.log", None)
+    assert clock.seconds == pytest.approx(S["t"])
+    assert source.numbers("winding") == pytest.approx(S["W"], abs=0.006)
+    assert (source.units["winding"], source.units["I"]) == ("degC", "A")
+
+
+@pytest.mark.parametrize("code", [-127.0, -9999.0, 1372.0])
+def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_path, code):
+    hot = 22.0 + 3.0 * (S["W"] - 22.0)
+    text = table("t [s],T_winding [°C],I [A]", S["t"], np.where(S["t"] % 100 == 50, code, hot), S["I"])
+    folder, _ = written(tmp_path, text)
+    (y,) = (c.y for c in folder.case.tests[0].channels)
+    assert np.ptp(hot) > 150.0
+    assert np.nanmin(y) > 20.0
+    assert np.nanmax(y) == pytest.approx(hot.max(), abs=0.006)
+
+
+def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys):
+    text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
+    written(tmp_path, text)
+    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is no temperature")
