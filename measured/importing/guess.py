@@ -17,7 +17,9 @@ from measured.headers.words import (
     DIFFERENCE,
     EXTREME,
     INLET,
+    INSTRUMENT,
     LETTERED,
+    MACHINE,
     MEAN,
     MODELLED,
     NOTHING,
@@ -28,6 +30,7 @@ from measured.headers.words import (
     SPREAD,
     axis_of,
     is_setpoint,
+    is_spoken,
     quantities_of,
     roles_of,
     tokens,
@@ -67,6 +70,8 @@ FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in b
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
+OWN = "of the instrument itself, by its name"
+WANTED = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
@@ -126,9 +131,22 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     if still != {*parts}:
         every = [g.without("never changes: a limit, or a dead sensor") if g.column in still else g for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
-    if len(models) == len(hot):
-        return every
-    return [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
+    if len(models) < len(hot):
+        every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
+    own = {
+        g.column
+        for g in every
+        if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
+        if not (roles_of(label) or is_spoken(label, MACHINE))
+    }
+    return [
+        g
+        if g.column not in own
+        else replace(g, doubt=OWN)
+        if len(own) == len(hot) or is_spoken(g.place, INSTRUMENT)
+        else Guess(g.column, "", doubt=OWN)
+        for g in every
+    ]
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -312,7 +330,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
 
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
-        inlet = bool(g.place) and not INLET & words
+        inlet = bool(g.place) and not is_spoken(g.column, INLET)
         return is_setpoint(g.column), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
@@ -321,6 +339,8 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             continue
         if key not in owner:
             owner[key] = g.column
+            if g.feeds and is_setpoint(g.column):
+                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, WANTED))))
         elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:

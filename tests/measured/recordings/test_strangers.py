@@ -712,3 +712,56 @@ def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys)
     text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
     written(tmp_path, text)
     assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is no temperature")
+
+
+@pytest.mark.parametrize(
+    "word", ["DMD", "Demand", "Cmd", "Req", "Soll", "Consigne", "Consigna", "impostata", "设定", "設定"]
+)
+def test_a_set_point_gives_way_to_a_reading_and_is_doubted_without_one(tmp_path, word, capsys):
+    wanted = f"I {word} [A]"
+    written(tmp_path, table(f"t [s],{wanted},T_winding [°C],T_room [°C]", *(S[c] for c in "tIWA")))
+    assert f"'{wanted}': a set point, no reading" in " ".join(capsys.readouterr().out.split())
+    (tmp_path / "made").rename(tmp_path / "before")
+    text = table(f"t [s],{wanted},I 1 [A],T_winding [°C],T_room [°C]", S["t"], S["I"] + 1, *(S[c] for c in "IWA"))
+    folder, document = written(tmp_path, text)
+    assert folder.case.tests[0].inputs["current_A"] == pytest.approx(S["I"], abs=0.006)
+    assert [c["column"] for c in document["tests"][0]["columns"] if c["doubt"]] == [wanted]
+    assert document["warnings"] == []
+
+
+def test_a_tag_of_a_channel_is_no_part_of_its_name(tmp_path):
+    names = ("101 Winding <TC K> (C)", "101 Winding Max (C)", "102 Frame <TC K> (C)", "103 Amb <RTD> (C)", "104 I (A)")
+    folder, _ = written(tmp_path, table(",".join(["t [s]", *names]), *(S[c] for c in "tWHHAI")))
+    assert [c.name for c in folder.case.tests[0].channels] == [names[0], names[2]]
+
+
+@pytest.mark.parametrize(
+    "own", ["CJC_temp", "T_Vergleichsstelle", "Soudure froide", "Cold junction", "Giunto freddo", "Board temp", "CPU_T"]
+)
+def test_the_temperature_of_the_instrument_is_none_of_the_machine(tmp_path, own, capsys):
+    written(tmp_path, table(f"t [s],T_coil [°C],{own} [°C],T_room [°C],I [A]", *(S[c] for c in "tWAAI")))
+    assert capsys.readouterr().out.startswith(f"'{own} [°C]' is left out: of the instrument itself")
+    (tmp_path / "made").rename(tmp_path / "before")
+    written(tmp_path, table(f"t [s],{own} [°C],I [A]", *(S[c] for c in "tWI")))
+    assert "of the instrument itself, by its name" in " ".join(capsys.readouterr().out.split())[:120]
+
+
+def test_of_a_room_and_the_instrument_alone_there_is_no_machine(tmp_path):
+    with pytest.raises(InputError, match=r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst"):
+        written(tmp_path, table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAHI")))
+
+
+@pytest.mark.parametrize("room", ["T_TESTCELL", "Test cell", "Prüfzelle", "Prüfraum", "Cella di prova"])
+@pytest.mark.parametrize(
+    ("inlet", "outlet"),
+    [("T_EM_COOL_IN", "T_EM_COOL_OUT"), ("Water in", "Water out"), ("냉각수입구온도", "냉각수출구온도")],
+)
+def test_rooms_of_test_beds_and_what_flows_in(tmp_path, room, inlet, outlet):
+    names = [f"{name} [°C]" for name in ("T_winding", outlet, inlet, room)]
+    folder, _ = written(
+        tmp_path, table(",".join(["t [s]", *names, "I [A]"]), S["t"], S["W"], S["A"] + 20, S["A"] + 15, S["A"], S["I"])
+    )
+    test = folder.case.tests[0]
+    assert [c.name for c in test.channels] == [names[0]]
+    assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
+    assert test.boundaries["coolant"] == pytest.approx(S["A"] + 15, abs=0.006)
