@@ -27,6 +27,7 @@ from measured.headers.words import (
     QUANTITY,
     READ,
     ROLES,
+    SETPOINT,
     SPREAD,
     axis_of,
     is_setpoint,
@@ -76,6 +77,7 @@ NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
+KNOWN = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # words of a remark
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -164,6 +166,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return Guess(column, "", doubt="counts the rows")
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
+        if quantity == "speed" and not set(tokens(match[1])) & KNOWN:  # of a vehicle, or a counter
+            return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
     if quantity not in SWITCHED and source.is_switch(column):

@@ -20,6 +20,7 @@ from measured.importing.case_files import read_timed
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
+from measured.importing.target import Target
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
@@ -765,3 +766,60 @@ def test_rooms_of_test_beds_and_what_flows_in(tmp_path, room, inlet, outlet):
     assert [c.name for c in test.channels] == [names[0]]
     assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
     assert test.boundaries["coolant"] == pytest.approx(S["A"] + 15, abs=0.006)
+
+
+CHINESE = ("时间(s)", "绕组温度(℃)", "机壳温度(℃)", "环境温度(℃)", "定子电流(A)", "状态")
+POLISH = ("Czas (s)", "Temp. uzwojenia (°C)", "Temp. obudowy (°C)", "Temp. otoczenia (°C)", "Prąd (A)", "Próba")
+CZECH = ("Čas (s)", "Teplota vinutí (°C)", "Teplota pláště (°C)", "Teplota okolí (°C)", "Proud (A)", "Měření")
+
+
+@pytest.mark.parametrize(
+    ("names", "state", "page"),
+    [
+        (CHINESE, "停止", "gb18030"),
+        (CHINESE, "正常", "gbk"),
+        (POLISH, "wyłączony", "cp1250"),
+        (CZECH, "běží", "cp1250"),
+    ],
+)
+def test_a_code_page_is_told_by_words_of_headers_whatever_a_column_repeats(tmp_path, names, state, page):
+    (tmp_path / "a.csv").write_bytes(table(",".join(names), *(S[c] for c in "tWHAI"), state).encode(page))
+    assert tuple(read_source(tmp_path / "a.csv").cells) == names
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        *("lun. 03/06/2024", "mar. 04/06/2024", "Mo. 03.06.2024", "Di 04.06.2024", "mar 04/06/2024", "gio. 06/06/2024"),
+        *("mié. 05/06/2024", "Wed 05/06/2024", "mar. 4 juin 2024", "Do., 6. Juni 2024", "mercoledì 5 giugno 2024"),
+    ],
+)
+def test_days_of_the_week_before_a_date(tmp_path, stamp):
+    """A Tuesday in French is no March."""
+    rows = [f"{stamp} 23:{k // 4:02d}:{15 * k % 60:02d};{20 + k}" for k in range(90)]
+    (tmp_path / "a.csv").write_text("\n".join(["Horodatage;T_coil [°C]", *rows]))
+    clock = clock_of(read_source(tmp_path / "a.csv"))
+    assert clock.seconds == pytest.approx(15.0 * np.arange(90))
+    day = int(next(word for word in stamp.replace("/", " ").replace(".", " ").split() if word.isdigit()))
+    assert datetime.fromtimestamp(clock.start, UTC).strftime("%m-%d") == f"06-{day:02d}"
+
+
+@pytest.mark.parametrize(
+    ("header", "unit", "quantity"),
+    [
+        ("GPS Speed (Meters/second)", "m/s", "vehicle_speed"),
+        ("Speed (kilometers/hour)", "km/h", "vehicle_speed"),
+        ("Speed (Revolutions/minute)", "rpm", "speed"),
+        ("Load (Amperes)", "A", "current"),
+        ("Bus (Volts)", "V", "voltage"),
+        ("Case (Fahrenheit)", "degF", "temperature"),
+        ("Case (degrees Celsius)", "degC", "temperature"),
+        ("Speed (knots)", "", ""),
+        ("Motor speed (actual)", "rpm", "speed"),
+    ],
+)
+def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, header, unit, quantity):
+    (tmp_path / "a.csv").write_text(table(f"t [s],{header},T_coil [°C]", S["t"], S["W"], S["W"]))
+    g = guesses(read_source(tmp_path / "a.csv"), ["t [s]"], Target())[0]
+    assert (g.quantity, g.unit) == (quantity, unit)
+    assert bool(quantity) or "unit 'knots' unknown" in g.doubt
