@@ -71,13 +71,13 @@ FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in b
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
-OWN = "of the instrument itself, by its name"
-WANTED = "a set point, no reading: taken as reached"
+OF_INSTRUMENT = "of the instrument itself, by its name"
+DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
-KNOWN = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # words of a remark
+REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -135,20 +135,17 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) < len(hot):
         every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
-    own = {
+    instruments = {
         g.column
         for g in every
         if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
-    return [
-        g
-        if g.column not in own
-        else replace(g, doubt=OWN)
-        if len(own) == len(hot) or is_spoken(g.place, INSTRUMENT)
-        else Guess(g.column, "", doubt=OWN)
-        for g in every
-    ]
+    for i, g in enumerate(every):
+        if g.column in instruments:
+            stays = len(instruments) == len(hot) or is_spoken(g.place, INSTRUMENT)
+            every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
+    return every
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -166,7 +163,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return Guess(column, "", doubt="counts the rows")
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
-        if quantity == "speed" and not set(tokens(match[1])) & KNOWN:  # of a vehicle, or a counter
+        if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
             return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
@@ -344,7 +341,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
         if key not in owner:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
-                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, WANTED))))
+                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
         elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:

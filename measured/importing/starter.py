@@ -22,15 +22,15 @@ from measured.importing.draft import Draft
 from measured.importing.guess import (
     AXES,
     CODES_ALONE,
+    DEMAND,
     ELSE,
     IN_HEADER,
     NAMELESS,
     NUMBERED,
-    OWN,
+    OF_INSTRUMENT,
     RELATIVE,
     THAT_CAN_BE,
     UNKNOWN,
-    WANTED,
     Array,
     Guess,
     in_memory,
@@ -128,8 +128,10 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        lost = [g for s, g in columns if g.doubt == OWN or (g.doubt and roles_of(s.labels[g.column]))]
-        doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in sorted(lost, key=lambda g: g.doubt != OWN))
+        lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
+        doubts = (
+            f"; '{g.column}' is left out: {g.doubt}" for g in sorted(lost, key=lambda g: g.doubt != OF_INSTRUMENT)
+        )
         what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
         raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
@@ -167,7 +169,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
             how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
             out.setdefault("ambient", f"the room was not placed: {how}")
-        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, WANTED, OWN):
+        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT):
             if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
         if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
@@ -197,7 +199,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
 
 
 ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
-LOST = (THAT_CAN_BE, CODES_ALONE, OWN)  # of temperatures, which were expected to be read
+LOST = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 

@@ -24,8 +24,8 @@ BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-si
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949", "cp1254")
 RUSSIAN = re.compile("[А-яё]{4,}")
-_KNOWN = [w for kind in ("quantities", "roles") for words in VOCABULARY[kind].values() for w in words.split()]
-_LONG = {w for w in (*_KNOWN, *CLOCKS) if not w.isascii() and len(w) > (1 if w[0] >= IDEOGRAPHS else 3)}
+_TERMS = [w for kind in ("quantities", "roles") for words in VOCABULARY[kind].values() for w in words.split()]
+_LONG = {w for w in (*_TERMS, *CLOCKS) if not w.isascii() and len(w) > (1 if w[0] >= IDEOGRAPHS else 3)}
 WORDS = re.compile("|".join(sorted(_LONG, key=len, reverse=True)), re.IGNORECASE)  # of headers, in letters of a page
 LETTERS = re.compile(
     r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšžğış℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
@@ -71,10 +71,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
     if keys := _keys(head):
         every = [_by_key(row) for row in split_cells(lines, sign) if any(row)]
-        rows = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
-        odd = f"{file.name}: {len(every) - len(rows)} lines without the names of the others are left out"
-        notes += [odd] * (len(rows) < len(every))
-        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
+        readings = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
+        odd = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
+        notes += [odd] * (len(readings) < len(every))
+        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
     body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]

@@ -33,8 +33,8 @@ def coded(values: Array, far: float = 0.0) -> NDArray[np.bool_]:
     if not exact.any() or not others.size:
         return np.zeros(values.size, bool)
     low, high = float(np.min(others)), float(np.max(others))
-    beyond = max(LEAST, far * (high - low))
-    return exact & ((values < low - beyond) | (values > high + beyond))
+    distance = max(LEAST, far * (high - low))
+    return exact & ((values < low - distance) | (values > high + distance))
 
 
 def code_note(column: str, values: Array, invalid: NDArray[np.bool_], first_line: int) -> str:
