@@ -129,9 +129,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
-        doubts = (
-            f"; '{g.column}' is left out: {g.doubt}" for g in sorted(lost, key=lambda g: g.doubt != OF_INSTRUMENT)
-        )
+        lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
+        doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost)
         what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
         raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
