@@ -28,7 +28,7 @@ SPAN = re.compile(
 )  # and 1h 10m 5s
 _MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\\d_]{{0,7}}"
 DATE = re.compile(
-    r"(?:[^\W\d_]{2,10}\.?,?\s+)?"  # the day of the week
+    r"(?:[^\W\d_]{2,10}[.,]{0,2}\s+)?"  # the day of the week
     r"(\d{4}[-/.年]\s?\d{1,2}[-/.月]\s?\d{1,2}[.日]?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}|(?:19|20)\d{6}(?:T?\d{4,6})?(?=\D|$)"
     rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)"
     r"([T ,].*|:\d\d:.*)?",

@@ -39,6 +39,12 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANN
         "mean",
     )
 )
+INSTRUMENT, MACHINE = (_words(VOCABULARY["words"][name]) for name in ("instrument", "machine"))
+PHRASES = {
+    re.compile(rf"(?<![^\W\d_])(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
+    for word, phrases in VOCABULARY["phrases"].items()
+    for phrase in phrases.split(",")
+}
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
@@ -54,6 +60,8 @@ AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:curren
 def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
     out: list[str] = []
+    for phrase, meaning in PHRASES.items():
+        name = phrase.sub(meaning, name)
     for word in WORD.findall(name):
         low = word.lower()
         if len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss"):
@@ -118,7 +126,13 @@ def roles_of(name: str) -> list[Role]:
 
 def is_setpoint(name: str) -> bool:
     """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
-    return bool(SETPOINT & set(tokens(re.sub(r"(?i)\b[s]p ?\d+", " ", name))))
+    return is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
+
+
+def is_spoken(name: str, terms: frozenset[str]) -> bool:
+    """Does one of some words stand in a name?  Signs that are words may stand inside others."""
+    signs = [term for term in terms if term[0] >= IDEOGRAPHS]
+    return any(word in terms or any(sign in word for sign in signs) for word in tokens(name))
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:

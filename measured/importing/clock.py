@@ -30,6 +30,9 @@ INSTANT = re.compile(
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
+WEEKDAY = re.compile(  # before a whole date: mar. 04/06/2024 and mar. 4 juin 2024 are no March
+    r"^[^\W\d_]{2,10}[.,]{0,2}\s+(?=\d{1,4}[-/.]\s?\d{1,2}[-/.]\s?\d{1,4}|\d{1,2}[-/. ]{1,2}[^\W\d_]{3})"
+)
 TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}")
 MONTHS = {word: month for month, words in VOCABULARY["months"].items() for word in words.split()}
 CLOCK_PARTS = {part: words.split(",") for part, words in VOCABULARY["clock_parts"].items()}
@@ -318,6 +321,7 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return _since_first((cells - EPOCH) / np.timedelta64(1, "s"), columns, "dates")
+    cells = [WEEKDAY.sub("", c.strip()) if isinstance(c, str) else c for c in cells]
     parts = [INSTANT.fullmatch(str(c).strip()) or INSTANT.fullmatch(_spelled_out(c)) for c in cells]
     read = [m for m in parts if m]
     short = [m for m in read if len(m["a"]) < 4]

@@ -10,7 +10,7 @@ from geom.errors import InputError
 from geom.text import visible
 from lumped.schemas.reader import suggestion
 from measured.headers.cells import number, unit_of
-from measured.headers.words import SETPOINT, tokens
+from measured.headers.words import is_setpoint
 from measured.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
 from measured.importing.guess import Guess
 from measured.importing.source import Source
@@ -50,7 +50,7 @@ class Dialogue:
         return out
 
     def _completed(self, g: Guess, label: str) -> Guess:
-        if g.quantity == "temperature" and not g.place and not SETPOINT & set(tokens(label)):
+        if g.quantity == "temperature" and not g.place and not is_setpoint(label):
             places = [*self.target.places, *self.target.boundaries]
             return replace(g, place=self._choice(f"Where is '{g.column}'? (a place; Enter leaves it out)", "", places))
         if g.used and g.doubt.startswith("no unit"):

@@ -17,7 +17,9 @@ from measured.headers.words import (
     DIFFERENCE,
     EXTREME,
     INLET,
+    INSTRUMENT,
     LETTERED,
+    MACHINE,
     MEAN,
     MODELLED,
     NOTHING,
@@ -25,9 +27,11 @@ from measured.headers.words import (
     QUANTITY,
     READ,
     ROLES,
+    SETPOINT,
     SPREAD,
     axis_of,
     is_setpoint,
+    is_spoken,
     quantities_of,
     roles_of,
     tokens,
@@ -35,7 +39,7 @@ from measured.headers.words import (
 from measured.importing.clock import is_second_clock
 from measured.importing.source import Source
 from measured.importing.target import Target
-from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, coded
+from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
 from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
@@ -65,10 +69,14 @@ UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
+THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
+OF_INSTRUMENT = "of the instrument itself, by its name"
+DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
+REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -124,9 +132,19 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     if still != {*parts}:
         every = [g.without("never changes: a limit, or a dead sensor") if g.column in still else g for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
-    if len(models) == len(hot):
-        return every
-    return [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
+    if len(models) < len(hot):
+        every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
+    instruments = {
+        g.column
+        for g in every
+        if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
+        if not (roles_of(label) or is_spoken(label, MACHINE))
+    }
+    for i, g in enumerate(every):
+        if g.column in instruments:
+            stays = len(instruments) == len(hot) or is_spoken(g.place, INSTRUMENT)
+            every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
+    return every
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:
@@ -144,11 +162,13 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return Guess(column, "", doubt="counts the rows")
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
+        if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
+            return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
     if quantity not in SWITCHED and source.is_switch(column):
         return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
-    codes = values[coded(values) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
+    codes = values[coded(values, FAR) & (np.abs(values) > LARGEST_THERMOCOUPLE)]
     if quantity != "temperature" and codes.size:
         base = replace(base, doubt=f"is {codes[0]:g} a reading, or a logger's code?")
     if out := _impossible(source, base):
@@ -190,9 +210,9 @@ def _impossible(source: Source, g: Guess) -> str:
     finite = values[np.isfinite(values)]
     low, high = (COLDEST, HOTTEST) if g.quantity == "temperature" else (-LARGEST, LARGEST)
     if not finite.size:
-        return "holds nothing but a logger's codes"
+        return CODES_ALONE
     worst = finite[np.argmax(np.maximum(low - finite, finite - high))]
-    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} that can be"
+    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} {THAT_CAN_BE}"
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
@@ -310,7 +330,7 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
 
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
-        inlet = bool(g.place) and not INLET & words
+        inlet = bool(g.place) and not is_spoken(g.column, INLET)
         return is_setpoint(g.column), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
 
     for g in sorted(guesses, key=order):
@@ -319,6 +339,8 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             continue
         if key not in owner:
             owner[key] = g.column
+            if g.feeds and is_setpoint(g.column):
+                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
         elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:

@@ -36,6 +36,7 @@ SCALED = re.compile(
 )  # x0.1 °C, 1/10 °C, 10 mA
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
+TAG = re.compile(r"\s*<[^<>]*>")  # of a channel, which is no part of its name: 101 Winding <TC K>
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
@@ -186,6 +187,7 @@ def _source(
         if len(beside) == 1 and words and not unit_texts[before]:
             unit_texts[before] = words[0]
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
+    labels = {n: name if re.search(r"[^\W\d]", name := TAG.sub("", label)) else label for n, label in labels.items()}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
 

@@ -21,11 +21,15 @@ from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quanti
 from measured.importing.draft import Draft
 from measured.importing.guess import (
     AXES,
+    CODES_ALONE,
+    DEMAND,
     ELSE,
     IN_HEADER,
     NAMELESS,
     NUMBERED,
+    OF_INSTRUMENT,
     RELATIVE,
+    THAT_CAN_BE,
     UNKNOWN,
     Array,
     Guess,
@@ -124,9 +128,9 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        doubts = (
-            f"; '{g.column}' is left out: {g.doubt}" for s, g in columns if g.doubt and roles_of(s.labels[g.column])
-        )
+        lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
+        lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
+        doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost)
         what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
         raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
@@ -157,11 +161,14 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             elif ohms:
                 how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
                 out.setdefault("winding", f"the winding was not placed: {how}")
+        for _, g in hot_left:
+            if any(doubt in g.doubt for doubt in LOST):
+                out.setdefault(g.column, f"'{g.column}' is left out: {g.doubt}")
         rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
         if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
             how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
             out.setdefault("ambient", f"the room was not placed: {how}")
-        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS):
+        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT):
             if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
         if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
@@ -191,6 +198,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
 
 
 ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
+LOST = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from geom.description.roles import Role
 from lumped.model.network import Network
-from measured.headers.words import INLET, roles_of, tokens
+from measured.headers.words import INLET, is_spoken, roles_of, tokens
 from measured.recordings.units import QUANTITIES
 
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
@@ -84,7 +84,7 @@ def _likeness(label: str, name: str, role: Role | None) -> float:
     words, numbers = _words(label) & _words(name), _digits(a) & _digits(b)
     score = WORD * len(words) + DIGIT * len(numbers)
     if role is not None and role in roles_of(label)[:2]:
-        score += ROLE + (DIGIT / 2 if role is Role.COOLANT and a & INLET else 0.0)
+        score += ROLE + (DIGIT / 2 if role is Role.COOLANT and is_spoken(label, INLET) else 0.0)
     wrong = sum(w in FLUID for w in b - a)  # a sensor on the housing is not in the air of the housing
     return score - EXTRA * len(b - a) - WORD * wrong
 

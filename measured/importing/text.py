@@ -7,12 +7,14 @@ import io
 import json
 import re
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from geom.errors import InputError
-from measured.headers.cells import in_thousands, is_reading, number
+from measured.headers.cells import in_thousands, is_date, is_reading, number
 from measured.headers.rows import SAMPLE, Layout, layout, transposed
+from measured.headers.words import CLOCKS, IDEOGRAPHS, VOCABULARY
 from measured.recordings.csv_file import Body, chunks
 
 DELIMITERS = ("\t", ";", ",", "|")
@@ -21,10 +23,10 @@ SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949", "cp1254")
-WORDS = {
-    "cp1251": re.compile("[А-яё]{4,}"),
-    "cp949": re.compile("온도|시간|전류|권선|주위|전압|속도|환경|하우징|베어링"),
-}
+RUSSIAN = re.compile("[А-яё]{4,}")
+_TERMS = [w for kind in ("quantities", "roles") for words in VOCABULARY[kind].values() for w in words.split()]
+_LONG = {w for w in (*_TERMS, *CLOCKS) if not w.isascii() and len(w) > (1 if w[0] >= IDEOGRAPHS else 3)}
+WORDS = re.compile("|".join(sorted(_LONG, key=len, reverse=True)), re.IGNORECASE)  # of headers, in letters of a page
 LETTERS = re.compile(
     r"[°ºµΩ²³äöüÄÖÜßéèêàçùìòáíóúñőűřěłšžğış℃\u3040-\u30ff]|[温度时间电流转速绕组環境時年月日分秒番号刻電圧巻線室外气測定間隔型式计数序采样压功率机壳]"
 )
@@ -35,7 +37,8 @@ INTERVAL = re.compile(
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
-LOGGED = re.compile(r"^(\d\S*[ T]\d\d:\S+)\s[^=\n]*?((?:\s[^\W\d]\w*=[^\s=]+)+)\s*$", re.MULTILINE)  # of a program
+PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
+LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
 SERIES = (("name", "label", "channel", "signal", "title"), ("unit", "units"))  # of readings, in JSON
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
@@ -53,7 +56,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
     if len(LOGGED.findall(text[:10_000])) > 9:
-        text = "".join("\t".join([time, *pairs.split()]) + "\n" for time, pairs in LOGGED.findall(text))
+        text = "".join("\t".join([time, *re.findall(PAIR, pairs)]) + "\n" for time, pairs in LOGGED.findall(text))
     if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
         return *table, notes, None
     lines = text.splitlines(keepends=True)
@@ -67,8 +70,11 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         head = [*map(list, zip(*(row for row in head if len(row) > 1), strict=False))]
         lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
     if keys := _keys(head):
-        rows = [[m[2] if (m := KEYED.fullmatch(c)) else c for c in row] for row in split_cells(lines, sign)]
-        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(rows, len(keys)), notes, None
+        every = [_by_key(row) for row in split_cells(lines, sign) if any(row)]
+        readings = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
+        odd = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
+        notes += [odd] * (len(readings) < len(every))
+        return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
     plan = layout(head, str(file))
     again = sign.join(plan.names)  # a header and remarks may come again
     body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
@@ -173,17 +179,28 @@ def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | N
         return None
 
 
-def _raw(rows: list[list[str]], width: int) -> Columns:
+def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:
     return [[row[j] if j < len(row) else None for row in rows] for j in range(width)]
 
 
+def _by_key(row: list[str]) -> dict[str, str]:
+    """Name -> cell of a row such as "T1: 23.5, T2: 24.1"; "" for the first without one."""
+    return dict(reversed([_pair(cell) for cell in row]))
+
+
+def _pair(cell: str) -> tuple[str, str]:
+    """Name and reading; "Mo. 03.06.2024 23:40" is no reading of 40."""
+    match = None if is_date(cell) else KEYED.fullmatch(cell)
+    return (match[1], match[2]) if match else ("", cell)
+
+
 def _keys(rows: list[list[str]]) -> list[str]:
-    """The names in rows such as "T1: 23.5, T2: 24.1", where all have the same."""
-    patterns = [tuple(m[1] if (m := KEYED.fullmatch(c)) else "" for c in row) for row in rows if any(row)]
+    """The names in such rows, where most have the same."""
+    patterns = [tuple(_pair(cell)[0] for cell in row) for row in rows if any(row)]
     same = max(set(patterns), key=patterns.count, default=())
     return (
         list(same)
-        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.9 * len(patterns)
+        if sum(map(bool, same)) >= max(1, len(same) - 1) and patterns.count(same) > 0.5 * len(patterns)
         else []
     )
 
@@ -205,11 +222,13 @@ def decoded(raw: bytes, file: Path) -> str:
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
-        odd = b"\n".join(line for line in raw.splitlines() if not line.isascii())[:10_000]
+        # Each cell counts once, however often a column has it.
+        odd = b"\n".join(dict.fromkeys(c for c in re.split(rb"[,;\t\r\n]", raw) if not c.isascii()))[:10_000]
         letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
         worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
-        for page, words in WORDS.items():
-            worth[page] += sum(map(len, words.findall(letters[page])))
+        worth["cp1251"] += sum(map(len, RUSSIAN.findall(letters["cp1251"])))
+        for page, words in letters.items():
+            worth[page] += DEGREE * sum(map(len, WORDS.findall(words)))
         return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
 
 

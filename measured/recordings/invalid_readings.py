@@ -16,12 +16,15 @@ KINDS = {
 CODES = np.concatenate([*KINDS.values()])
 ENDLESS = 1e30  # and beyond: 9.9e37 and its kin
 LARGEST_THERMOCOUPLE = 1820.0  # codes up to it are limits of thermocouples, and may be speeds
-FAR = 5.0  # times the spread of the other readings, from their median: nearer, a reading may be what it says
-LEAST = 50.0  # in the unit of the file, of that distance
+FAR = 2.0  # times the span of the other readings, beyond them: nearer, a speed may be what it says
+LEAST = 50.0  # in the unit of the file, of that distance; enough for temperatures, which seldom leap as far
 
 
-def coded(values: Array) -> NDArray[np.bool_]:
-    """Which readings (as the file has them) are a logger's codes: of that very value, and far from all others."""
+def coded(values: Array, far: float = 0.0) -> NDArray[np.bool_]:
+    """Which readings (as the file has them) are a logger's codes: of that very value, and beyond all others.
+
+    far : least distance in spans of the other readings, for what may leap
+    """
     exact = np.isin(values, CODES) | (np.abs(values) >= ENDLESS)
     read = np.isfinite(values)
     if read.sum() > 1 and np.all(exact[read]) and np.unique(values[read]).size == 1:
@@ -29,9 +32,9 @@ def coded(values: Array) -> NDArray[np.bool_]:
     others = values[~exact & np.isfinite(values)]
     if not exact.any() or not others.size:
         return np.zeros(values.size, bool)
-    middle = float(np.median(others))
-    far = max(LEAST, FAR * float(np.percentile(np.abs(others - middle), 99)))
-    return exact & (np.abs(values - middle) > far)
+    low, high = float(np.min(others)), float(np.max(others))
+    distance = max(LEAST, far * (high - low))
+    return exact & ((values < low - distance) | (values > high + distance))
 
 
 def code_note(column: str, values: Array, invalid: NDArray[np.bool_], first_line: int) -> str:

@@ -18,7 +18,7 @@ from measured.headers.cells import unit_of
 from measured.recordings.alignment import clock_shift, merged
 from measured.recordings.data_table import HEADER, DataTable, cell, is_switch, numbers
 from measured.recordings.formats import EPOCH, TIME, read_recording, recording
-from measured.recordings.invalid_readings import LARGEST_THERMOCOUPLE, code_note, coded
+from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, code_note, coded
 from measured.recordings.sheet import Column, Recorder, Sheet
 from measured.recordings.units import LARGEST, QUANTITIES, SWITCHED, converted
 from measured.sensors.faults import longest_run
@@ -65,8 +65,9 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = read[column.name][rows]
-        codes = coded(raw) & (column.is_temperature | (np.abs(raw) > LARGEST_THERMOCOUPLE))
-        if not column.is_temperature and codes.any():
+        hot = column.is_temperature
+        codes = coded(raw, 0.0 if hot else FAR) & (hot | (np.abs(raw) > LARGEST_THERMOCOUPLE))
+        if not hot and codes.any():
             what = f"{int(codes.sum())} readings of {raw[codes][0]:g} are kept: a logger's code, or a reading?"
             notes.append(f"{file.name} column '{column.header}': {what}")
         elif column.electrical is None and codes.any():

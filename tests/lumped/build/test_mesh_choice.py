@@ -92,7 +92,7 @@ def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
     """Without a finer one three times what a coarser one moves is told, way by way."""
     monkeypatch.setattr(mesh_choice, "MOST_SOLVED", 2000)
     monkeypatch.setattr(mesh_choice, "MOST_QUADRATIC", 2000)
-    monkeypatch.setattr(mesh_choice, "BEGIN", 1.0)
+    monkeypatch.setattr(mesh_choice, "ROOM", 1.0)
     found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=2000)
     assert not found.met
     assert found.percent["winding"] == pytest.approx(900.0 * low(FIRST), rel=0.1)

@@ -446,7 +446,7 @@ def test_what_may_be_a_clock_and_units_that_are_none_are_said(tmp_path, capsys):
     (test,) = json.loads((tmp_path / "new.json").read_text())["tests"]
     doubts = {c["column"]: c["doubt"] for c in test["columns"]}
     assert doubts["Takt"] == "a clock? say so: time [s]"
-    assert doubts["speed [Digits]"] == "unit 'Digits' unknown: rpm assumed"
+    assert doubts["speed [Digits]"] == "unit 'Digits' unknown: is it a speed of the machine?"
 
 
 @pytest.mark.parametrize("word", ["OVLD", "Err", "over range", "N/A"])

@@ -20,6 +20,7 @@ from measured.importing.case_files import read_timed
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
+from measured.importing.target import Target
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
@@ -672,3 +673,153 @@ def test_one_number_more_than_names_is_refused(tmp_path, end):
     (tmp_path / "a.csv").write_text("t [s],T_coil [C],T_amb [C],I [A]\n" + "\n".join(rows))
     with pytest.raises(InputError, match="5 values under 4 names"):
         read_source(tmp_path / "a.csv")
+
+
+def test_lines_without_the_names_of_most_are_no_rows(tmp_path):
+    """A serial monitor's log of a sketch that first says what it found."""
+    rows = [(f"12:{k // 12:02d}:{5 * k % 60:02d}.120", w, i) for k, (w, i) in enumerate(zip(S["W"], S["I"]))]
+    lines = [f"{at} -> Tmotor={w:.2f}C I={i:.2f}A" for at, w, i in rows]
+    head = ["=~=~ log 2026.03.28 =~=~", "11:59:58.000 -> heat run", "11:59:59.000 -> found 3 sensors"]
+    (tmp_path / "a.log").write_text("\n".join([*head, *lines[:50], "12:04:10.000 -> retry", *lines[50:]]))
+    source, clock = read_timed(tmp_path / "a.log", None)
+    assert clock.seconds == pytest.approx(S["t"])
+    assert source.numbers("Tmotor") == pytest.approx(S["W"], abs=0.006)
+    assert source.units["I"] == "A"
+
+
+@pytest.mark.parametrize("between", [" - bench - INFO - ", " INFO:bench: ", " "])
+def test_a_blank_between_number_and_unit_in_a_line_of_names(tmp_path, between):
+    stamps = [datetime.fromtimestamp(1762157670 + t, UTC).strftime("%Y-%m-%d %H:%M:%S,250") for t in S["t"]]
+    lines = [f"{at}{between}winding={w:.2f} degC I={i:.2f} A" for at, w, i in zip(stamps, S["W"], S["I"])]
+    (tmp_path / "a.log").write_text("\n".join([*lines[:5], f"{stamps[5]} - bench - DEBUG - output on", *lines[5:]]))
+    source, clock = read_timed(tmp_path / "a.log", None)
+    assert clock.seconds == pytest.approx(S["t"])
+    assert source.numbers("winding") == pytest.approx(S["W"], abs=0.006)
+    assert (source.units["winding"], source.units["I"]) == ("degC", "A")
+
+
+@pytest.mark.parametrize("code", [-127.0, -9999.0, 1372.0])
+def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_path, code):
+    hot = 22.0 + 3.0 * (S["W"] - 22.0)
+    text = table("t [s],T_winding [°C],I [A]", S["t"], np.where(S["t"] % 100 == 50, code, hot), S["I"])
+    folder, _ = written(tmp_path, text)
+    (y,) = (c.y for c in folder.case.tests[0].channels)
+    assert np.ptp(hot) > 150.0
+    assert np.nanmin(y) > 20.0
+    assert np.nanmax(y) == pytest.approx(hot.max(), abs=0.006)
+
+
+def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys):
+    text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
+    written(tmp_path, text)
+    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is no temperature")
+
+
+@pytest.mark.parametrize(
+    "word", ["DMD", "Demand", "Cmd", "Req", "Soll", "Consigne", "Consigna", "impostata", "设定", "設定"]
+)
+def test_a_set_point_gives_way_to_a_reading_and_is_doubted_without_one(tmp_path, word, capsys):
+    wanted = f"I {word} [A]"
+    written(tmp_path, table(f"t [s],{wanted},T_winding [°C],T_room [°C]", *(S[c] for c in "tIWA")))
+    assert f"'{wanted}': a set point, no reading" in " ".join(capsys.readouterr().out.split())
+    (tmp_path / "made").rename(tmp_path / "before")
+    text = table(f"t [s],{wanted},I 1 [A],T_winding [°C],T_room [°C]", S["t"], S["I"] + 1, *(S[c] for c in "IWA"))
+    folder, document = written(tmp_path, text)
+    assert folder.case.tests[0].inputs["current_A"] == pytest.approx(S["I"], abs=0.006)
+    assert [c["column"] for c in document["tests"][0]["columns"] if c["doubt"]] == [wanted]
+    assert document["warnings"] == []
+
+
+def test_a_tag_of_a_channel_is_no_part_of_its_name(tmp_path):
+    names = ("101 Winding <TC K> (C)", "101 Winding Max (C)", "102 Frame <TC K> (C)", "103 Amb <RTD> (C)", "104 I (A)")
+    folder, _ = written(tmp_path, table(",".join(["t [s]", *names]), *(S[c] for c in "tWHHAI")))
+    assert [c.name for c in folder.case.tests[0].channels] == [names[0], names[2]]
+
+
+@pytest.mark.parametrize(
+    "own", ["CJC_temp", "T_Vergleichsstelle", "Soudure froide", "Cold junction", "Giunto freddo", "Board temp", "CPU_T"]
+)
+def test_the_temperature_of_the_instrument_is_none_of_the_machine(tmp_path, own, capsys):
+    written(tmp_path, table(f"t [s],T_coil [°C],{own} [°C],T_room [°C],I [A]", *(S[c] for c in "tWAAI")))
+    assert capsys.readouterr().out.startswith(f"'{own} [°C]' is left out: of the instrument itself")
+    (tmp_path / "made").rename(tmp_path / "before")
+    written(tmp_path, table(f"t [s],{own} [°C],I [A]", *(S[c] for c in "tWI")))
+    assert "of the instrument itself, by its name" in " ".join(capsys.readouterr().out.split())[:120]
+
+
+def test_of_a_room_and_the_instrument_alone_there_is_no_machine(tmp_path):
+    with pytest.raises(InputError, match=r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst"):
+        written(tmp_path, table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAHI")))
+
+
+@pytest.mark.parametrize("room", ["T_TESTCELL", "Test cell", "Prüfzelle", "Prüfraum", "Cella di prova"])
+@pytest.mark.parametrize(
+    ("inlet", "outlet"),
+    [("T_EM_COOL_IN", "T_EM_COOL_OUT"), ("Water in", "Water out"), ("냉각수입구온도", "냉각수출구온도")],
+)
+def test_rooms_of_test_beds_and_what_flows_in(tmp_path, room, inlet, outlet):
+    names = [f"{name} [°C]" for name in ("T_winding", outlet, inlet, room)]
+    folder, _ = written(
+        tmp_path, table(",".join(["t [s]", *names, "I [A]"]), S["t"], S["W"], S["A"] + 20, S["A"] + 15, S["A"], S["I"])
+    )
+    test = folder.case.tests[0]
+    assert [c.name for c in test.channels] == [names[0]]
+    assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
+    assert test.boundaries["coolant"] == pytest.approx(S["A"] + 15, abs=0.006)
+
+
+CHINESE = ("时间(s)", "绕组温度(℃)", "机壳温度(℃)", "环境温度(℃)", "定子电流(A)", "状态")
+POLISH = ("Czas (s)", "Temp. uzwojenia (°C)", "Temp. obudowy (°C)", "Temp. otoczenia (°C)", "Prąd (A)", "Próba")
+CZECH = ("Čas (s)", "Teplota vinutí (°C)", "Teplota pláště (°C)", "Teplota okolí (°C)", "Proud (A)", "Měření")
+
+
+@pytest.mark.parametrize(
+    ("names", "state", "page"),
+    [
+        (CHINESE, "停止", "gb18030"),
+        (CHINESE, "正常", "gbk"),
+        (POLISH, "wyłączony", "cp1250"),
+        (CZECH, "běží", "cp1250"),
+    ],
+)
+def test_a_code_page_is_told_by_words_of_headers_whatever_a_column_repeats(tmp_path, names, state, page):
+    (tmp_path / "a.csv").write_bytes(table(",".join(names), *(S[c] for c in "tWHAI"), state).encode(page))
+    assert tuple(read_source(tmp_path / "a.csv").cells) == names
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        *("lun. 03/06/2024", "mar. 04/06/2024", "Mo. 03.06.2024", "Di 04.06.2024", "mar 04/06/2024", "gio. 06/06/2024"),
+        *("mié. 05/06/2024", "Wed 05/06/2024", "mar. 4 juin 2024", "Do., 6. Juni 2024", "mercoledì 5 giugno 2024"),
+    ],
+)
+def test_days_of_the_week_before_a_date(tmp_path, stamp):
+    """A Tuesday in French is no March."""
+    rows = [f"{stamp} 23:{k // 4:02d}:{15 * k % 60:02d};{20 + k}" for k in range(90)]
+    (tmp_path / "a.csv").write_text("\n".join(["Horodatage;T_coil [°C]", *rows]))
+    clock = clock_of(read_source(tmp_path / "a.csv"))
+    assert clock.seconds == pytest.approx(15.0 * np.arange(90))
+    day = int(next(word for word in stamp.replace("/", " ").replace(".", " ").split() if word.isdigit()))
+    assert datetime.fromtimestamp(clock.start, UTC).strftime("%m-%d") == f"06-{day:02d}"
+
+
+@pytest.mark.parametrize(
+    ("header", "unit", "quantity"),
+    [
+        ("GPS Speed (Meters/second)", "m/s", "vehicle_speed"),
+        ("Speed (kilometers/hour)", "km/h", "vehicle_speed"),
+        ("Speed (Revolutions/minute)", "rpm", "speed"),
+        ("Load (Amperes)", "A", "current"),
+        ("Bus (Volts)", "V", "voltage"),
+        ("Case (Fahrenheit)", "degF", "temperature"),
+        ("Case (degrees Celsius)", "degC", "temperature"),
+        ("Speed (knots)", "", ""),
+        ("Motor speed (actual)", "rpm", "speed"),
+    ],
+)
+def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, header, unit, quantity):
+    (tmp_path / "a.csv").write_text(table(f"t [s],{header},T_coil [°C]", S["t"], S["W"], S["W"]))
+    g = guesses(read_source(tmp_path / "a.csv"), ["t [s]"], Target())[0]
+    assert (g.quantity, g.unit) == (quantity, unit)
+    assert bool(quantity) or "unit 'knots' unknown" in g.doubt
