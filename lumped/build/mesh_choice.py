@@ -45,9 +45,8 @@ MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the c
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
 MOST_BESIDE = 300_000  # of both meshes that are solved at once: of 360,000 they took 4.5 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
-ROOM = (
-    0.75  # of those: elements across slots and bars, and quadratic parts in advance, leave the rest to what is refined
-)
+ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
+BEGIN = 0.5  # of those: what a first mesh that has no ROOM keeps, with fewer elements across slots and bars
 IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
 ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
 WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
@@ -108,7 +107,7 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, IDLE, ALIKE, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, BEGIN, IDLE, ALIKE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
@@ -301,8 +300,10 @@ def _one_part_finer(
 def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
     """The first mesh, coarser where it leaves no room, with the largest triangles that are there at all: small parts
     have smaller ones anyway."""
+    large = looks.size(how)[1] > ROOM * most
     while (
-        looks.size(how)[1] > ROOM * most
+        large
+        and looks.size(how)[1] > BEGIN * most
         and ACTS * looks.size(coarser := how.along("across", 2.0))[1] < looks.size(how)[1]
     ):
         how = coarser
