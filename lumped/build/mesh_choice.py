@@ -300,11 +300,9 @@ def _one_part_finer(
 def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
     """The first mesh, coarser where it leaves no room, with the largest triangles that are there at all: small parts
     have smaller ones anyway."""
-    large = looks.size(how)[1] > ROOM * most
+    enough = (BEGIN if looks.size(how)[1] > ROOM * most else ROOM) * most
     while (
-        large
-        and looks.size(how)[1] > BEGIN * most
-        and ACTS * looks.size(coarser := how.along("across", 2.0))[1] < looks.size(how)[1]
+        looks.size(how)[1] > enough and ACTS * looks.size(coarser := how.along("across", 2.0))[1] < looks.size(how)[1]
     ):
         how = coarser
     while looks.size(finer := how.along("size_m", 0.5))[0] < ACTS * looks.size(how)[0] and finer.size_m > SMALLEST_M:
