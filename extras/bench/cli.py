@@ -37,6 +37,22 @@ def protocol(
 
 
 @commands.command()
+def report(
+    record: Annotated[Path, typer.Argument(metavar="RECORD.toml|DIR", help="A heat run; of a folder heat-run.toml.")],
+    out: Out = None,
+    json: Json = None,
+) -> int:
+    """The heat run by IEC 60034-1 on a page to sign: rise against its class's limit. Exit code 1 unless it passes."""
+    from extras.bench.commands.report import report_summary, written
+    from thermoscope.plugin import give, progress
+
+    with progress() as tell:
+        document, paths = written(record, out or Path("out"), tell)
+    give(document, json, lambda: report_summary(document, paths))
+    return 0 if document["verdict"] == "passes" else 1
+
+
+@commands.command()
 def curves(
     case: Case,
     resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,

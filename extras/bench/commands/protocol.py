@@ -64,13 +64,19 @@ Pairs = tuple[tuple[float, float], ...]
 def read_record(file: Path) -> Record:
     """The record of a test; InputError for unknown keys and values that cannot be."""
     top = TomlTable(read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
+    record = record_in(top, file)
+    top.close()
+    return record
+
+
+def record_in(top: TomlTable, file: Path) -> Record:
+    """The record of a test in a file that may hold more; who reads the rest closes it."""
     machine, cold, load, hot = (top.table(name) for name in ("machine", "cold", "load", "hot"))
     coefficients, meters = top.table("coefficients"), top.table("meters")
-    top.close()
     record = Record(
         machine.number("rated_kW"),
         _cold(cold) if cold.data else None,
-        _pairs(load, file, 60.0),
+        timed_pairs(load, file, 60.0),
         load.number("resolution_K", 0.5),
         _hot(hot, file) if hot.data else None,
         meter_of(meters, "resistance", OHMMETER),
@@ -105,7 +111,7 @@ def _cold(table: TomlTable) -> Cold:
 def _hot(table: TomlTable, file: Path) -> Hot:
     hot = Hot(
         table.number("ambient_degC"),
-        _pairs(table, file, 1.0),
+        timed_pairs(table, file, 1.0),
         _optional(table, "emf_V"),
         _optional(table, "speed_rpm"),
         _optional(table, "range_ohm"),
@@ -114,7 +120,7 @@ def _hot(table: TomlTable, file: Path) -> Hot:
     return hot
 
 
-def _pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
+def timed_pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
     """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
     if "readings" in source:
         rows = source.rows("readings", of="value")
