@@ -12,7 +12,7 @@ from extras.bench.heat_run.record import read_heat_run
 from thermoscope.plugin import NO_PDF, Progress, Summary, Table, file_stem
 
 
-def written(record: Path, folder: Path, tell: Progress) -> tuple[dict[str, Any], list[Path]]:
+def report_files(record: Path, folder: Path, tell: Progress) -> tuple[dict[str, Any], list[Path]]:
     """The document of a heat run, and the files in `folder`, which are written when all of it is known."""
     tell("reading the record")
     run = read_heat_run(record, tell)

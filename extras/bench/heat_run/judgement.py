@@ -110,7 +110,7 @@ def _verdict(rise: Rise, duty: Duty) -> tuple[Verdict, str]:
 def _sentence(rise: Rise, verdict: Verdict, why: str) -> str:
     numbers = [] if rise.rise_K is None or rise.U95_K is None else [f"{rise.rise_K:.1f} ± {rise.U95_K:.1f} K"]
     value = " of ".join([*numbers, *([f"{rise.limit_K:.1f} K"] if numbers and rise.limit_K is not None else [])])
-    left = abs(rise.in_hand_K or 0.0)
+    left = abs(rise.margin_K or 0.0)
     ending = {
         "passes": f"passes with {left:.1f} K in hand after the uncertainty",
         "fails": f"fails by {left:.1f} K after the uncertainty",

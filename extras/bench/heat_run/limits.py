@@ -23,7 +23,7 @@ EMBEDDED: Mapping[str, float] = {"B": 90.0, "F": 115.0, "H": 140.0}
 EMBEDDED_LARGE: Mapping[str, float] = {"B": 85.0, "F": 110.0, "H": 130.0}
 DETECTORS_KW, LARGE_KW = 200.0, 5000.0
 SHORT_TIME_K = 10.0  # more for short-time duty below 5000 kW
-COOLANT_C, HOTTEST_C, APART_K = 40.0, 60.0, 30.0  # reference; beyond these two, limits are by agreement
+COOLANT_C, HOTTEST_C, DIFFERENCE_K = 40.0, 60.0, 30.0  # reference; beyond these two, limits are by agreement
 LEVEL_M, HIGHEST_M, LOSS_M = 1000.0, 4000.0, 10_000.0  # up to here nothing changes; 1 % of the limit for every 100 m
 GRADIENT_K_H = 2.0  # of a machine that counts as steady: 1 K per half hour
 AGREEMENT = "by agreement in the standard: give [limit] K and source"
@@ -71,7 +71,7 @@ def methods(rating: Rating, k: float) -> list[Correction]:
     ]
     if rating.standard == STANDARDS[0]:
         delay = allowed_delay(rating.rated_kW)
-        effect = f"a first reading counts up to {delay:g} s, up to {2 * delay:g} s it is carried back to {delay:g} s"
+        effect = f"a first reading counts up to {delay:g} s, up to {2 * delay:g} s it goes back to {delay:g} s"
         rows.insert(1, Correction(f"stopping time at {rating.rated_kW:g} kW", "8.6.2.3", effect, None))
     return rows
 
@@ -112,7 +112,7 @@ def _short_time(rating: Rating, limit: float) -> Correction:
 def _coolant(rating: Rating, limit: float) -> Correction:
     """Less by what the coolant of the site is above 40 degC; a cooler site gains nothing, editions differ there."""
     name = f"coolant {rating.site_C:g} degC at the site, {rating.test_C:.1f} degC in the test"
-    if rating.site_C > HOTTEST_C or abs(rating.site_C - rating.test_C) > APART_K:
+    if rating.site_C > HOTTEST_C or abs(rating.site_C - rating.test_C) > DIFFERENCE_K:
         return Correction(name, "6.3, 8.10", AGREEMENT, None)
     less = max(rating.site_C - COOLANT_C, 0.0)
     return Correction(name, "6.3, 8.10", f"-{less:g} K" if less else "none", limit - less)

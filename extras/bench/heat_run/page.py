@@ -33,7 +33,7 @@ table { font-size: 6.8pt; } td, th { padding: .08rem .4rem .08rem 0; overflow-wr
 
 def tables(document: Document) -> dict[str, Table]:
     """Every table of the page, by the name it has in the CSV."""
-    columns = "method | *rise (K)=rise_K | *± 95 % (K)=U95_K | *limit (K)=limit_K | in hand (K)=in_hand_K | *verdict"
+    columns = "method | *rise (K)=rise_K | *± 95 % (K)=U95_K | *limit (K)=limit_K | in hand (K)=margin_K | *verdict"
     columns += " | degC=temperature_degC | s after off=at_s | how"
     steps = "step=name | when | *state | found=words"
     duty, power = document["duty"], document["power_30min"]
@@ -139,8 +139,8 @@ def csv_rows(document: Document) -> list[list[Any]]:
     rows = [["table", "row", "column", "value"], ["verdict", "", "sentence", document["sentence"]]]
     for name, table in tables(document).items():
         for i, row in enumerate(table.rows):
-            named = zip(table.columns, row, strict=True)
-            rows += [[name, str(i + 1), c, "" if v is None or v == BLANK else v] for c, v in named]
+            cells = zip(table.columns, row, strict=True)
+            rows += [[name, str(i + 1), c, "" if v is None or v == BLANK else v] for c, v in cells]
     return rows
 
 

@@ -1,39 +1,6 @@
-"""The record of a heat run, as a file of its own or as a test of a case.
+"""The record of a heat run, as a file of its own or as a test of a case: docs/how-to/heat-run.md has all keys.
 
-[machine]
-rated_kW = 7
-[heat_run]
-title = "M1, serial 42"
-class = "F"                 # A, E, B, F or H
-standard = "IEC 60034-1"    # or "IEC 60349", with a [limit]
-duty = "S1"                 # S2: rated_min; S3 to S8: cycle_min; S9, S10: loads = [[min, load]] and test_load
-material = "copper"         # or "aluminium"
-fan = true                  # false without one, or potted
-thermometer_K = 0.5         # limit of error
-case = "pmsm-bases"         # instead of [cold], [load] and [hot]: a folder beside this file, or a case that comes along
-test = "bench"
-[site]                      # where it works; [test_site] likewise, with altitude_m alone
-altitude_m = 0
-coolant_degC = 40
-[limit]                     # in place of the standard's
-K = 180
-source = "contract 12"
-[etd]
-degC = [118.0, 121.5]       # embedded detectors at the end
-limit_K = 1.0
-[[superposition]]
-name = "open circuit"
-sign = 1
-rise_K = 40.0
-sd_K = 1.0
-[power_30min]
-readings = [[0, 50.1], [1800, 49.2]]   # s, kW; or file, time and column
-[names]
-tested = "A. Smith"
-witnessed = ""
-approved = ""
-
-Beside them the tables [cold], [load], [hot], [meters] of `thermoscope bench protocol`.
+Beside its own tables it has those of `thermoscope bench protocol`: [cold], [load], [hot], [meters].
 """
 
 from __future__ import annotations
@@ -45,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from extras.bench.commands.protocol import Pairs, record_in, timed_pairs
 from extras.bench.heat_run.duty import BY_LOAD, DUTIES, Operation, Series
 from extras.bench.heat_run.limits import CLASSES, STANDARDS, Rating
 from extras.bench.heat_run.rises import K_OF, network_way, winding_of
 from extras.bench.measuring.protocol import Cold, Hot, Record
+from extras.bench.measuring.record_file import Pairs, record_in, timed_pairs
 from thermoscope import InputError
 from thermoscope.plugin import (
     Column,
@@ -69,6 +36,7 @@ from thermoscope.plugin import (
 
 FILE = "heat-run.toml"  # of a folder
 NAMES = ("tested", "witnessed", "approved")
+LEAST_K = 1e-3  # no thermometer is surer
 LAST_QUARTER = 0.75  # of a run: the coolant is the mean since then
 
 
@@ -122,7 +90,7 @@ def read_heat_run(path: Path, tell: Progress) -> HeatRun:
         raise head.error("case and [cold], [load] or [hot] are both given", "one of them")
     if case:
         record, ways, origin = _of_case(case, head, record, file, k, tell)
-    thermometer_K = head.number("thermometer_K", 0.5)
+    thermometer_K = head.number("thermometer_K", 0.5, low=LEAST_K)
     rating = Rating(
         record.rated_kW,
         head.kind("class", None, CLASSES),
@@ -144,7 +112,7 @@ def read_heat_run(path: Path, tell: Progress) -> HeatRun:
         k,
         thermometer_K,
         etd.numbers("degC", []),
-        etd.number("limit_K", 1.0),
+        etd.number("limit_K", 1.0, low=LEAST_K),
         tuple(_part(part) for part in superposed),
         timed_pairs(power, file, 1.0),
         ways,

@@ -34,6 +34,7 @@ Verdict = Literal["passes", "fails", "cannot be judged", "not measured"]
 K_OF = {"copper": 235.0, "aluminium": 225.0}  # minus the temperature (degC) at which the resistance would be none
 SUPERPOSITION = "superposition"
 OFF = ("current", "torque", "power", "voltage", "frequency", "speed", "vehicle_speed")  # gone when it is switched off
+LEAST_K = 1e-6  # no way back is exact
 SOON_S = 0.1  # after the last sample under load: the machine is off
 
 
@@ -41,19 +42,19 @@ SOON_S = 0.1  # after the last sample under load: the machine is off
 class Rise:
     """Rise over the coolant by one method.  U95_K : expanded uncertainty;  at_s : what instant it stands for
 
-    temperature_C, rise_K, U95_K : None where it was not measured;  limit_K : None where there is none
+    temperature_degC, rise_K, U95_K : None where it was not measured;  limit_K : None where there is none
     """
 
     method: str
     at_s: float | None = None
-    temperature_C: float | None = None
+    temperature_degC: float | None = None
     rise_K: float | None = None
     U95_K: float | None = None
     limit_K: float | None = None
     how: str = ""
 
     @property
-    def in_hand_K(self) -> float | None:
+    def margin_K(self) -> float | None:
         """What is left to the limit after the uncertainty; below zero, what the limit is exceeded by after it."""
         if self.rise_K is None or self.U95_K is None or self.limit_K is None:
             return None
@@ -69,17 +70,7 @@ class Rise:
         return "passes" if self.rise_K <= self.limit_K else "fails"
 
     def document(self) -> dict[str, Any]:
-        return {
-            "method": self.method,
-            "at_s": self.at_s,
-            "temperature_degC": self.temperature_C,
-            "rise_K": self.rise_K,
-            "U95_K": self.U95_K,
-            "limit_K": self.limit_K,
-            "in_hand_K": self.in_hand_K,
-            "verdict": self.verdict,
-            "how": self.how,
-        }
+        return {**vars(self), "margin_K": self.margin_K, "verdict": self.verdict}
 
 
 def resistance_rise(R1: Any, R2: Any, t1: Any, ta: Any, k: float = K_OF["copper"]) -> Any:
@@ -94,7 +85,8 @@ def resistance_rises(
     limit = corrections(rating, RESISTANCE)[-1].limit_K
     if not hot.cooling:
         return [Rise(RESISTANCE, limit_K=limit)]
-    ways = [*all_ways(cooling_of(winding_of(cold, meter, k), hot), rating.rated_kW), *more]
+    first, *others = all_ways(cooling_of(winding_of(cold, meter, k), hot), rating.rated_kW)
+    ways = [replace(first, method=STANDARDS[0]), *others, *more]
     rises = [_rise_of(way, cold, hot.ambient_C, meter, k, thermometer_K) for way in ways]
     return [replace(rise, limit_K=limit) for rise in rises]
 
@@ -111,18 +103,18 @@ def _rise_of(way: Extrapolated, cold: Cold, coolant: float, meter: Meter, k: flo
     def result(R1: Any, R2: Any, t1: Any, ta: Any, back: Any) -> Any:
         return resistance_rise(R1, R2, t1, ta, k) + back
 
-    found = propagate(
+    total = propagate(
         result,
         (
             meter.reading("cold resistance", cold.ohm),
             meter.reading("hot resistance", ohm),
             Reading("cold temperature", cold.machine_C, thermometer_K),
             Reading("coolant", coolant, thermometer_K),
-            Reading("way back to switching off", 0.0, way.sd, "normal"),
+            Reading("way back to switching off", 0.0, max(way.sd, LEAST_K), "normal"),
         ),
     )
     method = f"{RESISTANCE}, {way.method}"
-    return Rise(method, way.at_s, way.value, found.value, _expanded(found), None, way.words)
+    return Rise(method, way.at_s, way.value, total.value, _expanded(total), None, way.words)
 
 
 def detector_rise(hottest: Reading | None, coolant: float, thermometer_K: float, rating: Rating) -> Rise:
@@ -130,9 +122,9 @@ def detector_rise(hottest: Reading | None, coolant: float, thermometer_K: float,
     limit = corrections(rating, DETECTORS)[-1].limit_K
     if hottest is None:
         return Rise(DETECTORS, limit_K=limit)
-    found = propagate(lambda T, ta: T - ta, (hottest, Reading("coolant", coolant, thermometer_K)))
+    total = propagate(lambda T, ta: T - ta, (hottest, Reading("coolant", coolant, thermometer_K)))
     how = "hottest detector at the end"
-    return Rise(DETECTORS, None, hottest.value, found.value, _expanded(found), limit, how)
+    return Rise(DETECTORS, None, hottest.value, total.value, _expanded(total), limit, how)
 
 
 def superposed_rise(parts: Iterable[tuple[str, int, float, float]], rating: Rating) -> Rise:
@@ -148,8 +140,8 @@ def superposed_rise(parts: Iterable[tuple[str, int, float, float]], rating: Rati
     return Rise(SUPERPOSITION, None, None, value, NORMAL_95 * sd, limit, how)
 
 
-def _expanded(found: PropagatedUncertainty) -> float:
-    return NORMAL_95 * found.sd
+def _expanded(total: PropagatedUncertainty) -> float:
+    return NORMAL_95 * total.sd
 
 
 def deciding(rises: Sequence[Rise], standard: str) -> Rise:
