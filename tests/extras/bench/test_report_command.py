@@ -9,6 +9,7 @@ import tomllib
 import numpy as np
 import pytest
 from test_heat_run import cooling, warming
+from test_procedure_commands import NETWORK
 
 from viz.pages.pdf import BROWSERS
 
@@ -36,12 +37,39 @@ tested = "A. Smith"
 """
 
 
-def text_of(T0=120.0, more="", until=400.0, tail=""):
-    """A record of exact meters, whose first reading is the temperature T0 (degC) at 20 s."""
-    first = cooling(20.0, T0)[0][1]
-    readings = [(t, R * 0.5 * (235.0 + T0) / 255.0 / first) for t, R in cooling(20.0, T0)]
+WINDING = """
+[test]
+time = "time_s"
+[columns.current_A]
+quantity = "current"
+unit = "A"
+[columns.T_air]
+quantity = "temperature"
+unit = "degC"
+place = "ambient"
+[columns.R_ohm]
+quantity = "resistance"
+unit = "ohm"
+place = "winding"
+cold = { reading = 1.0, at_degC = 20.0 }
+reference_degC = 20
+meter = { percent = 0.01, offset = 1e-5, resolution = 1e-5, range = [0.4, 4.0] }
+after = { file = "cooling.csv", column = "R_ohm", ambient_degC = 20.0, rated_kW = 7 }
+"""
+
+
+def text_of(T0=120.0, more="", until=400.0, tail="", first_s=20.0):
+    """A record of exact meters, whose first reading is the temperature T0 (degC)."""
+    readings = cooling(first_s, T0)
+    factor = 0.5 * (235.0 + T0) / 255.0 / readings[0][1]
+    rows = [[float(t), float(R * factor)] for t, R in readings]
     load = [list(map(float, row)) for row in warming(until, 10.0)]
-    return HEAD.format(more=more, load=load, cooling=[list(map(float, r)) for r in readings]) + tail
+    return HEAD.format(more=more, load=load, cooling=rows) + tail
+
+
+def without_readings(more=""):
+    """The record without what was read in the run."""
+    return re.sub(r"\[(cold|load|hot)\]\n(\w+ = .*\n)+", "", text_of(more=more))
 
 
 @pytest.fixture
@@ -112,7 +140,7 @@ def test_traction_is_judged_by_the_limit_of_its_contract(report):
 
 
 def test_part_tests_in_place_of_the_load(report):
-    text = re.sub(r"\[(cold|load|hot)\]\n(\w+ = .*\n)+", "", text_of())
+    text = without_readings()
     parts = "".join(
         f'[[superposition]]\nname = "{n}"\nsign = {s}\nrise_K = {K}\nsd_K = 0.5\n'
         for n, s, K in (("open", 1, 40), ("short", 1, 60), ("no load", -1, 8))
@@ -155,10 +183,13 @@ def test_signature_is_that_of_numbers_and_names(report):
         (text_of(tail="[limit]\nK = 180\n"), "key 'source' is missing"),
         (text_of(tail="[power_30min]\nreadings = [[0, 50], [600, 50]]\n"), "10.0 min of power"),
         (text_of(tail='[[superposition]]\nname = "a"\nsign = 0\nrise_K = 1\nsd_K = 1\n'), "sign = 0"),
-        (text_of().replace("[[20.0, ", "[[61.0, ").replace("[35.0, ", "[62.0, "), "60 s is the latest"),
+        (text_of(first_s=61.0), "60 s is the latest"),
+        (text_of().replace("[[20.0, ", "[[120.0, "), "the time 35 does not come after"),
         (text_of().replace("machine_degC = 20.0", "machine_degC = 25.0"), "5.0 K off the room"),
         (text_of().replace("rated_kW = 7", "rated_kW = 6000"), "beyond 5000 kW"),
-        (re.sub(r"\[(cold|load|hot)\]\n(\w+ = .*\n)+", "", text_of(more='case = "nowhere"')), "no such case folder"),
+        (without_readings('case = "nowhere"'), "no such case folder"),
+        (without_readings('case = "tclab"'), "measures no winding by its resistance"),
+        (without_readings('case = "tclab"\ntest = "mars"'), "test = 'mars'"),
     ],
 )
 def test_bad_input(report, tmp_path, text, words):
@@ -173,6 +204,43 @@ def test_bad_input(report, tmp_path, text, words):
 def test_no_file_is_one_message(thermoscope, tmp_path):
     done = thermoscope("bench", "report", "nothing.toml", cwd=tmp_path)
     assert (done.code, len(done.errors)) == (2, 1)
+
+
+def two_bodies(seconds, off_s, current=15.0):
+    """Winding (degC) of the network NETWORK at some instants, by its own equations: backward Euler of 1 s steps."""
+    T, out = np.array([20.0, 20.0]), [20.0]
+    A = np.array([[3000.0 + 20.0, -20.0], [-20.0, 60000.0 + 25.0]])
+    for t in np.arange(1.0, seconds[-1] + 1.0):
+        heat = current**2 * (1 + 0.00393 * (T[0] - 20.0)) if t <= off_s else 0.0
+        T = np.linalg.solve(A, [3000.0 * T[0] + heat, 60000.0 * T[1] + 5.0 * 20.0])
+        out.append(T[0])
+    return np.interp(seconds, np.arange(len(out)), out)
+
+
+def test_way_back_along_the_network_of_a_case(thermoscope, tmp_path, monkeypatch):
+    """From readings that begin 30 s late the network of the case finds the truth at switching off within 0.1 K."""
+    monkeypatch.setattr("extras.bench.heat_run.page.write_pdf", lambda page: None)
+    off, later = 72000.0, np.arange(30.0, 331.0, 15.0)
+    load = np.arange(0.0, off + 1.0, 600.0)
+    T = two_bodies(np.append(load, off + later), off)
+    ohm = (235.0 + T) / 255.0
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "network.toml").write_text(NETWORK)
+    (tmp_path / "case.toml").write_text(
+        '[case]\nname = "two"\nnetwork = "network.toml"\nsample_s = 600\n[tests.run]\nrole = "calibrate"\n'
+    )
+    (tmp_path / "tests/run.toml").write_text(WINDING)
+    rows = "".join(f"{t:g},15,20,{R:.6f}\n" for t, R in zip(load, ohm, strict=False))
+    (tmp_path / "tests/run.csv").write_text(f"time_s,current_A,T_air,R_ohm\n{rows}")
+    rows = "".join(f"{t:g},{R:.6f}\n" for t, R in zip(later, ohm[load.size :], strict=True))
+    (tmp_path / "tests/cooling.csv").write_text(f"time_s,R_ohm\n{rows}")
+    (tmp_path / "heat-run.toml").write_text('[machine]\nrated_kW = 7\n[heat_run]\nclass = "B"\ncase = "."\n')
+    done = thermoscope("bench", "report", tmp_path, "--out", tmp_path / "out", "--json", "-")
+    assert done.code == 0, done.err
+    by_method = {r["method"]: r["temperature_degC"] for r in done.document["rises"]}
+    assert by_method["resistance, network of two"] == pytest.approx(T[load.size - 1], abs=0.1)
+    assert by_method["resistance, IEC 60034-1"] == pytest.approx(T[load.size], abs=0.01)
+    assert done.document["duty"]["missing"] == ""
 
 
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no Chromium")
