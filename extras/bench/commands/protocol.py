@@ -1,38 +1,4 @@
-"""thermoscope bench protocol [RECORD.toml]
-
-[machine]
-rated_kW = 7
-[cold]
-room_degC = 21.0
-machine_degC = 21.3
-resistance_ohm = 0.52
-emf_V = 290.0
-speed_rpm = 383
-range_ohm = 4.0            # upper end of the range that was set
-hours_since_run = 14
-[load]
-file = "run.csv"           # .csv, .xlsx, .tdms, .mf4, .parquet
-time = "time_s"
-column = "T_lamination"
-resolution_K = 0.5
-[hot]
-ambient_degC = 22.0
-file = "cooling.csv"       # or readings = [[30, 0.668], [45, 0.667]]
-time = "time_s"
-column = "R_ohm"
-emf_V = 266.1
-speed_rpm = 383
-[coefficients]
-beta_percent_K = [0.392, 0.393]
-alpha_percent_K = [-0.11, -0.10]
-saturation = { emf_V = [240, 270, 300], remanence_T = [0.98, 1.12, 1.28] }   # optional, from the field of the machine
-[meters]                   # those of the published procedure if not given; one table per range
-resistance = [
-    { range = [0.4, 4.0], percent = 0.25, offset = 0.002, resolution = 0.002 },
-    { range = [4.0, 40.0], percent = 0.25, offset = 0.02, resolution = 0.02 },
-]
-emf = { range = [0, 1000], percent = 0.1, offset = 1.0 }
-"""
+"""thermoscope bench protocol [RECORD.toml]"""
 
 from __future__ import annotations
 

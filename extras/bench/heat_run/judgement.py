@@ -43,7 +43,7 @@ def judged(run: HeatRun) -> dict[str, Any]:
         "sentence": f"class {run.rating.thermal_class}: {_sentence(rise, verdict, why)}",
         "decides": rise.method,
         "rises": [r.document() for r in rises],
-        "duty": duty.document(),
+        "duty": dict(vars(duty)),
         "limits": _limits(run),
         "steps": [_measured(s, run, duty) for s in steps],
         "readings": {
@@ -66,9 +66,9 @@ def judged(run: HeatRun) -> dict[str, Any]:
 
 
 def _limits(run: HeatRun) -> list[dict[str, Any]]:
-    rows = [row.document() for row in methods(run.rating, run.k)]
+    rows = [dict(vars(row)) for row in methods(run.rating, run.k)]
     for method in (RESISTANCE, DETECTORS):
-        rows += [{**row.document(), "what": f"{method}: {row.what}"} for row in corrections(run.rating, method)]
+        rows += [{**vars(row), "what": f"{method}: {row.what}"} for row in corrections(run.rating, method)]
     return rows
 
 

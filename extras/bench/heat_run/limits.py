@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from thermoscope.plugin import allowed_delay
 
@@ -58,9 +57,6 @@ class Correction:
     clause: str
     effect: str
     limit_K: float | None
-
-    def document(self) -> dict[str, Any]:
-        return dict(vars(self))
 
 
 def methods(rating: Rating, k: float) -> list[Correction]:

@@ -87,8 +87,7 @@ def page(document: Document) -> str:
     head += f'<p class="verdict"><span class="{tone}">{escape(document["sentence"])}</span></p>'
     readings, figures = document["readings"], ""
     if len(readings["warming"]) > 1:
-        caption = "; steady from the line on." if document["duty"]["steady_min"] is not None else "; not steady."
-        figures += html.plot(_warming(document), "warming", f"Temperature under load{caption}")
+        figures += html.plot(_warming(document), "warming", "Temperature under load; a line where it became steady.")
     if readings["cooling"]:
         figures += html.plot(_cooling(document), "cooling", "After switching off, and the ways back to that instant.")
     narrow = [html.headed(every[name]) for name in ("duty", "parts", "signature") if every[name].rows]

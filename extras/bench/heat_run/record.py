@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extras.bench.heat_run.duty import BY_LOAD, DUTIES, Operation, Series
+from extras.bench.heat_run.duty import BY_LOAD, CYCLIC, DUTIES, Operation, Series
 from extras.bench.heat_run.limits import CLASSES, STANDARDS, Rating
 from extras.bench.heat_run.rises import K_OF, network_way, winding_of
 from extras.bench.measuring.protocol import Cold, Hot, Record
@@ -125,18 +125,19 @@ def read_heat_run(path: Path, tell: Progress) -> HeatRun:
 
 
 def _operation(head: TomlTable) -> Operation:
+    name, keys = head.kind("duty", "S1", DUTIES), ("rated_min", "cycle_min", "test_load")
+    rated, cycle, load = (head.number(key, low=1e-3) if key in head else 0.0 for key in keys)
     loads = head.rows("loads", of="load") if "loads" in head else []
-    if any(len(row) != 2 or row[0] <= 0 for row in loads):
+    if any(len(row) != 2 or row[0] <= 0 or row[1] < 0 for row in loads) or (loads and not any(b for _, b in loads)):
         raise head.error("loads is no list of pairs", "loads = [[minutes, load], ...]")
-    rated, cycle, load = (
-        head.number(key, low=1e-3) if key in head else None for key in ("rated_min", "cycle_min", "test_load")
+    needed = (
+        (("S2",), rated, "rated_min"),
+        (CYCLIC, cycle, "cycle_min"),
+        (BY_LOAD, loads and load, "loads and test_load"),
     )
-    name = head.kind("duty", "S1", DUTIES)
-    if name in BY_LOAD and (not loads or load is None):
-        raise head.error(f"the duty {name} has no loads", "loads = [[minutes, load], ...] and test_load = ...")
-    for duties, key, value in ((("S2",), "rated_min", rated), (DUTIES[2:8], "cycle_min", cycle)):
-        if name in duties and value is None:
-            raise head.error(f"the duty {name} has no {key}", f"{key} = ... (min)")
+    for duties, value, key in needed:
+        if name in duties and not value:
+            raise head.error(f"the duty {name} has no {key}", f"{key} = ...")
     return Operation(name, rated, cycle, tuple((a, b) for a, b in loads), load)
 
 

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from extras.bench.measuring.warming import equilibrium
+from extras.bench.measuring.warming import equilibrium, spaced_window
 from thermoscope import InputError
 from thermoscope.plugin import (
     COPPER,
@@ -211,7 +211,7 @@ def _steady(record: Record) -> tuple[State, str]:
     minutes, T = np.array(record.warming, float).T
     if minutes.size < 4 or minutes[-1] < 60.0:
         return "refused", f"{minutes[-1]:g} min recorded; go on for an hour at least"
-    end = equilibrium(minutes, T, record.resolution_K, max(10.0, 2.0 * float(np.median(np.diff(minutes)))))
+    end = equilibrium(minutes, T, record.resolution_K, spaced_window(minutes))
     if abs(end.drift_K_h) > DRIFT_K_H or not end.reached:
         return "refused", f"still {end.drift_K_h:+.1f} K/h; go on until no two readings 10 min apart differ"
     return "done", f"steady at {end.T_e:.1f} degC since {end.from_min:.0f} min, {end.drift_K_h:+.1f} K/h"

@@ -206,6 +206,9 @@ def test_duty_by_equivalent_load(duty):
     assert (covered.missing, covered.equivalent_load) == ("", pytest.approx(np.sqrt(0.68)))
     milder = duty_of(Operation(duty, loads=loads, test_load=0.8), warming(400.0), 20.0)
     assert "the equivalent load is 0.825" in milder.missing
+    assert milder.milder
+    harder = duty_of(Operation(duty, loads=loads, test_load=0.9), warming(400.0), 20.0)
+    assert (harder.missing != "", harder.milder) == (True, False)
 
 
 def test_power_of_30_minutes():

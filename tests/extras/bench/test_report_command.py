@@ -182,6 +182,7 @@ def test_signature_is_that_of_numbers_and_names(report):
         (text_of(more='case = "tclab"'), "case and [cold], [load] or [hot] are both given"),
         (text_of(tail="[limit]\nK = 180\n"), "key 'source' is missing"),
         (text_of(tail="[power_30min]\nreadings = [[0, 50], [600, 50]]\n"), "10.0 min of power"),
+        (text_of(tail="[power_30min]\nreadings = [[0, 0], [1800, 50]]\n"), "powers above 0"),
         (text_of(tail='[[superposition]]\nname = "a"\nsign = 0\nrise_K = 1\nsd_K = 1\n'), "sign = 0"),
         (text_of(first_s=61.0), "60 s is the latest"),
         (text_of().replace("[[20.0, ", "[[120.0, "), "the time 35 does not come after"),
