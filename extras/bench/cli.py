@@ -39,7 +39,7 @@ def protocol(
 
 @commands.command()
 def report(
-    record: Annotated[Path, typer.Argument(metavar="RECORD.toml|DIR", help="A heat run; of a folder heat-run.toml.")],
+    record: Annotated[Path, typer.Argument(metavar="RECORD.toml|CASE", help="A heat run, or a case with one.")],
     out: Out = None,
     json: Json = None,
 ) -> int:

@@ -92,7 +92,8 @@ def _steady(name: str, minutes: Array, T: Array, window: float) -> Duty:
     before, drift = 60.0 / window * np.diff(knots)
     tau, rest = _outlook(minutes, T)
     if end.reached:
-        return replace(duty, steady_min=end.from_min, drift_K_h=drift, tau95_min=tau)
+        words = f"steady since {end.from_min:.0f} min"
+        return replace(duty, steady_min=end.from_min, drift_K_h=drift, tau95_min=tau, words=words)
     worst = max(before, drift, key=abs)
     missing = f"not steady: {worst:+.1f} K/h within the last {2 * window:.0f} min, {GRADIENT_K_H:g} K/h are allowed"
     return replace(duty, drift_K_h=drift, tau95_min=tau, rest_K=rest, missing=missing)

@@ -54,7 +54,6 @@ def judged(run: HeatRun) -> dict[str, Any]:
             "warming": [list(row) for row in run.record.warming],
             "cooling": [list(row) for row in (run.record.hot.cooling if run.record.hot else ())],
         },
-        "superposition": [dict(zip(("name", "sign", "rise_K", "sd_K"), row, strict=True)) for row in run.parts],
         "power_30min": power_30_minutes(run.power) if run.power else None,
         "signature": {
             "record": run.key,
@@ -67,7 +66,7 @@ def judged(run: HeatRun) -> dict[str, Any]:
 
 def _limits(run: HeatRun) -> list[dict[str, Any]]:
     rows = [dict(vars(row)) for row in methods(run.rating, run.k)]
-    for method in (RESISTANCE, DETECTORS):
+    for method in (RESISTANCE, DETECTORS) if run.detectors else (RESISTANCE,):
         rows += [{**vars(row), "what": f"{method}: {row.what}"} for row in corrections(run.rating, method)]
     return rows
 

@@ -27,7 +27,8 @@ COMPACT = """<style>main { max-width: 70rem; padding-top: 1.2rem; } h2 { margin-
 td:first-child { min-width: 9rem; } td:last-child { min-width: 8rem; } td.n:last-child { min-width: 0; }
 @media print { html, body { font-size: 7.5pt; } main { padding: 0; } .verdict, p { max-width: none; }
 .two { grid-template-columns: 1fr 1fr; } figure, .scroll, p { margin: .2rem 0; } h2, h3 { margin: .6rem 0 .1rem; }
-table { font-size: 6.8pt; } td, th { padding: .08rem .4rem .08rem 0; overflow-wrap: normal; } }
+table { font-size: 6.5pt; line-height: 1.4; } td, th { padding: .05rem .4rem .05rem 0; overflow-wrap: normal; }
+footer { margin: 0; } }
 @page { size: A4; margin: 10mm; }</style>"""
 
 
@@ -38,13 +39,12 @@ def tables(document: Document) -> dict[str, Table]:
     steps = "step=name | when | *state | found=words"
     duty, power = document["duty"], document["power_30min"]
     rows = {
-        f"duty {duty['name']}": duty["missing"] or "done",
+        f"duty {duty['name']}": duty["missing"] or duty["words"],
         "run under load": _with(duty["minutes"], "min"),
         "steady since": _with(duty["steady_min"], "min"),
         "drift at the end": _with(duty["drift_K_h"], "K/h"),
         "95 % of the rise after": _with(duty["tau95_min"], "min"),
         "still to come": _with(duty["rest_K"], "K"),
-        "load": duty["words"],
         "30-minute power (UNECE R85 5.3.2; ISO 21782)": power and _power(power),
     }
     signed = document["signature"]
@@ -62,7 +62,6 @@ def tables(document: Document) -> dict[str, Table]:
         ),
         "limits": Table.of("Limits and corrections", document["limits"], "what | clause | effect | limit (K)=limit_K"),
         "steps": Table.of("What was measured when", document["steps"], steps, state=_state),
-        "parts": Table.of("Superposition (IEC 60034-29)", document["superposition"], "name | sign | K=rise_K | sd_K"),
         "signature": Table("Signed", ["what", "value"], signature),
     }
 
@@ -90,7 +89,7 @@ def page(document: Document) -> str:
         figures += html.plot(_warming(document), "warming", "Temperature under load; a line where it became steady.")
     if readings["cooling"]:
         figures += html.plot(_cooling(document), "cooling", "After switching off, and the ways back to that instant.")
-    narrow = [html.headed(every[name]) for name in ("duty", "parts", "signature") if every[name].rows]
+    narrow = "".join(f"<div>{html.headed(every[name])}</div>" for name in ("duty", "signature"))
     return html.page(
         f"heat run: {document['title']}",
         [
@@ -99,7 +98,7 @@ def page(document: Document) -> str:
             f'<div class="two">{figures}</div>',
             html.section(every["limits"].title, html.table(every["limits"]), html.text(CLAUSES)),
             html.section(every["steps"].title, html.table(every["steps"])),
-            f'<div class="two">{"".join(f"<div>{table}</div>" for table in narrow)}</div>',
+            f'<div class="two">{narrow}</div>',
             f"<footer>{escape(provenance())}</footer>",
         ],
     )
@@ -107,9 +106,9 @@ def page(document: Document) -> str:
 
 @paper.styled
 def _warming(document: Document) -> Figure:
-    figure, (ax,) = paper.subplots(4.6, 1.9)
+    figure, (ax,) = paper.subplots(4.6, 1.7)
     minutes, T = np.array(document["readings"]["warming"], float).T
-    ax.plot(minutes, T, color=BLUE, marker=".", ms=3, lw=1.0)
+    ax.plot(minutes, T, color=BLUE, lw=1.2)
     if (since := document["duty"]["steady_min"]) is not None:
         ax.axvline(since, color=LIGHT.ink, ls=":", lw=1.0)
     ax.set(xlabel="min under load", ylabel="degC")
@@ -119,7 +118,7 @@ def _warming(document: Document) -> Figure:
 @paper.styled
 def _cooling(document: Document) -> Figure:
     """Readings as temperatures by the cold one, and every way's value at the instant it stands for."""
-    figure, (ax,) = paper.subplots(4.6, 1.9)
+    figure, (ax,) = paper.subplots(4.6, 1.7)
     seconds, ohm = np.array(document["readings"]["cooling"], float).T
     ways = [r for r in document["rises"] if r["at_s"] is not None]
     ax.plot(seconds, ohm, color=BLUE, marker=".", ms=3, lw=0.0)

@@ -26,6 +26,7 @@ from thermoscope.plugin import (
     TomlTable,
     Winding,
     case_key,
+    find_case,
     load_sheet,
     open_case,
     pairs,
@@ -34,7 +35,7 @@ from thermoscope.plugin import (
     recording,
 )
 
-FILE = "heat-run.toml"  # of a folder
+FILE, SUFFIX = "heat-run.toml", ".toml"  # of a case
 NAMES = ("tested", "witnessed", "approved")
 LEAST_K = 1e-3  # no thermometer is surer
 LAST_QUARTER = 0.75  # of a run: the coolant is the mean since then
@@ -73,8 +74,8 @@ class HeatRun:
 
 
 def read_heat_run(path: Path, tell: Progress) -> HeatRun:
-    """The heat run of a file, or of the one in a folder. InputError for what is unknown, missing or cannot be."""
-    file = path / FILE if path.is_dir() else path
+    """The heat run of a file, or of the one in a case. InputError for what is unknown, missing or cannot be."""
+    file = path if path.suffix == SUFFIX else find_case(path) / FILE
     top = TomlTable(read_toml(file, "a record of a heat run, see docs/how-to/heat-run.md"), str(file))
     head, site, bench, limit, etd, power, names = (
         top.table(n) for n in ("heat_run", "site", "test_site", "limit", "etd", "power_30min", "names")
@@ -130,12 +131,8 @@ def _operation(head: TomlTable) -> Operation:
     loads = head.rows("loads", of="load") if "loads" in head else []
     if any(len(row) != 2 or row[0] <= 0 or row[1] < 0 for row in loads) or (loads and not any(b for _, b in loads)):
         raise head.error("loads is no list of pairs", "loads = [[minutes, load], ...]")
-    needed = (
-        (("S2",), rated, "rated_min"),
-        (CYCLIC, cycle, "cycle_min"),
-        (BY_LOAD, loads and load, "loads and test_load"),
-    )
-    for duties, value, key in needed:
+    by_load = BY_LOAD, loads and load, "loads and test_load"
+    for duties, value, key in ((("S2",), rated, "rated_min"), (CYCLIC, cycle, "cycle_min"), by_load):
         if name in duties and not value:
             raise head.error(f"the duty {name} has no {key}", f"{key} = ...")
     return Operation(name, rated, cycle, tuple((a, b) for a, b in loads), load)

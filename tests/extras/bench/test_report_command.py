@@ -136,7 +136,7 @@ def test_traction_is_judged_by_the_limit_of_its_contract(report):
     )
     assert done.code == 0, done.err
     assert done.document["decides"] == "resistance, exponentials"
-    assert {"clause": "contract 12", "limit_K": 180.0}.items() <= done.document["limits"][-2].items()
+    assert {"clause": "contract 12", "limit_K": 180.0}.items() <= done.document["limits"][-1].items()
 
 
 def test_part_tests_in_place_of_the_load(report):
