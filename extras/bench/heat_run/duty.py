@@ -26,7 +26,7 @@ Series = Sequence[tuple[float, float]]
 class Operation:
     """A duty as declared.  rated_min : of S2;  cycle_min : of S3 to S8
 
-    loads : (minutes or share, load) of S9 and S10;  test_load : at which the heat run was held, both in one unit
+    loads : (minutes or share, load) of S9 and S10;  test_load : at which the heat run stood, both in one unit
     """
 
     name: str = "S1"
@@ -68,10 +68,10 @@ def duty_of(operation: Operation, warming: Series, coolant_C: float) -> Duty:
     steady = _steady(name, minutes, T, spaced_window(minutes, HALF_HOUR))
     if name not in BY_LOAD:
         return steady
-    load, held = equivalent_load(operation.loads), operation.test_load
-    words = f"run at load {held:g}, the equivalent load is {load:.3g}"
-    missing = steady.missing or (words if abs(held / load - 1.0) > LOAD_SHARE else "")
-    milder = held < (1.0 + LOAD_SHARE) * load
+    load, level = equivalent_load(operation.loads), operation.test_load
+    words = f"run at load {level:g}, the equivalent load is {load:.3g}"
+    missing = steady.missing or (words if abs(level / load - 1.0) > LOAD_SHARE else "")
+    milder = level < (1.0 + LOAD_SHARE) * load
     return replace(steady, equivalent_load=load, missing=missing, milder=milder, words=words)
 
 
