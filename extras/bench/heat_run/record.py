@@ -19,12 +19,14 @@ from extras.bench.measuring.protocol import Cold, Hot, Record
 from extras.bench.measuring.record_file import Pairs, record_in, timed_pairs
 from thermoscope import InputError
 from thermoscope.plugin import (
+    Array,
     Column,
     Extrapolated,
     Progress,
     Test,
     TomlTable,
     Winding,
+    ambient,
     case_key,
     find_case,
     load_sheet,
@@ -164,7 +166,9 @@ def _of_case(
     if not windings:
         raise InputError("measures no winding by its resistance", sheet.where, 'a column of quantity = "resistance"')
     column = head.word("column", next(iter(windings)), windings)
-    cold, hot, warming = _readings(*windings[column], test)
+    network = folder.case.model.network
+    air = test.boundaries[ambient(network) or network.boundaries[0]]
+    cold, hot, warming = _readings(*windings[column], test, air)
     record = replace(record, cold=cold, hot=hot, warming=warming, ohmmeter=windings[column][1].meter)
     ways: tuple[Extrapolated, ...] = ()
     if hot.cooling:
@@ -175,10 +179,10 @@ def _of_case(
     return record, ways, {"case": folder.case.name, "test": test.name, "revision": revision, "key": key}
 
 
-def _readings(column: Column, winding: Winding, test: Test) -> tuple[Cold, Hot, Pairs]:
+def _readings(column: Column, winding: Winding, test: Test, air: Array) -> tuple[Cold, Hot, Pairs]:
     """What a sheet says of a winding: cold, after switching off (coolant of the last quarter), and (min, degC)."""
     late = test.time >= test.time[0] + LAST_QUARTER * (test.time[-1] - test.time[0])
-    coolant = float(np.mean([np.mean(np.broadcast_to(u, test.time.shape)[late]) for u in test.boundaries.values()]))
+    coolant = float(np.mean(air[late]))
     cooling: tuple[tuple[float, float], ...] = ()
     after = column.electrical.after if column.electrical else None
     if after is not None:

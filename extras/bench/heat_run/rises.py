@@ -155,7 +155,7 @@ def deciding(rises: Sequence[Rise], standard: str) -> Rise:
 def network_way(case: MeasuredCase, test: Test, place: str, cold: Cold, hot: Hot, winding: Winding) -> Extrapolated:
     """Back to switching off along the curve of the case's network, shifted and scaled to the readings."""
     cooling = cooling_of(winding, hot)
-    curve = network_cooling(case, test, place, cooling.time, hot.ambient_C)
+    curve = network_cooling(case, test, place, cooling.time)
     start, rest = curve[0], curve[1:]
     X = np.column_stack([np.ones_like(rest), rest])
     weights, *_ = np.linalg.lstsq(X, cooling.T, rcond=None)
@@ -167,13 +167,16 @@ def network_way(case: MeasuredCase, test: Test, place: str, cold: Cold, hot: Hot
     return Extrapolated(f"network of {case.name}", 0.0, float(x @ weights), sd, words)
 
 
-def network_cooling(case: MeasuredCase, test: Test, place: str, seconds: Array, coolant_C: float) -> Array:
-    """Temperature (degC) of a place when the test ends, and so many seconds after it was switched off."""
+def network_cooling(case: MeasuredCase, test: Test, place: str, seconds: Array) -> Array:
+    """Temperature (degC) of a place when the test ends, and so many seconds after it was switched off.
+
+    What carries no load, such as a pump, goes on as it was at the end of the test.
+    """
     network, values = standing(case), physical(case)
     gone = {network.signal(quantity) for quantity in OFF}
     later = np.concatenate([[SOON_S], np.maximum(seconds, 2 * SOON_S)])
     inputs = {n: np.append(u, np.full(later.size, 0.0 if n in gone else u[-1])) for n, u in test.inputs.items()}
-    air = {n: np.append(u, np.full(later.size, coolant_C)) for n, u in test.boundaries.items()}
+    air = {n: np.append(u, np.full(later.size, u[-1])) for n, u in test.boundaries.items()}
     time = np.append(test.time, test.time[-1] + later)
     channel = next(c for c in test.channels if c.place == place)
     channel = replace(channel, y=np.full(time.size, np.nan), lag_s=0.0)
