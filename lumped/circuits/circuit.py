@@ -18,7 +18,7 @@ from geom.constants import L_MIN, M3_H
 from lumped.circuits.hydraulics import Array, Duct, parallel_shares, pressure_drop, pumping_power, split
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
-from lumped.correlations.streams import LEAST, MOST, known, streamed
+from lumped.correlations.streams import LEAST, MOST, liquid_range, streamed
 from lumped.model.build import node_row
 from lumped.model.network import NOTHING, Link, Network, Row
 from lumped.transfer.coolant import Coolant
@@ -168,7 +168,7 @@ class Circuit:
         All follow one temperature, the mean of the circuit: what flows into it leaves it. Branches are streams of their
         own, whose shares follow flow and temperature, and sum to 1.
         """
-        degC = np.linspace(*known(self.liquid), STEPS)
+        degC = np.linspace(*liquid_range(self.liquid), STEPS)
         rate = self._rate(Table(tuple(degC.tolist()), tuple(self._warmed(degC).tolist())))
         paths = self._paths
         ways = (

@@ -57,8 +57,8 @@ class Reach:
         """States and boundaries (k, n + nb)."""
         for k, (e, span) in enumerate(self.spans):
             hot, cold = self._row(e, HOT, z), self._row(e, COLD, z)
-            seen = span.times * (hot + cold) if span.times else np.abs(hot - cold)
-            self.low[k], self.high[k] = min(self.low[k], seen.min()), max(self.high[k], seen.max())
+            value = span.times * (hot + cold) if span.times else np.abs(hot - cold)
+            self.low[k], self.high[k] = min(self.low[k], value.min()), max(self.high[k], value.max())
 
     def _row(self, e: int, side: int, z: Array) -> Any:
         T, row = self.terms, self.terms.part[e, side]
@@ -68,6 +68,6 @@ class Reach:
     def tell(self, names: Sequence[str]) -> None:
         """A RangeWarning for each that left its table, in which it is held."""
         for k, (e, (what, _, low, high)) in enumerate(self.spans):
-            for extreme, beyond in ((self.low[k], self.low[k] < low), (self.high[k], self.high[k] > high)):
-                if beyond:
+            for extreme, outside in ((self.low[k], self.low[k] < low), (self.high[k], self.high[k] > high)):
+                if outside:
                     out_of_range(f"{names[e]}: {what.format(extreme)} outside {low:g} to {high:g}")
