@@ -316,7 +316,7 @@ def jacket_point(around: Surroundings, jacket: str, rng: np.random.Generator) ->
     except InputError:
         return None
     h = channel_of(around.machine, jacket).film(cooling.share(jacket) * flow, fluid)[0]
-    rate = cooling.liquid.rho * cooling.liquid.cp * cooling.share(jacket) * flow / 6e4
+    rate = fluid.rho * fluid.cp * cooling.share(jacket) * flow / 6e4
     law = onto_outlet(around.machine, jacket, cooling, wet)
     got = coefficient(law, {FLOW: np.array([flow])}, T, 0.0)
     return (got * wet / rate, float(np.expm1(h * wet / rate))) if h * wet < 5.0 * rate else None

@@ -13,12 +13,11 @@ import numpy as np
 
 from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import coupled, film_columns
-from lumped.build.crosscheck import coefficients, fluid_nodes
-from lumped.build.load_cases import rated_watts
+from lumped.build.crosscheck import fluid_nodes
+from lumped.build.load_cases import rated_streams, rated_watts
 from lumped.build.network_size import NetworkSize
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
-from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 
 Floats = np.ndarray
@@ -57,12 +56,11 @@ class Pair:
         own = np.array([rated.get(zone, 0.0) for zone in zones])
         rng = np.random.default_rng(7)
         one, two = (own.sum() * rng.dirichlet(np.full(len(zones), 0.5)) for _ in range(2))
-        point = rated_inputs(machine)
-        cold, warm = (coefficients(network, point, _at_inlet(network, rise)) for rise in (0.0, WARM))
-        inlet = warm.inflow - cold.inflow
+        streams = rated_streams(machine, network)
+        inlet = WARM * ("coolant" in network.boundaries) * streams.sum(1)
         windage = np.array([rated.get(fluid, 0.0) for fluid in fluids])
         watts = np.array([own, one, 0.5 * own if inlet.any() else two])
-        return cls(found.reduction, network, watts.T, np.array([windage, 0 * inlet, inlet]).T, cold.streams)
+        return cls(found.reduction, network, watts.T, np.array([windage, 0 * inlet, inlet]).T, streams)
 
     @property
     def fluids(self) -> tuple[str, ...]:
@@ -143,13 +141,6 @@ class Pair:
     def smaller(self, states: int) -> Pair:
         """The same with a network of at most so many states."""
         return replace(self, network=self.reduction.network(tolerance=0.0, max_states=states))
-
-
-def _at_inlet(network: Network, rise: float) -> Floats:
-    z = np.zeros(network.size)
-    if "coolant" in network.boundaries:
-        z[network.column("coolant")] = rise
-    return z
 
 
 def _times(coefficients: Mapping[str, float], factor: float) -> dict[str, float]:

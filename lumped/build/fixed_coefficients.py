@@ -14,12 +14,11 @@ from fem.matrices.assembly import FieldModel
 from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import Solver, coupled, film_columns
 from geom import Machine
-from lumped.build.crosscheck import coefficients, fluid_nodes
-from lumped.build.load_cases import rated_watts
+from lumped.build.crosscheck import fluid_nodes
+from lumped.build.load_cases import rated_streams, rated_watts
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.recovery import Shapes
 from lumped.machine.loss_sources import place_of
-from lumped.machine.motor import rated_inputs
 from lumped.model.network import Array, Network
 
 STEPS = ((10.0, 6), (60.0, 9), (600.0, 10))  # s, number: a step of loss from a minute to two hours
@@ -117,10 +116,9 @@ def rated(
 ) -> FixedCoefficients:
     """The rated point of a machine, its windings at their reference temperature, whole parts heated."""
     watts, fluids = dict(rated_watts(machine, network)), fluid_nodes(network)
-    streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
     heat = np.array([watts.pop(name, 0.0) for name in fluids])
     whole: dict[str, float] = {}
     for place, q in watts.items():
         part = place_of(network, place).part
         whole[part] = whole.get(part, 0.0) + q
-    return FixedCoefficients(films, contacts, whole, fluids, streams, heat)
+    return FixedCoefficients(films, contacts, whole, fluids, rated_streams(machine, network), heat)

@@ -13,9 +13,11 @@ from lumped.build.pipeline import means_network
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction
 from lumped.condensation.reduction_error import LoadCases, random_load_cases
+from lumped.machine.air import INTAKE_USUAL_C
+from lumped.machine.films import surroundings
 from lumped.machine.loss_sources import loss_watts
 from lumped.machine.motor import rated_inputs
-from lumped.model.network import Network
+from lumped.model.network import Array, Network
 
 
 def load_cases(machine: Machine, reduction: Reduction) -> LoadCases:
@@ -32,6 +34,17 @@ def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
     return loss_watts(machine, network, rated_inputs(machine))
 
 
+def rated_streams(machine: Machine, network: Network) -> Array:
+    """The streams' matrix (W/K) among the fluids at the rated point, for coolant and air as warm as films are usually.
+
+    Temperatures are rises there, so a stream can not look at them.
+    """
+    cooling = surroundings(machine, ()).cooling
+    z = np.full(network.size, INTAKE_USUAL_C if cooling is None else cooling.usual_C)
+    z[network.column("ambient")] = INTAKE_USUAL_C
+    return coefficients(network, rated_inputs(machine), z).streams
+
+
 def fluid_rises(
     machine: Machine, reduction: Reduction, network: Network, rated: Mapping[str, float]
 ) -> dict[str, float]:
@@ -40,8 +53,7 @@ def fluid_rises(
     system = linear(network, reduction.films, reduction.contacts)
     load = sum(rated.get(zone, 0.0) * unit_load(network, zone, system.solid) for zone in zones)
     columns = [list(system.fluid).index(network.column(name)) for name in fluids]
-    streams = coefficients(network, rated_inputs(machine), np.zeros(network.size)).streams
-    G = film_columns(reduction.field, reduction.films, fluids)[1] + streams
+    G = film_columns(reduction.field, reduction.films, fluids)[1] + rated_streams(machine, network)
     fluid_losses = np.array([[rated.get(fluid, 0.0)] for fluid in fluids])
     inverse = np.linalg.inv(system.A)
     _, u = coupled(lambda y: inverse @ y, np.reshape(load, (-1, 1)), system.B[:, columns], G, fluid_losses)

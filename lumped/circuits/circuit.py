@@ -18,19 +18,18 @@ from geom.constants import L_MIN, M3_H
 from lumped.circuits.hydraulics import Array, Duct, parallel_shares, pressure_drop, pumping_power, split
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
-from lumped.correlations.streams import LEAST, MOST, liquid_range, streamed
-from lumped.model.build import node_row
+from lumped.correlations.streams import LEAST, MOST, restretched, streamed, warmed
+from lumped.model.build import mean_row, node_row
 from lumped.model.network import NOTHING, Link, Network, Row
 from lumped.transfer.coolant import Coolant
 from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow
-from lumped.transfer.laws import FULL_UNITS, AtUsualTemperature, InputPower, Law, Table, TemperatureLaw
+from lumped.transfer.laws import AtUsualTemperature, InputPower, Law, TemperatureLaw
 from lumped.transfer.properties import Fluid
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
 
 PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
-STEPS = 25  # of a coolant's temperatures: between two its heat capacity is straight to 0.02 %
 
 Edge = tuple[str, str]  # from, to
 
@@ -93,10 +92,6 @@ class Circuit:
         rate = InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), temperature)
         return rate if self.follows else AtUsualTemperature(rate)
 
-    def _warmed(self, degC: Array) -> Array:
-        """Heat capacity of the same volume over that at `at_degC`."""
-        return np.array([fluid.rho * fluid.cp / self.heat for fluid in map(self.liquid, degC.tolist())])
-
     def shares(self, flow: float | None = None, degC: float | None = None) -> dict[str, float]:
         """Of a flow (m3/s) through each branch, from equal pressure drop: as declared where nothing else is said."""
         fluid = self.liquid(self.at_degC if degC is None else degC)
@@ -154,7 +149,7 @@ class Circuit:
                 one = self._streamed(part, branch, whole / (self.heat * self._unit * usual))
                 nodes = [self.cell(branch, number * self.cells + c) for c in range(self.cells)]
                 before = self.cell(branch, number * self.cells - 1) if number else self.inlet
-                middle, laws = _mean(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
+                middle, laws = mean_row(network, [before, *(n for n in nodes for _ in range(2))][:-1]), {}
                 for wall, of in part.walls.items():
                     law = replace(one, value=part.duct.wall / self.cells * of)
                     laws[wall] = law if self.follows else AtUsualTemperature(law)
@@ -168,12 +163,11 @@ class Circuit:
         All follow one temperature, the mean of the circuit: what flows into it leaves it. Branches are streams of their
         own, whose shares follow flow and temperature, and sum to 1.
         """
-        degC = np.linspace(*liquid_range(self.liquid), STEPS)
-        rate = self._rate(Table(tuple(degC.tolist()), tuple(self._warmed(degC).tolist())))
+        rate = self._rate(warmed(self.liquid, self.at_degC))
         paths = self._paths
         ways = (
-            _mean(network, [node for path in paths.values() for edge in path[:-1] for node in edge]),
-            _mean(network, [node for path in paths.values() for edge in path[1:] for node in edge]),
+            mean_row(network, [node for path in paths.values() for edge in path[:-1] for node in edge]),
+            mean_row(network, [node for path in paths.values() for edge in path[1:] for node in edge]),
         )
         if len(paths) == 1:
             (path,) = paths.values()
@@ -200,7 +194,7 @@ class Circuit:
         """Heat capacity rate (W/K) of a branch."""
         flows, each = self._split
         alike = self._streamed(self.branches[branch][0], branch, 0.0).table
-        value = np.outer(self._warmed(np.array(alike.total)), each[branch]).ravel()
+        value = np.outer(warmed(self.liquid, self.at_degC, alike.total).value, each[branch]).ravel()
         number = flows - math.log(self._unit)
         return self._rate(replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist())))
 
@@ -212,7 +206,7 @@ class Circuit:
             share = self.share(branch, size * self._unit, fluid)
             h, info = film_in(part.duct, size * self._unit * share, fluid)
             rate = share / usual * fluid.rho * fluid.cp / self.heat
-            return h * _restretched(h * stretch / max(size, 1e-300), rate), info
+            return h * restretched(h * stretch / max(size, 1e-300), rate), info
 
         return streamed(self.of, self.flow / self._unit, film, self.liquid, self.at_degC, True, stretch=stretch)
 
@@ -286,24 +280,6 @@ def film_in(duct: Duct, flow: float, fluid: Fluid) -> tuple[float, Info]:
         return schmidt_helical(speed, duct.diameter, duct.coil, fluid)
     ratio = min(duct.width, duct.height) / max(duct.width, duct.height)
     return duct_film(speed, duct.diameter, duct.length, fluid, staton_rectangle(ratio))
-
-
-def _restretched(units: float, share: float) -> float:
-    """By what to take a film so that a stretch for the usual heat capacity rate is right at `share` times that.
-
-    units : transfer units of a cell at the usual rate
-    """
-    N = units / share
-    if share == 1.0 or N <= 0.0 or math.expm1(FULL_UNITS) < N:
-        return 1.0
-    N = min(N, FULL_UNITS)
-    return math.log1p(share * math.expm1(N)) / (share * N)
-
-
-def _mean(network: Network, nodes: list[str]) -> Row:
-    """Of the temperatures of nodes, each as often as it is named."""
-    at, count = np.unique([network.column(node) for node in nodes], return_counts=True)
-    return Row(at, count / len(nodes))
 
 
 def _comb(network: Network, name: str, wall: str, cells: list[str], middle: Row, law: Law) -> Link:

@@ -10,7 +10,7 @@ import numpy as np
 
 from geom.errors import InputError
 from lumped.correlations.info import Info
-from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, Array, StreamTable
+from lumped.transfer.laws import FILMS, FIRST_C, FULL_UNITS, STEP_K, Array, StreamTable, Table
 from lumped.transfer.properties import TABULATED_C, Fluid
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.streamed import Streamed
@@ -22,6 +22,7 @@ LEAST, MOST = 1e-5, 1e4  # times the usual input: where a table ends at the late
 REACH = 20.0  # and at the earliest: at four times the usual input in a fluid of a fifth of the viscosity
 LOOKS = (0.2, 0.5, 0.8)  # of a cell, where a film is looked at: a corner may be anywhere in it
 GRID_K = TABULATED_C[1] - TABULATED_C[0]
+STEPS = 25  # of a coolant's temperatures: between two its heat capacity is straight to 0.02 %
 FINEST = 2e-3  # of a logarithm: no cell is cut further, at a jump
 
 
@@ -65,6 +66,24 @@ def liquid_range(liquid: Callable[[float], Fluid]) -> tuple[float, float]:
     """From what temperature to what (degC) the properties of a liquid are known."""
     span = [T for T in TABULATED_C if _exists(liquid, T)]
     return _limit(liquid, span[0], -GRID_K), _limit(liquid, span[-1], GRID_K)
+
+
+def warmed(liquid: Callable[[float], Fluid], at_degC: float, degC: Sequence[float] = ()) -> Table:
+    """Heat capacity of a volume over that at `at_degC`, at some or all temperatures at which the coolant is liquid."""
+    some, usual = degC or np.linspace(*liquid_range(liquid), STEPS).tolist(), liquid(at_degC)
+    return Table(tuple(some), tuple(x.rho * x.cp / (usual.rho * usual.cp) for x in map(liquid, some)))
+
+
+def restretched(units: float, share: float) -> float:
+    """By what to take a film so that a stretch for the usual heat capacity rate is right at `share` times that.
+
+    units : transfer units of a cell at the usual rate
+    """
+    N = units / share
+    if share == 1.0 or N <= 0.0 or math.expm1(FULL_UNITS) < N:
+        return 1.0
+    N = min(N, FULL_UNITS)
+    return math.log1p(share * math.expm1(N)) / (share * N)
 
 
 def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -> float:

@@ -19,10 +19,10 @@ from geom.description.machine import Machine
 from geom.description.profile import loop_length
 from lumped.correlations.ducts import duct_film, schmidt_helical
 from lumped.correlations.info import Info
-from lumped.correlations.streams import streamed
+from lumped.correlations.streams import liquid_range, restretched, streamed, warmed
 from lumped.machine.path import cells_of, stem
 from lumped.machine.shapes import radius
-from lumped.model.build import stream
+from lumped.model.build import mean_row, stream
 from lumped.model.network import NOTHING, Link, Network, Place, Row
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import AtUsualTemperature, InputPower, Law
@@ -31,6 +31,7 @@ from lumped.transfer.reversal import OneWay
 from lumped.transfer.streamed import Streamed
 
 INLET, FLOW = "coolant", "flow_l_min"
+WARMER_K = 20.0  # than its inlet a coolant is usually, where it takes up the rated losses
 LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
 
 
@@ -38,20 +39,20 @@ LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
 class Cooling:
     """feeds : jacket -> INLET or the jacket whose outlet feeds it
 
-    property_C : where density and heat capacity are those of the flow; films follow the coolant's own temperature
+    usual_C : where its films are tabulated around; they and its heat capacity follow the coolant's own temperature
     """
 
     coolant: str
     flow_l_min: float
-    property_C: float
+    usual_C: float
     feeds: Mapping[str, str]
 
     def __hash__(self) -> int:
-        return hash((self.coolant, self.flow_l_min, self.property_C, *self.feeds.items()))
+        return hash((self.coolant, self.flow_l_min, self.usual_C, *self.feeds.items()))
 
     @property
     def liquid(self) -> Fluid:
-        return liquid(self.coolant, self.property_C)
+        return liquid(self.coolant, self.usual_C)
 
     def before(self, jacket: str) -> list[str]:
         """Where its coolant comes from, backwards as far as the inlet; a circle ends where it closes."""
@@ -82,11 +83,13 @@ def cooling_of(machine: Machine) -> Cooling | None:
     t = Table(machine.sections.get("cooling", {}), f"{machine.name} [cooling]")
     ports = {name: Table(t.raw(name, {}), f"{t.where} {name}") for name in jackets}
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
-    inlet = t.number("inlet_C", 20.0)
+    if "property_C" in t:
+        raise t.error("key 'property_C' is gone", "leave it out: a coolant has the properties of its temperature")
+    coolant, usual = t.word("coolant", "glycol-50", LIQUIDS), t.number("inlet_C", 20.0) + WARMER_K
     cooling = Cooling(
-        t.word("coolant", "glycol-50", LIQUIDS),
+        coolant,
         t.number("flow_L_per_min"),
-        t.number("property_C", inlet + 20.0),
+        min(usual, liquid_range(partial(liquid, coolant))[1]),
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
     )
     t.number("pressure_bar", 1.0)
@@ -150,8 +153,14 @@ def outlet_film(machine: Machine, network: Network, place: str, cooling: Cooling
 @lru_cache(64)
 def _film(channel: Channel, cooling: Cooling, share: float, stretch: float) -> Streamed:
     """stretch : of StreamTable"""
-    film, fluid = (lambda q, of: channel.film(share * q, of)), partial(liquid, cooling.coolant)
-    return streamed(FLOW, cooling.flow_l_min, film, fluid, cooling.property_C, liquid=True, stretch=stretch)
+    heat = cooling.liquid.rho * cooling.liquid.cp
+
+    def film(flow: float, fluid: Fluid) -> tuple[float, Info]:
+        h, info = channel.film(share * flow, fluid)
+        return h * restretched(h * stretch / max(flow, 1e-300), fluid.rho * fluid.cp / heat), info
+
+    of = partial(liquid, cooling.coolant)
+    return streamed(FLOW, cooling.flow_l_min, film, of, cooling.usual_C, liquid=True, stretch=stretch)
 
 
 def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
@@ -163,16 +172,21 @@ def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
 
 
 def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> list[Link]:
-    """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket."""
-    feeds = _feeds(machine, cooling).items()
-    return [
-        stream(network, f"stream:{cell}", (feed, cell), _rate_law(machine, stem(cell), cooling)) for cell, feed in feeds
-    ]
+    """Every cell takes up m cp (T - T of the cell before); before a jacket's first is the inlet or another jacket.
+
+    All follow one temperature, the mean of the jackets: what flows into one leaves it.
+    """
+    feeds = _feeds(machine, cooling)
+    middle = mean_row(network, [node for pair in feeds.items() for node in pair])
+    laws = {jacket: _rate_law(machine, jacket, cooling) for jacket in cooling.feeds}
+    links = (stream(network, f"stream:{cell}", (feed, cell), laws[stem(cell)]) for cell, feed in feeds.items())
+    return [replace(link, hot=middle, cold=NOTHING) for link in links]
 
 
 def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     right = "a flow from inlet to outlet: what comes in at the outlet is not known"
-    rate = InputPower(_rate(jacket, cooling), ((FLOW, 1.0, 1.0),))
+    warmer = warmed(partial(liquid, cooling.coolant), cooling.usual_C)
+    rate = InputPower(_rate(jacket, cooling), ((FLOW, 1.0, 1.0),), warmer)
     return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
 
 
@@ -186,5 +200,5 @@ def outlets(machine: Machine, network: Network, cooling: Cooling) -> dict[str, P
 
 
 def _rate(jacket: str, cooling: Cooling) -> float:
-    """Heat capacity rate m cp (W/K) of an inlet's flow of 1 l/min."""
+    """Heat capacity rate m cp (W/K) of an inlet's flow of 1 l/min, at the usual temperature."""
     return cooling.liquid.rho * cooling.liquid.cp * cooling.share(jacket) * L_MIN

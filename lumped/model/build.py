@@ -16,6 +16,12 @@ def node_row(column: int) -> Row:
     return Row(np.array([column]), np.array([1.0]))
 
 
+def mean_row(network: Network, nodes: Sequence[str]) -> Row:
+    """Of the temperatures of nodes, each as often as it is named."""
+    at, count = np.unique([network.column(node) for node in nodes], return_counts=True)
+    return Row(at, count / len(nodes))
+
+
 def surface_place(name: str, part: str, state: int, area: float, fluid: str | None = None) -> Place:
     """A face of known area (m2) at its node's temperature."""
     at = np.array([state])
