@@ -93,12 +93,17 @@ def straight(value: Array) -> Curve:
 
 
 def curve(
-    every: Array, factor: Callable[[Array], Array], moves: Moves, turns: Array = NONE, skip: Mask | None = None
+    every: Array,
+    factor: Callable[[Array], Array],
+    moves: Moves,
+    turns: Array = NONE,
+    skip: Mask | None = None,
+    share: float = 1.0,
 ) -> Curve:
     """From a factor, () where it never changes.  every : the factor at moves.positions;  factor : at any positions
 
     moves : where its inputs move between samples;  turns : positions at which it may have a corner
-    skip (nt,) : the intervals that end there are not to be cut
+    skip (nt,) : the intervals that end there are not to be cut;  share : of CURVED and MISSED that counts
     """
     if every.ndim == 0:
         return straight(every)
@@ -116,28 +121,28 @@ def curve(
     if skip is not None:
         near = near[~skip[near + 1]]
     with within_silence():  # what is out of range was said of the samples
-        inserted = _cut(again, near.astype(float), turns, SMALL * limits[3])
+        inserted = _cut(again, near.astype(float), turns, SMALL * limits[3], share)
     return Curve(every[:nt], bulge, inserted)
 
 
-def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: float) -> Array:
+def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: float, share: float) -> Array:
     """Positions that cut those of some intervals in which a parabola misses too much."""
     if left.size == 0:
         return NONE
     five = factor((left[:, None] + QUARTERS).ravel()).reshape(-1, QUARTERS.size)
-    wrong = left[_too_curved(five, 1.0, small)]
-    return _inserted(factor, wrong, turns, small) if wrong.size else NONE
+    wrong = left[_too_curved(five, 1.0, small, share)]
+    return _inserted(factor, wrong, turns, small, share) if wrong.size else NONE
 
 
-def _too_curved(five: Array, width: Array | float, small: float) -> Mask:
+def _too_curved(five: Array, width: Array | float, small: float, share: float) -> Mask:
     """(n,) whether a parabola misses too much of a factor in an interval of that width, a share of that of samples."""
     f0, q1, fm, q3, f1 = five.T
     low, high = (3 * f0 + 6 * fm - f1) / 8, (-f0 + 6 * fm + 3 * f1) / 8
     missed = np.asarray(np.maximum(np.abs(q1 - low), np.abs(q3 - high)) / np.maximum(np.abs(five).max(axis=1), small))
-    return np.asarray((width * missed > CURVED) | (missed > MISSED))
+    return np.asarray((width * missed > share * CURVED) | (missed > share * MISSED))
 
 
-def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, small: float) -> Array:
+def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, small: float, share: float) -> Array:
     """Positions that cut the intervals after some samples at their corners, and then in halves as long as needed."""
     corners = turns[np.isin(np.floor(turns), samples)]
     ends = np.unique(np.concatenate([samples, samples + 1.0, corners]))
@@ -145,7 +150,7 @@ def _inserted(factor: Callable[[Array], Array], samples: Array, turns: Array, sm
     left, width, out = ends[:-1][sampled], np.diff(ends)[sampled], [corners]
     while left.size:
         at = left[:, None] + width[:, None] * QUARTERS
-        cut = _too_curved(factor(at.ravel()).reshape(at.shape), width, small) & (width > FINEST)
+        cut = _too_curved(factor(at.ravel()).reshape(at.shape), width, small, share) & (width > FINEST)
         left, width = left[cut], 0.5 * width[cut]
         out.append(left + width)
         left, width = np.concatenate([left, left + width]), np.tile(width, 2)

@@ -68,7 +68,7 @@ def forcing(
     ends = [straight(x) for x in u.T]
     indices, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
     if not every_sample:
-        indices, wholes = _needed(t, curves, ends, list(source.values()))
+        indices, wholes = _needed(t, curves, ends, list(source.values()), signals.missed)
     factor, bulge = _between(t, indices, curves, wholes[: len(curves)])
     u, arch = _between(t, indices, ends, wholes[len(curves) :])
     knots = t[indices]
@@ -80,19 +80,19 @@ def forcing(
 
 
 def _needed(
-    time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array]
+    time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array], missed: float
 ) -> tuple[Ints, list[Array]]:
     """Which knots a run needs: between them whatever drives it is a parabola, and so are all inputs of the record.
 
     And the integrals (nk,) of heats and ends from the first knot; those of what never varies are empty.
 
     heats : of all terms, those that do not act among them: a tangent by a film that opens for a while turns where it
-    opens, whatever its size
+    opens, whatever its size;  missed : of Signals
     """
     curves = [
-        *((c, PARABOLA, 0.0) for c in heats),
-        *((c, 0.0, PARABOLA_K) for c in ends),
-        *((straight(x), PARABOLA, 0.0) for x in inputs),
+        *((c, missed * PARABOLA, 0.0) for c in heats),
+        *((c, 0.0, missed * PARABOLA_K) for c in ends),
+        *((straight(x), missed * PARABOLA, 0.0) for x in inputs),
     ]
     varying = {i: k for k, i in enumerate(i for i, x in enumerate(curves) if _varies(x[0]))}
     value, bulge, whole = np.empty((3, len(varying), time.size))

@@ -54,7 +54,10 @@ class Signals(dict[str, Array]):
     wider apart than the samples were recorded, factors are still made of these and keep their integrals.
 
     source : the samples as recorded, of signals that are looked at on other instants
+    missed : of what parabolas may miss between samples, what they may here
     """
+
+    missed = 1.0
 
     def __init__(self, inputs: Mapping[str, Any], nt: int) -> None:
         super().__init__({name: _checked(name, value, nt) for name, value in inputs.items()})
@@ -81,6 +84,13 @@ class Signals(dict[str, Array]):
         out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
         out._around = self, np.arange(some.start, some.stop, dtype=float)
         out.source = self.source and self.source.part(self.source.at[some])
+        return out
+
+    def exact(self, missed: float) -> Signals:
+        """The same, whose parabolas may miss a share of what is usual."""
+        out = Signals(self, self.nt)
+        out._around, out._are_cut, out.missed = self._around, self._are_cut, missed
+        out.source = self.source and self.source._replace(signals=self.source.signals.exact(missed))
         return out
 
     def finer(self, at: Array) -> Signals:
@@ -146,7 +156,7 @@ class Signals(dict[str, Array]):
             def factor(at: Array) -> Array:
                 return self._factor(name, law, self._between(at), at.size)
 
-            near = curve(every, factor, read.moves, read.turns, full)
+            near = curve(every, factor, read.moves, read.turns, full, self.missed)
             return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
         if self._around:
             whole, at = self._around

@@ -6,7 +6,7 @@ run = simulate(network, Record(time, inputs, boundaries, initial), values, rows,
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 
@@ -16,7 +16,7 @@ from geom.arrays import Array, Ints
 from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted
-from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, more_exact, reordered
+from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
 from lumped.integration.failure import failure
 from lumped.integration.reach import Reach
 from lumped.integration.record import Record, instants
@@ -43,7 +43,6 @@ from lumped.numerics.terms import Forcing
 
 PORTION = 4096  # steps whose states are kept for their tangents
 ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
-FINER = 100.0  # as exact: next to nothing is left of the error then, in 5 times the steps
 FACTORS = 2**18  # numbers of the LU of those steps, which their tangents take too: 2 MB, what a core has for itself
 
 
@@ -66,7 +65,7 @@ class Run(TableResult):
     """time (nt,); z (nt, n_states + n_boundaries) degC if kept; y (nt, n_rows); dy (nt, n_rows, n_tangents).
 
     end : for a run that goes on;  steps : those it took;  path : (n_steps, n_states) where each ended, if kept
-    finer : the same run at a FINER-th of the tolerance
+    finer : of `simulate`, the same run with next to nothing left of its error
     """
 
     time: Array
@@ -75,12 +74,12 @@ class Run(TableResult):
     dy: Array | None
     end: Stand
     steps: Steps
-    finer: Callable[[], Run]
     path: Array | None = None
+    finer: Callable[[], Run] = None  # type: ignore[assignment]
 
     @cached_property
     def time_error_K(self) -> Array:
-        """(n_rows,) the largest error of every output that the time steps leave (K), from the finer run.
+        """(n_rows,) the largest error of every output that steps and parabolas through inputs leave (K), from that run.
 
         It takes some three times as long as the run itself, and only when asked for.
         """
@@ -155,7 +154,8 @@ def simulate(
     Raises ThermoscopeError where a node runs away or no step keeps what physics allows.
     """
     core = compiled(network, record, values, rows, tangents, precision=precision, shifts=shifts)
-    return march(network, record, core, keep_states, begin, steps)
+    finer = partial(simulate, network, record, values, rows, begin=begin, precision=precision.finer)
+    return replace(march(network, record, core, keep_states, begin, steps), finer=finer)
 
 
 def march(
@@ -172,12 +172,11 @@ def march(
 
     portion : steps whose states are in memory at once for their tangents
     """
-    finer = partial(march, network, record, more_exact(core, FINER), begin=begin)
     course = _Course(network, record, core, keep_states, begin, steps, portion)
     course.path = [] if keep_path else None
     for part in _parts(core.forcing.time, core.C):
         course.over(part, part.start > 0 or begin is None)
-    return course.run(finer)
+    return course.run()
 
 
 class _Course:
@@ -275,7 +274,7 @@ class _Course:
             getattr(self.trace, name)[: part.size] = part
         return self.core.control._replace(follow=np.ones(1, np.int64))
 
-    def run(self, finer: Callable[[], Run]) -> Run:
+    def run(self) -> Run:
         """What came of it."""
         if not self.tangents:  # of a fit, whose every run would say so
             self.reach.see(self.both.z[:1, :-1])
@@ -292,7 +291,6 @@ class _Course:
             dy,
             end,
             steps,
-            finer,
             np.concatenate(self.path) if self.path else None,
         )
 

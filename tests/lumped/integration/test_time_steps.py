@@ -13,7 +13,6 @@ from small_networks import C1, C2, G2A, G12, two_masses
 
 from geom.errors import ThermoscopeError
 from lumped.declarations.network import read_network
-from lumped.integration.compiled import RUN
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed, InputPower, Linear
@@ -22,6 +21,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "network-toml.md"
 DOCUMENTED = read_network(tomllib.loads(re.findall(r"```toml\n(.*?)```", PAGE.read_text(), re.S)[0]))
 PRINCIPLE = 0.01  # K, beyond what is allowed
 ROUNDING = 1e-9  # K
+CURVED = (5028, 5069, 5075)  # whose error is what parabolas through the inputs miss, not what the steps do
 SEEDS = range(1000, 1012)  # benchmarks/peers/time_steps.py takes a thousand
 
 
@@ -84,32 +84,23 @@ def test_a_cell_of_a_tenth_of_a_joule_sees_the_last_of_a_flow_that_falls():
     assert_allclose(z, exact, atol=0.03)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_a_random_network_is_where_radau_has_it(seed):
-    """Equations, Jacobian and integrator of their own; none outside what surroundings and start allow."""
-    m = machine(seed, 10)
+@pytest.mark.parametrize(("seed", "most"), [*((seed, 10) for seed in SEEDS), *((seed, 40) for seed in CURVED)])
+def test_a_random_network_is_where_radau_has_it(seed, most):
+    """Equations, Jacobian and integrator of their own; none outside what surroundings and start allow.
+
+    The error that a run says is that of every node, to a fifth of the largest: 3 % is left of what parabolas miss.
+    """
+    m = machine(seed, most)
     network, record = built(m)
     rows = [network.place(node).mean for node in network.states]
     run = simulate(network, record, rows=rows, keep_states=True)
     x, exact = run.z[:, : m.C.size], reference(m)
     span = max(exact.max(), m.around.max()) - min(exact.min(), m.around.min())
-    error, (low, high) = float(np.abs(x - exact).max()), admissible(m)
-    assert error < max(0.1, 1e-3 * span)
-    assert error < max(0.02, 3.0 * run.time_error_K.max())
+    error, (low, high) = np.abs(x - exact).max(axis=0), admissible(m)
+    assert error.max() < max(0.1, 1e-3 * span)
+    assert_allclose(run.time_error_K, error, atol=0.2 * error.max())
     assert low - PRINCIPLE < x.min()
     assert x.max() < high + PRINCIPLE
-
-
-@pytest.mark.parametrize("seed", SEEDS)
-def test_the_time_error_is_that_against_a_tolerance_a_hundred_times_finer(seed):
-    """Of every node, within a factor of three."""
-    network, record = built(machine(seed, 10))
-    rows = [network.place(node).mean for node in network.states]
-    run = simulate(network, record, rows=rows)
-    fine = RUN._replace(error_K=RUN.error_K / 100.0, error_share=RUN.error_share / 100.0)
-    error = np.abs(run.y - simulate(network, record, rows=rows, precision=fine).y).max(axis=0)
-    assert np.all(run.time_error_K < 3.0 * error + ROUNDING)
-    assert np.all(error < 3.0 * run.time_error_K + ROUNDING)
 
 
 @pytest.mark.parametrize("seed", SEEDS[:8])
