@@ -74,16 +74,26 @@ def common(
     return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
 
 
-def longest_part(first: Recording, limit_s: float) -> tuple[tuple[float, float | None], tuple[str, ...]]:
-    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note."""
-    t = first.clock.seconds[np.isfinite(first.clock.seconds)]
-    gaps = np.flatnonzero(np.diff(t) > max(limit_s, 2 * first.step_s))
-    if not gaps.size:
+def longest_part(
+    first: Recording, limit_s: float, columns: Sequence[str] = ()
+) -> tuple[tuple[float, float | None], tuple[str, ...]]:
+    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note.
+
+    columns : that have to be known throughout
+    """
+    t, gaps = first.clock.seconds, []
+    rows = np.isfinite(t)
+    for what in ("", *columns):
+        at = t[rows & np.isfinite(first.source.numbers(what))] if what else t[rows]
+        long = np.flatnonzero(np.diff(at) > max(limit_s, 2 * float(np.median(np.diff(at))))) if at.size > 1 else []
+        gaps += [(float(at[k]), float(at[k + 1]), what) for k in long]
+    if not gaps:
         return (0.0, None), ()
-    starts, ends = t[np.r_[0, gaps + 1]], t[np.r_[gaps, t.size - 1]]
-    k = int(np.argmax(ends - starts))
-    begin, end = float(starts[k]), float(ends[k])
-    what = f"no rows of {first.name} from {t[gaps[0]]:.6g} s to {t[gaps[0] + 1]:.6g} s"
+    starts, ends, lacking = zip(*sorted(gaps), strict=True)
+    parts = [*zip(np.maximum.accumulate([t[rows][0], *ends]), [*starts, t[rows][-1]], strict=True)]
+    begin, end = map(float, max(parts, key=lambda part: part[1] - part[0]))
+    of = f"'{lacking[0]}' in" if lacking[0] else "rows of"
+    what = f"no {of} {first.name} from {starts[0]:.6g} s to {ends[0]:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
 
 

@@ -20,7 +20,7 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
-from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock
+from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
 from measured.importing.source import Source, read_source, source_of_recording
@@ -114,6 +114,11 @@ def _file(draft: Draft, i: int) -> str:
 def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock]:
     """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock"""
     return with_clock(read_source(file), period_s)
+
+
+def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, Clock]]:
+    """A recording as read_timed gives it, or one from each row on where it starts anew."""
+    return [with_clock(run, period_s) for run in runs_of(read_source(file), period_s)]
 
 
 def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:

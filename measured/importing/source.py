@@ -36,7 +36,7 @@ SCALED = re.compile(
 )  # x0.1 °C, 1/10 °C, 10 mA
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
-TAG = re.compile(r"\s*<[^<>]*>")  # of a channel, which is no part of its name: 101 Winding <TC K>
+TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
