@@ -85,7 +85,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     unit_cells = _padded(rows[units] if units is not None else [], width)
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
-    unit_cells[0] *= is_time(names[0]) or is_unit(unit_cells[0])  # what stands before units is the row's own label
+    if not is_unit(unit_cells[0]):
+        unit_cells[0] = split_unit(unit_cells[0])[1]  # the row's own label, such as "Unit [s]"
     has_unit = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
     unit_cells = [u if has else split_unit(group)[1] for u, has, group in zip(unit_cells, has_unit, groups)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)

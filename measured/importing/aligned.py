@@ -81,19 +81,23 @@ def longest_part(
 
     columns : that have to be known throughout
     """
-    t, gaps = first.clock.seconds, []
+    t, gaps = first.clock.seconds, list[tuple[float, float, str]]()
     rows = np.isfinite(t)
-    for what in ("", *columns):
-        at = t[rows & np.isfinite(first.source.numbers(what))] if what else t[rows]
-        long = np.flatnonzero(np.diff(at) > max(limit_s, 2 * float(np.median(np.diff(at))))) if at.size > 1 else []
-        gaps += [(float(at[k]), float(at[k + 1]), what) for k in long]
+    for column in ("", *columns):
+        at = t[rows & np.isfinite(first.source.numbers(column))] if column else t[rows]
+        usual = float(np.median(np.diff(at))) if at.size > 1 else 0.0
+        gaps += [
+            (float(at[k]), float(at[k + 1]), column) for k in np.flatnonzero(np.diff(at) > max(limit_s, 2 * usual))
+        ]
     if not gaps:
         return (0.0, None), ()
-    starts, ends, lacking = zip(*sorted(gaps), strict=True)
-    parts = [*zip(np.maximum.accumulate([t[rows][0], *ends]), [*starts, t[rows][-1]], strict=True)]
-    begin, end = map(float, max(parts, key=lambda part: part[1] - part[0]))
-    of = f"'{lacking[0]}' in" if lacking[0] else "rows of"
-    what = f"no {of} {first.name} from {starts[0]:.6g} s to {ends[0]:.6g} s"
+    gaps.sort()
+    begins = np.maximum.accumulate([t[rows][0], *(end for _, end, _ in gaps)])
+    ends = np.array([*(start for start, *_ in gaps), t[rows][-1]])
+    k = int(np.argmax(ends - begins))
+    begin, end = float(begins[k]), float(ends[k])
+    start, stop, column = gaps[0]
+    what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
 
 

@@ -153,7 +153,7 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
         t = clock.seconds
         at = np.flatnonzero(np.diff(t) < 0) + 1
         usual = float(np.nanmedian(np.abs(np.diff(t)))) if t.size > 1 else 0.0
-        anew = clock.start is None and bool((t[at] <= t[:1] + usual).all())
+        anew = clock.start is None and bool((np.abs(t[at] - t[:1]) <= usual).all())
         anew &= not any(abs(t[k - 1] + usual - turn) <= usual for k in at[:1] for turn in (60.0, HOUR_S, DAY_S))
     edges = [0, *at.tolist(), source.rows]
     if not (anew and at.size) or min(np.diff(edges)) < FEWEST:

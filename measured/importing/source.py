@@ -7,6 +7,7 @@ import re
 import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
 from measured.recordings.data_table import DataTable
-from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, workbook_rows
+from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
 from measured.recordings.units import QUANTITIES
 
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
@@ -95,22 +96,46 @@ def as_numbers(cells: Sequence[Any]) -> Array:
 
 
 def read_source(file: Path) -> Source:
-    """Any file a recorder writes. InputError where it is no record, MissingDependency where a package is not there."""
+    """The longest of the tables of a file."""
+    return max(read_sources(file), key=lambda source: source.rows)
+
+
+def read_sources(file: Path) -> list[Source]:
+    """Any file a recorder writes; of a workbook all sheets with the columns of the largest.
+
+    InputError where it is no record, MissingDependency where a package is not there.
+    """
     if file.is_dir():
         raise InputError("is a folder", str(file), f"the recordings in it, such as {file}/*.csv")
     if not file.is_file():
         raise InputError("no such file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
-        rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))
-        rows = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
-        plan = layout(rows, str(file))
+        return _of_sheets(file)
+    if suffix not in BINARY:
+        return [source_of_table(file, *text_table(file))]
+    return [source_of_recording(file, read_recording(file))]
+
+
+def _of_sheets(file: Path) -> list[Source]:
+    sheets = guarded(file, BOOK, "openpyxl", lambda: worksheets(file))
+    for name, rows in sheets.items():
+        sheets[name] = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
+    largest = max(sheets, key=lambda name: len(sheets[name]) * len(sheets[name][0]), default="")
+    plans = {largest: layout(sheets.get(largest, []), str(file))}
+    for name in sheets.keys() - plans.keys():
+        with suppress(InputError):  # a page of words
+            plans[name] = layout(sheets[name], str(file))
+    alike = [name for name in sheets if name in plans and plans[name].names == plans[largest].names]
+    notes = [f"{file.name}: a test from each of the worksheets {', '.join(alike)}"] * (len(alike) > 1)
+    notes += [f"{file.name}: worksheet '{name}' is left out" for name in sheets if name in plans.keys() - {*alike}]
+    out = []
+    for name in alike:
+        plan, rows = plans[name], sheets[name]
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        return source_of_table(file, plan, columns, _formulas(file))
-    if suffix not in BINARY:
-        return source_of_table(file, *text_table(file))
-    return source_of_recording(file, read_recording(file))
+        out.append(source_of_table(file, plan, columns, [*notes, *_formulas(file)]))
+    return out
 
 
 def source_of_recording(file: Path, table: DataTable) -> Source:

@@ -1,6 +1,7 @@
 """Files as benches, controllers and CAN tools write them: runs in one file, ratios as units, powers of parts."""
 
 import numpy as np
+import openpyxl
 import pytest
 
 from geom.description.roles import Role
@@ -36,6 +37,8 @@ def read(tmp_path, **columns):
         ("DB10.Temp_Carcaca", Role.HOUSING),
         ("Temp_Gehause", Role.HOUSING),
         ("铁芯温度", Role.IRON),
+        ("鉄心温度", Role.IRON),
+        ("T induit", Role.ROTOR),
     ],
 )
 def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role):
@@ -121,3 +124,31 @@ def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_pat
     window, notes = longest_part(record, 120.0, ["I [A]"])
     assert window == (5000.0, 11800.0)
     assert "no 'I [A]' in a.csv from 3000 s to 5000 s" in notes[0]
+
+
+def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
+    book, names = openpyxl.Workbook(), ["t [s]", "T_winding [°C]"]
+    for sheet, first in (("Run 1", 20.0), ("Run 2", 30.0)):
+        page = book.create_sheet(sheet)
+        for row in (names, *([t, first + t] for t in T[: 30 + int(first)].tolist())):
+            page.append(row)
+    for page, head in ((book.active, ["step", "W"]), (book.create_sheet("Words"), ["About", "this"])):
+        for row in (head, *([[k, 2] for k in range(4)] if head[0] == "step" else [])):
+            page.append(row)
+    book.save(tmp_path / "a.xlsx")
+    runs = read_runs(tmp_path / "a.xlsx")
+    assert [source.numbers(names[1])[0] for source, _ in runs] == [20.0, 30.0]
+    assert [note.partition(": ")[2] for note in runs[0][0].notes] == [
+        "a test from each of the worksheets Run 1, Run 2",
+        "worksheet 'Sheet' is left out",
+    ]
+
+
+def test_the_clocks_unit_behind_the_label_of_the_row_of_units():
+    rows = [
+        ["Name", "T_coil", "I"],
+        ["Unit [s]", "°C", "A"],
+        ["Comment", "", ""],
+        *([[str(k), "20", "5"] for k in range(9)]),
+    ]
+    assert layout(rows, "a.txt").units == ("s", "°C", "A")
