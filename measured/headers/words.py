@@ -140,6 +140,16 @@ def is_setpoint(name: str) -> bool:
     return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
 
 
+def is_rise(name: str) -> bool:
+    """Is it a difference of temperatures?"""
+    return "Δ" in name or bool(DIFFERENCE & {*tokens(name), *re.findall("[a-z]+", name.lower())})
+
+
+def without_rise(name: str) -> str:
+    """ "Winding" of "Winding rise ΔT": the words that say no difference."""
+    return " ".join(word for word in re.split(r"[\s_]+", name) if not is_rise(word))
+
+
 def is_spoken(name: str, terms: frozenset[str]) -> bool:
     """Does one of some words stand in a name?  Signs that are words may stand inside others."""
     signs = [term for term in terms if term[0] >= IDEOGRAPHS]

@@ -14,6 +14,7 @@ from measured.importing.source import Source
 from measured.recordings.alignment import column_onset
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
+LEAST = 0.5  # of a recording, that has to be left where a column has gaps
 WHOLE_S = 10.0  # from where on a test is cut at whole seconds
 
 
@@ -96,6 +97,8 @@ def longest_part(
     ends = np.array([*(start for start, *_ in gaps), t[rows][-1]])
     k = int(np.argmax(ends - begins))
     begin, end = float(begins[k]), float(ends[k])
+    if columns and end - begin < LEAST * (ends[-1] - begins[0]):
+        return longest_part(first, limit_s)  # readings so far apart are no gaps: what reads them says what is lacking
     start, stop, column = gaps[0]
     what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)

@@ -23,7 +23,7 @@ from geom.text import visible
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
-from measured.importing.source import Source, read_source, read_sources, source_of_recording
+from measured.importing.source import Source, over_room, read_source, read_sources, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
@@ -116,7 +116,8 @@ def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, C
 
     period_s : between rows, where it has no clock
     """
-    return [with_clock(run, period_s) for source in read_sources(file) for run in runs_of(source, period_s)]
+    runs = [run for source in read_sources(file) for run in runs_of(over_room(source), period_s)]
+    return [with_clock(run, period_s) for run in runs]
 
 
 def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:

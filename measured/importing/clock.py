@@ -156,7 +156,7 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
         anew = clock.start is None and bool((np.abs(t[at] - t[:1]) <= usual).all())
         anew &= not any(abs(t[k - 1] + usual - turn) <= usual for k in at[:1] for turn in (60.0, HOUR_S, DAY_S))
     edges = [0, *at.tolist(), source.rows]
-    if not (anew and at.size) or min(np.diff(edges)) < FEWEST:
+    if not (anew and at.size) or min(np.diff(edges)) < FEWEST or in_time_order(source) is not source:
         return [source]
     note = f"{source.file.name}: starts anew in row {edges[1] + 1}: {len(edges) - 1} tests, one from each start on"
     return [

@@ -14,7 +14,6 @@ from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import unit_of
 from measured.headers.words import (
-    DIFFERENCE,
     EXTREME,
     INLET,
     INSTRUMENT,
@@ -31,6 +30,7 @@ from measured.headers.words import (
     SPARE,
     SPREAD,
     axis_of,
+    is_rise,
     is_setpoint,
     is_spoken,
     quantities_of,
@@ -197,7 +197,7 @@ def _left_out(source: Source, column: str) -> str:
     if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
-    if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
+    if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
     if (parts := PATH.split(label))[1:] and parts[-1].strip().lower() in QUALITY:  # TI101.PV beside TI101.Q
         return "the quality of a reading"

@@ -16,10 +16,11 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.names import plain_header
+from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
 from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
-from measured.headers.words import is_time, quantities_of, roles_of
+from measured.headers.words import is_rise, is_time, quantities_of, roles_of, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
@@ -115,6 +116,25 @@ def read_sources(file: Path) -> list[Source]:
     if suffix not in BINARY:
         return [source_of_table(file, *text_table(file))]
     return [source_of_recording(file, read_recording(file))]
+
+
+def over_room(source: Source) -> Source:
+    """With rises over the room as temperatures, and a note, where the room is the only temperature beside them."""
+    units = {c: unit_of(text) for c, text in source.units.items() if source.is_numeric(c)}
+    hot = [c for c in units if units[c] in ("K", "degC", "degF")]
+    rises = {c: parts[0] for c in hot if is_rise(source.labels[c]) and len(parts := roles_of(source.labels[c])) == 1}
+    rooms = [c for c in hot if c not in rises]
+    if not rises or [(units[c], *roles_of(source.labels[c])[:1]) for c in rooms] != [("degC", Role.AMBIENT)]:
+        return source
+    if {units[c] for c in rises} - {"K", "degC"} or {Role.AMBIENT, Role.COOLANT} & {*rises.values()}:
+        return source
+    room = rooms[0]
+    names = {c: f"{c} + {room}" if c in rises else c for c in source.cells}
+    cells = {n: source.numbers(c) + source.numbers(room) if c in rises else source.cells[c] for c, n in names.items()}
+    labels = {n: without_rise(source.labels[c]) if c in rises else source.labels[c] for c, n in names.items()}
+    texts = {n: "degC" if c in rises else source.units[c] for c, n in names.items()}
+    note = f"{source.file.name}: '{next(iter(rises))}' and the like are rises: '{room}' is added to them"
+    return replace(source, cells=cells, labels=labels, units=texts, notes=(*source.notes, note), values={})
 
 
 def _of_sheets(file: Path) -> list[Source]:

@@ -152,3 +152,13 @@ def test_the_clocks_unit_behind_the_label_of_the_row_of_units():
         *([[str(k), "20", "5"] for k in range(9)]),
     ]
     assert layout(rows, "a.txt").units == ("s", "°C", "A")
+
+
+@pytest.mark.parametrize(("room", "added"), [("Ambient [°C]", True), ("Water in [°C]", False)])
+def test_rises_beside_the_room_alone_are_temperatures(tmp_path, room, added):
+    columns = {"Winding rise ΔT [K]": T, "dT_Frame [K]": 0.5 * T, room: 20 + 0.1 * T}
+    [(source, _)] = read_runs(read(tmp_path, **columns))
+    assert ("Winding" in source.labels.values()) == added
+    if added:
+        assert source.numbers(f"Winding rise ΔT [K] + {room}") == pytest.approx(20 + 1.1 * T)
+        assert f"'{room}' is added" in source.notes[-1]

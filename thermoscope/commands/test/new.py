@@ -76,7 +76,7 @@ class Model:
 
 
 def new(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, TDMS, MF4 or Parquet.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, MATLAB, TDMS, MF4, Parquet.")],
     machine: Annotated[str | None, typer.Option(metavar="M", help="Hold them against this machine.")] = None,
     network: Annotated[Path | None, typer.Option(metavar="N", help="Or against this network.toml.")] = None,
     out: Annotated[
