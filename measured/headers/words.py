@@ -140,9 +140,9 @@ def is_setpoint(name: str) -> bool:
     return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
 
 
-def is_rise(name: str) -> bool:
+def is_rise(header: str) -> bool:
     """Is it a difference of temperatures?"""
-    return "Δ" in name or bool(DIFFERENCE & {*tokens(name), *re.findall("[a-z]+", name.lower())})
+    return "Δ" in header or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
 
 
 def without_rise(name: str) -> str:

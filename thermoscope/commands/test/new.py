@@ -76,7 +76,7 @@ class Model:
 
 
 def new(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, MATLAB, TDMS, MF4, Parquet.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, MAT, TDMS, MF4, Parquet.")],
     machine: Annotated[str | None, typer.Option(metavar="M", help="Hold them against this machine.")] = None,
     network: Annotated[Path | None, typer.Option(metavar="N", help="Or against this network.toml.")] = None,
     out: Annotated[
@@ -233,8 +233,8 @@ def drafts_of(
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        known = [g.column for g in first.guesses if g.feeds or g.place in dialogue.target.boundaries]
-        whole, cut = longest_part(first, MAX_GAP_S, known) if window_s == (0.0, None) else (window_s, ())
+        needed = [g.column for g in first.guesses if g.feeds or g.place in dialogue.target.boundaries]
+        whole, cut = longest_part(first, MAX_GAP_S, needed) if window_s == (0.0, None) else (window_s, ())
         part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]
