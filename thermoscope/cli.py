@@ -169,7 +169,7 @@ def one_line(fault: Exception) -> str:
         return f"error: {printable(message_of(fault))}"
     message, command = fault.format_message().rstrip("."), fault.ctx.command_path if fault.ctx else "thermoscope"
     groups = whole_app().registered_groups if message.startswith("No such command") else []
-    homes = {c.name: str(g.name) for g in groups if g.typer_instance for c in g.typer_instance.registered_commands}
-    right = next((f"{group} {name}" for name, group in homes.items() if f"'{name}'" in message), "--help")
-    right = f"{command} --help" if right == "--help" else f"thermoscope {right}"
+    apps = [(g.name, g.typer_instance) for g in groups if g.typer_instance]
+    homes = [f"thermoscope {g} {c.name}" for g, a in apps for c in a.registered_commands if f"'{c.name}'" in message]
+    right = " or ".join(homes) or f"{command} --help"
     return message if "\n" in message else f"error: {printable(f'{command}: {message}; {right}')}"

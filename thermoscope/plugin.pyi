@@ -144,7 +144,11 @@ from lumped.transfer.terms_value import (
 from measured.case import Case as MeasuredCase, Channel as Channel, Reference as Reference, Test as Test
 from measured.doubt import Doubt as Doubt, PRIOR as PRIOR, TEMPER as TEMPER, USUAL as USUAL_DOUBT, temper as temper
 from measured.electrical.meters import Meter as Meter, OHMMETER as OHMMETER, VOLTMETER as VOLTMETER
-from measured.electrical.propagation import PropagatedUncertainty as PropagatedUncertainty, Reading as Reading
+from measured.electrical.propagation import (
+    PropagatedUncertainty as PropagatedUncertainty,
+    Reading as Reading,
+    propagate as propagate,
+)
 from measured.electrical.readings import (
     COPPER as COPPER,
     Magnets as Magnets,
@@ -234,6 +238,8 @@ from viz.live.curves import confusion as confusion, sensor as sensor
 from viz.live.style import as_text as as_text, figure as figure
 from viz.machine.animation import WRITERS as WRITERS, Pulses as Pulses
 from viz.machine.field import machine_row as machine_row
+from viz.pages import html as html
+from viz.pages.pdf import write_pdf as write_pdf
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed
@@ -282,7 +288,7 @@ from thermoscope.commands.open_case import (
     open_case_for_writing as open_case_for_writing,
 )
 from thermoscope.commands.pairs import read_limits as read_limits, read_pairs as read_pairs
-from thermoscope.commands.show.pages import write_page as write_page
+from thermoscope.commands.show.pages import NO_PDF as NO_PDF, provenance as provenance, write_page as write_page
 from thermoscope.commands.show.picture import Subject as Subject
 from thermoscope.commands.show.viewer import stored_documents as stored_documents, viewer_documents as viewer_documents
 from thermoscope.commands.stored_diagnosis import (

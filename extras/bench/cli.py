@@ -20,8 +20,9 @@ def protocol(
     json: Json = None,
 ) -> int:
     """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
-    from extras.bench.commands.protocol import protocol_summary, read_record
+    from extras.bench.commands.protocol import protocol_summary
     from extras.bench.measuring import protocol as procedure
+    from extras.bench.measuring.record_file import read_record
     from thermoscope import InputError
     from thermoscope.plugin import give, progress
 
@@ -34,6 +35,22 @@ def protocol(
         more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
         raise InputError(first.words.split(";")[0], f"{record} [{first.name}]", first.words.partition("; ")[2] + more)
     return 0 if record is None or result.complete else 1
+
+
+@commands.command()
+def report(
+    record: Annotated[Path, typer.Argument(metavar="RECORD.toml|CASE", help="A heat run, or a case with one.")],
+    out: Out = None,
+    json: Json = None,
+) -> int:
+    """The heat run by IEC 60034-1 on a page to sign: rise against its class's limit. Exit code 1 unless it passes."""
+    from extras.bench.commands.report import report_files, report_summary
+    from thermoscope.plugin import give, progress
+
+    with progress() as tell:
+        document, paths = report_files(record, out or Path("out"), tell)
+    give(document, json, lambda: report_summary(document, paths))
+    return 0 if document["verdict"] == "passes" else 1
 
 
 @commands.command()

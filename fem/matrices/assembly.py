@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
+from fem.matrices.bends import Bends
 from fem.matrices.block import Block, block_of
 from fem.matrices.elements import HasTensor
 from fem.matrices.surface import Film, Touch, Trace, touch_of, trace_of
@@ -118,11 +119,12 @@ def assemble(
     conductivity: Mapping[str, HasTensor],
     capacity: Mapping[str, float],
     quadratic: Collection[str] = (),
+    bends: Bends | None = None,
 ) -> FieldModel:
     """Matrices of every part, contact and film.
 
     conductivity : part -> tensor field (W/m/K);  capacity : part -> rho cp (J/m3/K)
-    quadratic : parts on quadratic elements
+    quadratic : parts on quadratic elements;  bends : where others have them, None for nowhere
     """
     for what, table in (("conductivity", conductivity), ("heat capacity", capacity)):
         if missing := [p for p in mesh.parts if p not in table]:
@@ -130,7 +132,8 @@ def assemble(
     blocks: dict[str, Block] = {}
     start = 0
     for i, part in enumerate(mesh.parts):
-        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part], part in quadratic)
+        bent = part in quadratic or (bends is not None and bends.of(part))
+        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part], bent)
         start = blocks[part].dofs.stop
     films = {name: Film(trace_of(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
     contacts = {

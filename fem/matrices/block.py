@@ -9,7 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem.matrices import kernels
-from fem.matrices.elements import Elements, HasTensor
+from fem.matrices.bends import edge_table
+from fem.matrices.elements import Bent, Elements, HasTensor
 from geom.arrays import Array as Floats
 from geom.arrays import Ints
 from geom.errors import InputError
@@ -59,6 +60,12 @@ class Block:
         """J/K"""
         return self.rho_cp * self.volume
 
+    @property
+    def bending(self) -> Floats:
+        """(n - m, 6) the edges whose middles are unknowns, as of edge_table."""
+        m, edges = len(self.points), self.elements.middles
+        return edge_table(self.xyz[edges // m], self.xyz[edges % m])
+
     @cached_property
     def pieces(self) -> Ints:
         """(nt,) number of the connected piece each tetrahedron belongs to (the four coils of one winding)."""
@@ -82,7 +89,7 @@ class Block:
 
 
 def block_of(
-    mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float, quadratic: bool = False
+    mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float, bent: Bent = False
 ) -> Block:
     """Part `number` of a mesh; its unknowns begin at `start`."""
     mine = mesh.region == number
@@ -92,7 +99,7 @@ def block_of(
     points, tets = renumbered(cells, len(mesh.points))
     xyz = np.ascontiguousarray(mesh.points[points])
     volumes = kernels.volumes(xyz, tets)
-    elements = Elements.on(tets, xyz, quadratic)
+    elements = Elements.on(tets, xyz, bent)
     dofs = slice(start, start + len(elements.xyz))
     K, M, w = elements.conduction(conductivity), elements.mass(rho_cp * volumes), elements.nodal(volumes)
     return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp, conductivity)

@@ -4,6 +4,8 @@ Quadratic ones are for parts in which heat arises in a poor conductor. With k el
 ones leave out about 1 / k^2 of the rise from its skin to its mean: a winding with two elements across a slot stays 4 to
 5 % too cold. Quadratic ones bend with the parabola.
 
+Where the temperature hardly bends along an edge, its middle needs no unknown either: it is the mean of the ends.
+
 In layers of prisms every upright side is a rectangle, cut by a diagonal. The middle of the diagonal needs no unknown:
 on a rectangle the eight others span all parabolas (the serendipity element), and three unknowns in eight are saved.
 Source: Zienkiewicz and Taylor 2000, "The finite element method", volume 1, 8.6.
@@ -11,13 +13,14 @@ Source: Zienkiewicz and Taylor 2000, "The finite element method", volume 1, 8.6.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
@@ -25,6 +28,7 @@ from fem.matrices import kernels
 from geom.arrays import Array as Floats
 from geom.arrays import Ints
 
+Bent = bool | Callable[[Floats, Floats], NDArray[np.bool_]]  # every edge, none, or those from a to b (n, 3) that bend
 EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 RIM = np.array([[0, 1], [0, 2], [1, 2]])  # edges of a facet
 ALIKE = 1e-6  # of an edge's length: nearer points of the plane, or levels, are the same
@@ -39,7 +43,8 @@ class HasTensor(Protocol):
 
 @dataclass(frozen=True)
 class Elements:
-    """One unknown per corner; of quadratic ones also one at the middle of every edge that is no upright diagonal.
+    """One unknown per corner; of quadratic ones also one at the middle of every edge that bends and is no upright
+    diagonal.
 
     tets (nt, 4) corners;  cells (nt, 4 or 10) : nodes of each, corners first;  xyz (n, 3) : points of the unknowns (m)
     edges (n_edges,) : number of each edge among pairs of corners, ascending; none where linear
@@ -53,14 +58,19 @@ class Elements:
     nodes: sp.csr_array
 
     @classmethod
-    def on(cls, tets: Ints, corners: Floats, quadratic: bool) -> Elements:
+    def on(cls, tets: Ints, corners: Floats, bent: Bent) -> Elements:
         """corners (m, 3) m"""
         m = len(corners)
-        if not quadratic:
-            return cls(tets, tets, corners, np.empty(0, np.int64), sp.eye_array(m, format="csr"))
+        linear = cls(tets, tets, corners, np.empty(0, np.int64), sp.eye_array(m, format="csr"))
+        if bent is False:
+            return linear
         edges, which = np.unique(_keys(tets[:, EDGES], m), return_inverse=True)
         diagonal, rectangle = _upright_diagonals(edges, corners)
         other = np.delete(np.arange(len(edges)), diagonal)
+        a, b = edges[other] // m, edges[other] % m
+        bends = np.ones(len(other), bool) if bent is True else bent(corners[a], corners[b])
+        if not bends.any():
+            return linear
         unknown = np.concatenate([np.arange(m), np.full(len(edges), -1)])
         unknown[m + other] = m + np.arange(len(other))
         plain = np.flatnonzero(unknown >= 0)
@@ -68,9 +78,9 @@ class Elements:
         column = unknown[np.concatenate([plain, rectangle.ravel()])]
         value = np.concatenate([np.ones(len(plain)), np.tile(np.repeat([-0.25, 0.5], 4), len(diagonal))])
         nodes = sp.csr_array((value, (row, column)), shape=(len(unknown), m + len(other)))
-        middles = (corners[edges // m] + corners[edges % m])[other] / 2
+        middles = (corners[a] + corners[b])[bends] / 2
         cells = np.hstack([tets, m + which.reshape(-1, 6)])
-        return cls(tets, cells, np.vstack([corners, middles]), edges, nodes)
+        return cls(tets, cells, np.vstack([corners, middles]), edges, sp.csr_array(nodes @ _straight(a, b, bends, m)))
 
     @property
     def middles(self) -> Ints:
@@ -183,6 +193,15 @@ def _upright_diagonals(edges: Ints, corners: Floats) -> tuple[Ints, Ints]:
     slant = np.abs(corners[ring[:, [0, 2]], 2] - corners[ring[:, [1, 3]], 2]).max(axis=1, initial=0.0)
     square = (edges[places] == sides).all(axis=1) & (slant <= near[diagonal])
     return diagonal[square], np.hstack([ring, m + places])[square]
+
+
+def _straight(a: Ints, b: Ints, bends: NDArray[np.bool_], m: int) -> sp.csr_array:
+    """(m + n, n_unknowns) corners and middles of n edges from a to b: where they do not bend, the mean of the ends."""
+    kept, other = np.flatnonzero(bends), np.flatnonzero(~bends)
+    row = np.concatenate([np.arange(m), m + kept, m + np.repeat(other, 2)])
+    column = np.concatenate([np.arange(m + len(kept)), np.column_stack([a, b])[other].ravel()])
+    value = np.concatenate([np.ones(m + len(kept)), np.full(2 * len(other), 0.5)])
+    return sp.csr_array((value, (row, column)), shape=(m + len(a), m + len(kept)))
 
 
 def hats(corner: Floats, degree: int = 2) -> Floats:

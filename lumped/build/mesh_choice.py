@@ -2,7 +2,7 @@
 
 In the plane, across compact faces, along the axis and towards the ends of laminated parts elements are made smaller one
 at a time, since only some of it helps: the errors of the ways add up, and a mesh that is finer every way has eight
-times the elements. Before that, one field of quadratic elements says in which parts they are worth their unknowns.
+times the elements. Before that, one field of quadratic elements says along which edges they are worth an unknown.
 Where smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
 """
 
@@ -11,20 +11,21 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fem.matrices.assembly import FieldModel
+from fem.matrices.bends import Bends
 from fem.matrices.block import renumbered
 from fem.matrices.elements import Elements
-from fem.solvers.linear_losses import linear_losses
 from fem.solvers.two_processes import in_two_processes
 from geom import Machine
-from geom.disk_cache import recalled, store
+from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
+from lumped.build.bending_edges import Kelvins, bending_edges, hot_spots
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
@@ -45,19 +46,16 @@ MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the c
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
 MOST_BESIDE = 300_000  # of both meshes that are solved at once: of 360,000 they took 4.5 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
-ROOM = 0.75  # of those: quadratic parts that are chosen in advance leave the rest to what is refined
-BEGIN = 0.5  # of those: what a first mesh that has no ROOM keeps, with fewer elements across slots and bars
+ROOM = 0.75  # of those: a first mesh of more leaves nothing to middles of edges and to what is refined
+BEGIN = 0.5  # of those: what such a first mesh keeps, with fewer elements across slots and bars
 IDLE = 0.02  # of what all ways leave: a way that leaves less is not refined
 ALIKE = 0.5  # of what the worst way leaves: of such ways the cheapest is refined
-WORTH = 4.0  # percent of a hot spot for as many unknowns again: quadratic elements that gain less are left out
+STRAIGHT = 0.1  # of the wish: what edges may cost any hot spot, in sum, that are left without a middle
 NOTABLE = 0.3  # percent of a hot spot that linear triangles of a part would cost: below, it is not the cause of errors
 SMALLEST_M = 1e-3  # triangles that no machine of these families needs
 IN_PLANE = ("size_m", "across")
 WAYS = (*IN_PLANE, "axial_m")  # and, of every laminated part, towards its ends
 MEANS = Recipe(max_states=0)  # enough for losses, fluids and streams
-Kelvins = Mapping[str, float]  # heated part -> K
-Counts = tuple[int, Mapping[str, tuple[int, int]]]  # points of a mesh; part -> its corners and middles of edges
-Losses = Mapping[str, Array]  # part -> (2, n_heated) percent of each hot spot: by edges in the plane, along the axis
 
 
 @dataclass(frozen=True)
@@ -79,9 +77,10 @@ class MeshChoice:
         return max(self.percent.values())
 
     def document(self) -> dict[str, Any]:
-        """With the part that is furthest off."""
+        """With the part that is furthest off; where elements are quadratic is left out."""
         part = max(self.percent, key=lambda p: self.percent[p])
-        return {**asdict(self), "worst": self.worst, "worst_part": part}
+        meshing = {key: value for key, value in vars(self.meshing).items() if key != "bends"}
+        return {**vars(self), "meshing": meshing, "worst": self.worst, "worst_part": part}
 
 
 def chosen_mesh(
@@ -94,30 +93,38 @@ def chosen_mesh(
     No mesh of more than `most` unknowns is chosen; `met` is False where its error is more than LARGEST_SHARE of the
     wish. The choice is kept by content.
     """
-    file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first, most)}.json"
-    cached = recalled(file, lambda path: _read(path.read_text(encoding="utf-8")))
+    file = cache_folder() / f"mesh-choice-{_key(machine, accuracy, first, most)}.npz"
+    cached = recalled(file, _read)
     if cached is None:
         looks = _Looks(machine, progress, first)
         looks.first = _acting(looks, first, most)
         cached = _looked_for(looks, accuracy, most)
-        store(file, json.dumps(asdict(cached)))
+        _write(file, cached)
     return cached
 
 
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, WORTH, ROOM, NOTABLE, BEGIN, IDLE, ALIKE, WAYS)
+    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, STRAIGHT, NOTABLE, ROOM, BEGIN, IDLE, ALIKE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 
 
-def _read(text: str) -> MeshChoice:
-    data = json.loads(text)
+def _write(file: Path, choice: MeshChoice) -> None:
+    bends = choice.meshing.bends
+    with stored(file) as partial:
+        np.savez_compressed(partial, json.dumps(choice.document()), **(bends.parts if bends else {}))  # type: ignore[arg-type]
+
+
+def _read(file: Path) -> MeshChoice:
+    with np.load(file) as data:
+        content, parts = json.loads(str(data["arr_0"])), {part: data[part] for part in data if part != "arr_0"}
     how: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in data["meshing"].items()
+        key: tuple(value) if isinstance(value, list) else value for key, value in content["meshing"].items()
     }
-    return MeshChoice(**{**data, "meshing": Meshing(**how)})
+    kept = {key: content[key] for key in ("percent", "points", "unknowns", "met")}
+    return MeshChoice(Meshing(**how, bends=Bends(parts)), **kept)
 
 
 @dataclass
@@ -125,23 +132,23 @@ class _Looks:
     """Meshes of a machine that were looked at: how large they are, and how hot their parts.
 
     point : the rated one, its coefficients the same on every mesh
-    losses, every : what each part's linear elements cost, and the mesh of quadratic ones that it is known from
+    losses : part -> (n_heated,) percent that straight edges in its plane cost each hot spot
+    every : the mesh that they are known from, quadratic wherever there is room
     """
 
     machine: Machine
     progress: Progress
     first: Meshing
-    counts: dict[Meshing, Counts] = field(default_factory=dict)
+    sizes: dict[Meshing, tuple[int, int]] = field(default_factory=dict)
     rises: dict[Meshing, Kelvins] = field(default_factory=dict)
-    losses: Losses = field(default_factory=dict)
+    losses: Mapping[str, Array] = field(default_factory=dict)
     every: Meshing = field(init=False)
 
     def size(self, how: Meshing) -> tuple[int, int]:
         """Points and unknowns; nothing is assembled."""
-        plain = replace(how, quadratic=())
-        if plain not in self.counts:
-            self.counts[plain] = counts_of(self.machine, plain)
-        return _size(self.machine, how, *self.counts[plain])
+        if how not in self.sizes:
+            self.sizes[how] = size_of(self.machine, how)
+        return self.sizes[how]
 
     @cached_property
     def point(self) -> FixedCoefficients:
@@ -168,19 +175,13 @@ class _Looks:
         large = [how for how, *pair in zip(new, sizes, sizes[1:], strict=False) if sum(pair) > MOST_BESIDE]
         point = self.point  # before processes part
 
-        def hot_spots(how: Meshing) -> Kelvins:
-            return _hot_spots(point, self.ready(how).field)
+        def hottest_points(how: Meshing) -> Kelvins:
+            ready = self.ready(how).field
+            return hot_spots(point, ready, point.of_field(ready))
 
         for group in (*([how] for how in large), new[len(large) :]):
-            hot = in_two_processes(hot_spots, group, max((self.size(how)[1] for how in group), default=0))
+            hot = in_two_processes(hottest_points, group, max((self.size(how)[1] for how in group), default=0))
             self.rises.update(zip(group, hot, strict=True))
-
-    def lose(self, how: Meshing) -> None:
-        """Find out what every hot spot would lose, in the first order, if the elements of a part were linear ones."""
-        self.rises[how], lost = _linear_losses(self.point, self.ready(how).field)
-        floor = FLOOR * max(self.rises[how].values())
-        scale = np.array([max(rise, floor) for rise in self.rises[how].values()])
-        self.losses = {part: 100.0 * np.abs(kelvins) / scale for part, kelvins in lost.items()}
 
     def moved(self, here: Meshing, there: Meshing) -> Kelvins:
         """How far the hot spots of two meshes are apart."""
@@ -216,18 +217,18 @@ def _ratio(before: float, after: float) -> float:
 
 
 def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
-    how = _curved(looks, looks.first, most)
+    how = replace(looks.first, bends=_bends(looks, looks.first, accuracy))
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
     stale: set[str] = set()  # ways looked at before another step was taken, which may have done some of theirs
     while True:
-        first = replace(looks.first, quadratic=how.quadratic)
+        first = replace(looks.first, bends=how.bends)
         others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
         candidates = (other.along(way, 0.5) for way, other in others.items() if way not in WAYS)
         looks.solve([how, first, *others.values()], candidates)
         for way, other in others.items():
-            ways[way] = _looked_further(ways[way], other == how.along(way, 0.5), looks.moved(how, other))
+            ways[way] = _looked_further(looks, how, way, other, ways[way])
         linear = looks.moved(first, looks.every)
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
@@ -240,12 +241,10 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         missing = rise * (percent[worst] - enough * accuracy) / 100.0
         will_do = way is not None and (1.0 - 0.5**ORDER) * ways[way].left(worst) > missing
         way_left = max(ways, key=lambda w: ways[w].left(worst))
-        most_left = ways[way_left].left(worst)
         if stale and (way is None or way_left in stale):
             again = stale if way is None else {way_left}
-            ways, stale = {**ways, **dict.fromkeys(again, _Way())}, stale - again
-        elif linear[worst] > ALIKE * most_left and (part := _part_to_bend(looks, how, worst, most)):
-            how, stale = replace(how, quadratic=(*how.quadratic, part)), _not_refined(ways)
+            finer = {w for w in again if _solvable(looks, how.along(w, 0.5), w)}  # others keep what a finer mesh said
+            ways, stale = {**ways, **dict.fromkeys(finer, _Way())}, stale - again
         elif (way is None or way in IN_PLANE or (ways[way].left(worst) < plane and not will_do)) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
@@ -266,17 +265,6 @@ def _not_refined(ways: Mapping[str, _Way]) -> set[str]:
     return {way for way, halvings in ways.items() if halvings.level == 0}
 
 
-def _part_to_bend(looks: _Looks, how: Meshing, worst: str, most: int) -> str | None:
-    """The part whose linear elements cost the worst hot spot most for each unknown that quadratic ones would add."""
-    column, here = list(looks.hot(how)).index(worst), looks.size(how)[1]
-    worth = {}
-    for part in set(looks.every.quadratic) - set(how.quadratic):
-        there = looks.size(replace(how, quadratic=(*how.quadratic, part)))[1]
-        if (loss := float(looks.losses[part][:, column].sum())) >= NOTABLE and there <= most:
-            worth[part] = loss / (there - here)
-    return max(worth, key=lambda part: (worth[part], part), default=None)
-
-
 def _one_part_finer(
     looks: _Looks, how: Meshing, worst: str, plane: float, in_vain: set[tuple[str, str]], most: int
 ) -> Meshing | None:
@@ -285,7 +273,7 @@ def _one_part_finer(
     plane : K that halving all of them may leave of it;  in_vain : pairs of worst and finer part that were tried
     """
     column = list(looks.hot(how)).index(worst)
-    worth = {p: lost for p, loss in looks.losses.items() if (lost := loss[0, column]) >= NOTABLE}
+    worth = {p: lost for p, loss in looks.losses.items() if (lost := loss[column]) >= NOTABLE}
     new = [p for p in sorted(worth, key=lambda p: -worth[p]) if (worst, p) not in in_vain]
     finer = {part: replace(how, finer=(*how.finer, part)) for part in new}
     fits = {part: there for part, there in finer.items() if looks.size(there)[1] <= most}
@@ -310,38 +298,48 @@ def _acting(looks: _Looks, how: Meshing, most: int) -> Meshing:
     return how
 
 
-def _curved(looks: _Looks, how: Meshing, most: int) -> Meshing:
-    """Quadratic elements in every part that is worth its unknowns, after a look at all parts with them."""
-    bare = looks.size(how)[1]
-    added = {part: looks.size(replace(how, quadratic=(part,)))[1] - bare for part in _linear(looks.machine)}
-    while bare + sum(added.values()) > MOST_QUADRATIC and added:
-        del added[max(added, key=lambda p: added[p])]
-    looks.every = replace(how, quadratic=tuple(added))
-    looks.lose(looks.every)
-    worth = {p: looks.losses[p].sum(axis=0).max() * bare / added[p] for p in added}
-    for part in sorted(added, key=lambda p: -worth[p]):
-        there = replace(how, quadratic=(*how.quadratic, part))
-        if worth[part] >= WORTH and looks.size(there)[1] <= ROOM * most:
-            how = there
-    return how
-
-
-def _linear(machine: Machine) -> list[str]:
-    return [part.name for part in machine.parts if not wound(machine, part.name)]
+def _bends(looks: _Looks, how: Meshing, accuracy: float) -> Bends:
+    """Where elements are quadratic: along edges that are worth it, after a look at all of them."""
+    linear = [part.name for part in looks.machine.parts if not wound(looks.machine, part.name)]
+    looks.every = replace(how, bends=Bends.everywhere(linear))
+    (_, few), (_, many) = counts_of(looks.machine, how), counts_of(looks.machine, looks.every)
+    while linear and looks.size(looks.every)[1] > MOST_QUADRATIC:
+        linear.remove(max(linear, key=lambda part: many[part] - few[part]))
+        looks.every = replace(how, bends=Bends.everywhere(linear))
+    if not linear:
+        return Bends({})
+    quadratic = looks.ready(looks.every).field
+    found = bending_edges(
+        looks.point, quadratic, lambda bends: looks.ready(replace(how, bends=bends)).field, linear, STRAIGHT * accuracy
+    )
+    looks.losses = found.losses
+    looks.rises |= {looks.every: found.hot_quadratic, replace(how, bends=found.bends): found.hot}
+    return found.bends
 
 
 def _other(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> Meshing | None:
     """One halving more where that tells more and can be solved; where none can be, one coarser instead."""
     if not halvings.unsure:
         return None
-    there = how.along(way, 0.5)
-    if looks.size(there)[1] <= MOST_SOLVED or way not in WAYS:  # towards ends there is nothing coarser to look at
+    if _solvable(looks, there := how.along(way, 0.5), way):
         return there
-    return None if halvings.moves else how.along(way, 2.0)
+    coarser = how.along(way, 2.0 ** (1 + halvings.level))
+    acts = not halvings.level or looks.size(how.along(way, 2.0))[0] > ACTS * looks.size(coarser)[0]
+    return coarser if acts else None
 
 
-def _looked_further(halvings: _Way, finer: bool, move: Kelvins) -> _Way:
-    return replace(halvings, moves=(*halvings.moves, move)) if finer else _Way((move,), 1)
+def _solvable(looks: _Looks, there: Meshing, way: str) -> bool:
+    """Towards ends there is nothing coarser to look at."""
+    return looks.size(there)[1] <= MOST_SOLVED or way not in WAYS
+
+
+def _looked_further(looks: _Looks, how: Meshing, way: str, other: Meshing, halvings: _Way) -> _Way:
+    if other == how.along(way, 0.5):
+        return replace(halvings, moves=(*halvings.moves, looks.moved(how, other)))
+    if not halvings.level:
+        return _Way((looks.moved(how, other),), 1)
+    between = how.along(way, 2.0)
+    return _Way((looks.moved(between, other), looks.moved(how, between)), 2)
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:
@@ -363,50 +361,23 @@ def _percent(hot: Kelvins, linear: Kelvins, ways: Mapping[str, _Way]) -> dict[st
 
 
 def size_of(machine: Machine, how: Meshing) -> tuple[int, int]:
-    """Points and unknowns of a mesh, which stays on disk: parts have nodes of their own, windings middles of edges."""
-    return _size(machine, how, *counts_of(machine, how))
+    """Points and unknowns of a mesh, which stays on disk: parts have nodes of their own, and middles of edges."""
+    points, unknowns = counts_of(machine, how)
+    return points, sum(unknowns.values())
 
 
-def _size(machine: Machine, how: Meshing, points: int, parts: Mapping[str, tuple[int, int]]) -> tuple[int, int]:
-    curved = {part for part in parts if wound(machine, part) or part in how.quadratic}
-    return points, sum(corners + (part in curved) * middles for part, (corners, middles) in parts.items())
-
-
-def counts_of(machine: Machine, how: Meshing) -> Counts:
-    """Of a mesh, which stays on disk."""
+def counts_of(machine: Machine, how: Meshing) -> tuple[int, Mapping[str, int]]:
+    """Points of a mesh, and unknowns of each part."""
     mesh = plain_mesh(machine, how)
-    parts = {}
+    unknowns = {}
     for k, part in enumerate(mesh.parts):
         points, tets = renumbered(mesh.tets[mesh.region == k], len(mesh.points))
-        parts[part] = len(points), len(Elements.on(tets, mesh.points[points], True).middles)
-    return len(mesh.points), parts
+        bent = wound(machine, part) or (how.bends is not None and how.bends.of(part))
+        unknowns[part] = len(Elements.on(tets, mesh.points[points], bent).xyz)
+    return len(mesh.points), unknowns
 
 
 def _at_rated_point(ready: Prepared) -> FixedCoefficients:
     machine = ready.machine
     network = on_every_base(means_network(machine, reduced(ready, MEANS)))
     return rated(machine, network, ready.films, ready.contacts)
-
-
-def _hot_spots(point: FixedCoefficients, field: FieldModel) -> dict[str, float]:
-    """Heated part -> its largest rise (K)."""
-    T = point.of_field(field)
-    return {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
-
-
-def _linear_losses(point: FixedCoefficients, field: FieldModel) -> tuple[dict[str, float], dict[str, Array]]:
-    """Hot spots as above; and part -> (2, n_heated) K that each of them would lose if this part had linear elements."""
-
-    def readings(T: Array) -> Array:
-        unit = np.zeros((field.n, len(point.watts)))
-        unit[list(_hottest(point, field, T).values()), range(len(point.watts))] = 1.0
-        return unit
-
-    T, influence = point.influence(field, readings)
-    hot = {part: float(T[k]) for part, k in _hottest(point, field, T).items()}
-    return hot, linear_losses(field, field.stiffness(point.films, point.contacts), T, influence)
-
-
-def _hottest(point: FixedCoefficients, field: FieldModel, T: Array) -> dict[str, int]:
-    dofs = {part: field.blocks[part].dofs for part in point.watts}
-    return {part: mine.start + int(np.argmax(T[mine])) for part, mine in dofs.items()}

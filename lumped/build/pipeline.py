@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from fem.matrices.assembly import FieldModel, HasTensor, assemble
+from fem.matrices.bends import Bends
 from fem.matrices.material import Conductivity, LoopWound
 from fem.matrices.winding import homogenised
 from fem.solvers.streams import cut
@@ -39,15 +40,15 @@ def silent(message: str) -> None:
 
 @dataclass(frozen=True)
 class Meshing:
-    """How fine a mesh is, as for geom.build_mesh.  quadratic : parts on quadratic elements besides those of wires"""
+    """How fine a mesh is, as for geom.build_mesh.  bends : where elements are quadratic besides windings"""
 
     size_m: float
     segments: int
     across: float
     axial_m: float
     ends: tuple[str, ...] = ()
-    quadratic: tuple[str, ...] = ()
     finer: tuple[str, ...] = ()
+    bends: Bends | None = None
 
     @property
     def coarser(self) -> Meshing:
@@ -80,10 +81,10 @@ class Built:
 
 @once
 def _field_of(model: Built) -> FieldModel:
-    return field_of(model.machine, model.mesh, model.meshing.quadratic)
+    return field_of(model.machine, model.mesh, model.meshing.bends)
 
 
-def field_of(machine: Machine, mesh: NamedMesh, quadratic: Collection[str] = ()) -> FieldModel:
+def field_of(machine: Machine, mesh: NamedMesh, bends: Bends | None = None) -> FieldModel:
     """Conduction of the machine on its mesh, with the materials of its file; windings on quadratic elements, too."""
     materials = {part.name: machine.material_of(part.name) for part in machine.parts}
     conductivity: dict[str, HasTensor] = {name: conductivity_of(m) for name, m in materials.items()}
@@ -92,8 +93,8 @@ def field_of(machine: Machine, mesh: NamedMesh, quadratic: Collection[str] = ())
         conductivity[name] = LoopWound(
             copper.k_z, copper.k_r, coil.axes, coil.half_length, coil.half_width, coil.z_centre
         )
-    curved = [name for name in materials if wound(machine, name) or name in quadratic]
-    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, curved)
+    windings = [name for name in materials if wound(machine, name)]
+    return assemble(mesh, conductivity, {name: m.rho * m.cp for name, m in materials.items()}, windings, bends)
 
 
 def conductivity_of(material: Material) -> Conductivity:
@@ -133,7 +134,7 @@ def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepa
     progress("mesh")
     mesh = with_cells(machine, plain_mesh(machine, how))
     progress(f"conduction on {len(mesh.points)} points")
-    return Prepared(machine, mesh, field_of(machine, mesh, how.quadratic), *coefficients_on(machine, mesh), how)
+    return Prepared(machine, mesh, field_of(machine, mesh, how.bends), *coefficients_on(machine, mesh), how)
 
 
 def plain_mesh(machine: Machine, how: Meshing) -> NamedMesh:

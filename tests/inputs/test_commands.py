@@ -76,6 +76,7 @@ OPTIONS = {
     "bench bases {case}": "no bases",
     "bench carry {case} nosuch": "no such case folder",
     "bench protocol nosuch.toml": "no such file",
+    "bench report nosuch.toml": "no such file",
     "bench screen nosuch": "no such machine",
     "bench screen pmsm-m1 --design nosuch": "no design",
     "model build nosuch": "no such machine",

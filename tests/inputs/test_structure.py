@@ -10,8 +10,10 @@ from documents import documented, put, shipped
 from input_cases import case_of, original
 from test_numbers import SHEET
 
-from extras.bench.commands.protocol import read_record
+from extras.bench.heat_run.judgement import judged
+from extras.bench.heat_run.record import read_heat_run
 from extras.bench.measuring.protocol import protocol
+from extras.bench.measuring.record_file import read_record
 from geom.errors import ThermoscopeError
 from geom.machine_file import machine_from
 from lumped.declarations.network import load_network, read_network
@@ -43,6 +45,17 @@ RECORD = {
     "hot": {"ambient_degC": 21.0, "readings": [[10, 2.5], [20, 2.4], [30, 2.35]]},
     "coefficients": {"beta_percent_K": [0.39, 0.4]},
     "meters": {"resistance": {"percent": 0.2}},
+}
+HEAT_RUN = RECORD | {
+    "heat_run": {"title": "a", "class": "F", "duty": "S1", "fan": False, "material": "copper", "thermometer_K": 0.5},
+    "site": {"altitude_m": 2000, "coolant_degC": 45.0},
+    "test_site": {"altitude_m": 100},
+    "etd": {"degC": [80.0, 90.0], "limit_K": 1.0},
+    "superposition": [{"name": "a", "sign": 1, "rise_K": 40.0, "sd_K": 1.0}],
+    "power_30min": {"readings": [[0, 7.1], [1800, 7.0]]},
+    "limit": {"K": 100.0, "source": "b"},
+    "names": {"tested": "c"},
+    "meters": {"resistance": {"range": [0.4, 4.0], "percent": 0.2, "offset": 0.002}},
 }
 STEP = Revision(
     0,
@@ -173,6 +186,12 @@ def test_record(tmp_path, way):
     accepted_or_refused(read, RECORD, way)
 
 
+@pytest.mark.parametrize("way", **named(HEAT_RUN))
+def test_heat_run(tmp_path, way):
+    read = through_file(lambda file: judged(read_heat_run(file, lambda message: None)), tmp_path / "heat-run.toml")
+    accepted_or_refused(read, HEAT_RUN, way)
+
+
 def test_the_documents_are_right(tmp_path, case):
     (case / "case.toml").write_text(tomlkit.dumps(CASE))
     load_case(case)
@@ -181,3 +200,5 @@ def test_the_documents_are_right(tmp_path, case):
     load_cycle(tmp_path / "cycle.toml", load_network(case / "network.toml"), {})
     (tmp_path / "record.toml").write_text(tomlkit.dumps(RECORD))
     assert protocol(read_record(tmp_path / "record.toml")).steps
+    (tmp_path / "heat-run.toml").write_text(tomlkit.dumps(HEAT_RUN))
+    assert judged(read_heat_run(tmp_path / "heat-run.toml", lambda message: None))["rises"]

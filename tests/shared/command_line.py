@@ -10,7 +10,9 @@ from unittest.mock import patch
 
 from thermoscope.cli import main, whole_app
 
-GROUP = {str(c.name): str(g.name) for g in whole_app().registered_groups for c in g.typer_instance.registered_commands}
+# Of a name that several groups have, the first: `report` is `show report`
+GROUPS = reversed(whole_app().registered_groups)
+GROUP = {str(c.name): str(g.name) for g in GROUPS for c in g.typer_instance.registered_commands}
 RUN = "import sys; sys.argv[0] = 'thermoscope'; from thermoscope.cli import main; main()"  # in a process of its own
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from extras.bench.measuring.assemblies import Assembly, assemblies, worst
 from extras.bench.measuring.repeats import Repeats, repeats
-from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8
+from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8, spaced_window
 from thermoscope import InputError
 from thermoscope.plugin import Array, Channel, Test, ambient, physical, predict, standing
 from thermoscope.plugin import MeasuredCase as Case
@@ -101,8 +101,7 @@ def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
 
 def window_min(test: Test, channel: Channel) -> float:
     """Ten minutes, or twice the time between readings where they are rarer."""
-    read = test.time[np.isfinite(channel.y)] / 60.0
-    return max(10.0, 2.0 * float(np.median(np.diff(read)))) if read.size > 1 else 10.0
+    return spaced_window(test.time[np.isfinite(channel.y)] / 60.0)
 
 
 def _result_or_reason(look: Callable[[], R]) -> tuple[R | None, str]:

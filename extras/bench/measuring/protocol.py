@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from extras.bench.measuring.warming import equilibrium
+from extras.bench.measuring.warming import equilibrium, spaced_window
 from thermoscope import InputError
 from thermoscope.plugin import (
     COPPER,
@@ -129,10 +129,15 @@ Check = Callable[[Record], tuple[State, str]]
 
 def protocol(record: Record) -> Protocol:
     """The guided procedure for a record, complete or not."""
-    steps = tuple(Step(name, when, what, *check(record)) for name, when, what, check in STEPS)
+    steps = checked_steps(record)
     if any(s.state == "refused" for s in steps) or record.cold is None or record.hot is None:
         return Protocol(steps)
     return _result(record, record.cold, record.hot, steps)
+
+
+def checked_steps(record: Record) -> tuple[Step, ...]:
+    """Every step, and how the record stands to it."""
+    return tuple(Step(name, when, what, *check(record)) for name, when, what, check in STEPS)
 
 
 def _result(record: Record, cold: Cold, hot: Hot, steps: tuple[Step, ...]) -> Protocol:
@@ -206,7 +211,7 @@ def _steady(record: Record) -> tuple[State, str]:
     minutes, T = np.array(record.warming, float).T
     if minutes.size < 4 or minutes[-1] < 60.0:
         return "refused", f"{minutes[-1]:g} min recorded; go on for an hour at least"
-    end = equilibrium(minutes, T, record.resolution_K)
+    end = equilibrium(minutes, T, record.resolution_K, spaced_window(minutes))
     if abs(end.drift_K_h) > DRIFT_K_H or not end.reached:
         return "refused", f"still {end.drift_K_h:+.1f} K/h; go on until no two readings 10 min apart differ"
     return "done", f"steady at {end.T_e:.1f} degC since {end.from_min:.0f} min, {end.drift_K_h:+.1f} K/h"

@@ -126,6 +126,11 @@ class Equilibrium:
         return dict(vars(self))
 
 
+def spaced_window(minutes: Array, least_min: float = 10.0) -> float:
+    """Length (min) of a window in which readings can differ: twice the time between them where they are rare."""
+    return max(least_min, 2.0 * float(np.median(np.diff(minutes)))) if len(minutes) > 1 else least_min
+
+
 def equilibrium(minutes: Array, T: Array, resolution_K: float, window_min: float = 10.0) -> Equilibrium:
     """Eq. 9 as a detector: from when on no two readings a window apart differ by more than the sensor resolves.
 

@@ -52,6 +52,7 @@ def changed(**keys):
         (changed(range_high=40.0), "cold resistance", "resolution 0.02"),
         (changed(warming=WARMING[:60]), "constant load", "K/h"),
         (changed(warming=WARMING[:20]), "constant load", "an hour at least"),
+        (changed(warming=WARMING[:91:15]), "constant load", "K/h"),  # a reading every half hour, to 180 min
         (changed(hot_cooling=tuple((t + 60, R) for t, R in COOLING)), "hot resistance", "60 s is the latest"),
         (changed(hot_cooling=tuple((t, 0.5) for t, _ in COOLING)), "hot resistance", "not above the cold"),
         (changed(hot_range_high=40.0), "hot resistance", "resolution 0.02"),

@@ -6,15 +6,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fem.matrices.bends import Bends
 from geom import load_machine
 from lumped.build import mesh_choice, network_size
+from lumped.build.bending_edges import BendingEdges
 from lumped.build.mesh_choice import LARGEST_SHARE, SHARE, chosen_mesh
 from lumped.build.pipeline import Meshing, silent
+from lumped.machine.shapes import wound
 
 MACHINE = load_machine("pmsm-m1-no-base")
 FIRST = Meshing(0.2, 24, 0.25, 0.24)
 EXACT = {"winding": 80.0, "bearing": 2.0}
-GAINS = {}  # part -> share of every rise that linear elements in it lose
+LINEAR = [part.name for part in MACHINE.parts if not wound(MACHINE, part.name)]
+GAINS = {}  # part -> share of every rise that is lost if its edges are straight
 LOST = {"size_m": 0.002, "across": 0.01, "axial_m": 0.04}  # of the winding's rise, on the first mesh
 
 
@@ -34,6 +38,11 @@ def low(how):
     return sum(share / halved(how, way) ** 2 for way, share in LOST.items())
 
 
+def bent(how, part):
+    """Whether a part's edges have middles."""
+    return how.bends is not None and part in how.bends.parts
+
+
 @pytest.fixture
 def second_order(monkeypatch):
     """Meshes whose hot spots are low by the square of their elements' size each way; a thousand points, then twice."""
@@ -43,27 +52,27 @@ def second_order(monkeypatch):
         points = 1000
         for way in LOST:
             points *= halved(how, way)
-        return int(points), {part: (int(2 * points) if part == every[0] else 0, 100) for part in every}
+        return int(points), {part: 2 * int(points) * (part == LINEAR[0]) + 100 * bent(how, part) for part in LINEAR}
 
     def ready(machine, how, progress):
-        solved.append(mesh_choice._size(machine, how, *counts(machine, how))[1])
+        solved.append(mesh_choice.size_of(machine, how)[1])
         return SimpleNamespace(field=how)
 
-    def hot(point, how):
-        linear = sum(GAINS.get(part, 0.0) for part in set(every) - set(how.quadratic))
+    def hot(point, how, T):
+        linear = sum(gain for part, gain in GAINS.items() if not bent(how, part))
         return {p: T * (1.0 - low(how) - linear) for p, T in EXACT.items()}
 
-    def losses(point, how):
-        lost = np.array([[T / 2, T / 2] for T in EXACT.values()]).T
-        return hot(point, how), {part: GAINS.get(part, 0.0) * lost for part in every}
-
-    every = mesh_choice._linear(MACHINE)
+    def edges(point, every, with_bends, parts, percent):
+        bends = Bends.everywhere([part for part in parts if 100.0 * GAINS.get(part, 0.0) > percent])
+        fewer = with_bends(bends)
+        lost = {part: np.full(2, 100.0 * GAINS.get(part, 0.0)) for part in parts}
+        return BendingEdges(bends, mesh_choice.hot_spots(point, fewer, 0), mesh_choice.hot_spots(point, every, 0), lost)
 
     monkeypatch.setattr(mesh_choice, "meshed", ready)
     monkeypatch.setattr(mesh_choice, "counts_of", counts)
-    monkeypatch.setattr(mesh_choice, "_at_rated_point", lambda ready: "rated")
-    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
-    monkeypatch.setattr(mesh_choice, "_linear_losses", losses)
+    monkeypatch.setattr(mesh_choice, "_at_rated_point", lambda ready: SimpleNamespace(of_field=lambda how: None))
+    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
+    monkeypatch.setattr(mesh_choice, "bending_edges", edges)
     return solved
 
 
@@ -119,13 +128,11 @@ def test_a_look_ahead_is_of_meshes_that_were_not_looked_at(second_order):
 def test_a_step_that_is_enough_is_taken_before_one_part_is_tried(second_order, monkeypatch):
     """Thinner ends leave little here, but all that is missing: no mesh with smaller triangles of one part is solved."""
 
-    def hot(point, how):
+    def hot(point, how, T):
         low = 0.016 * 0.25 ** how.ends.count("stator.core") + 0.024 * halved(how, "size_m") ** -2.0
         return {p: T * (1.0 - low) for p, T in EXACT.items()}
 
-    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
-    none = dict.fromkeys(mesh_choice._linear(MACHINE), np.zeros((2, 2)))
-    monkeypatch.setattr(mesh_choice, "_linear_losses", lambda point, how: (hot(point, how), none))
+    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
     monkeypatch.setattr(mesh_choice, "_one_part_finer", lambda *of: pytest.fail("tried"))
     found = chosen_mesh(MACHINE, 6.5, FIRST, silent)
     assert found.met
@@ -135,19 +142,19 @@ def test_a_step_that_is_enough_is_taken_before_one_part_is_tried(second_order, m
 def test_an_order_that_does_not_show_is_not_assumed(second_order, monkeypatch):
     """Where the next halving moves as much again, nothing says how far it goes on: four times that, with safety."""
     monkeypatch.setattr(
-        mesh_choice, "_hot_spots", lambda point, how: {p: T + halved(how, "axial_m") for p, T in EXACT.items()}
+        mesh_choice, "hot_spots", lambda point, how, T: {p: T + halved(how, "axial_m") for p, T in EXACT.items()}
     )
     found = chosen_mesh(MACHINE, 1.0, FIRST, silent, most=4000)
     assert not found.met
     assert found.percent["winding"] > 100.0 * 4.0 * 2.0 / 82.0
 
 
-def test_parts_worth_their_unknowns_are_quadratic_and_the_rest_is_counted(second_order, monkeypatch):
-    """5 % of every rise for a twentieth of the unknowns, and 0.1 % of it."""
+def test_edges_that_cost_a_hot_spot_have_middles_and_what_the_rest_costs_is_counted(second_order, monkeypatch):
+    """5 % of every rise, and 0.1 % of it."""
     monkeypatch.setitem(GAINS, "stator.core", 0.05)
     monkeypatch.setitem(GAINS, "slot.liner", 0.001)
     found = chosen_mesh(MACHINE, 14.0, FIRST, silent)
-    assert found.meshing.quadratic == ("stator.core",)
+    assert [part for part in LINEAR if bent(found.meshing, part)] == ["stator.core"]
     assert found.percent["winding"] == pytest.approx(125.0 * low(found.meshing) + 0.1, rel=0.08)
 
 
@@ -155,23 +162,23 @@ def test_layers_towards_the_ends_of_one_part_are_a_way(second_order, monkeypatch
     """Where nothing else moves the hot spots, only these are refined."""
     monkeypatch.setattr(
         mesh_choice,
-        "_hot_spots",
-        lambda point, how: {p: T * (1.0 - 0.04 * 0.2 ** len(how.ends)) for p, T in EXACT.items()},
+        "hot_spots",
+        lambda point, how, T: {p: T * (1.0 - 0.04 * 0.2 ** len(how.ends)) for p, T in EXACT.items()},
     )
     found = chosen_mesh(MACHINE, 2.0, FIRST, silent)
     assert found.met
     assert found.meshing.ends
-    assert replace(found.meshing, ends=()) == FIRST
+    assert replace(found.meshing, ends=(), bends=None) == FIRST
 
 
 def test_what_thinner_ends_have_mended_is_not_left_along_the_axis(second_order, monkeypatch):
     """Where either does the same, and only ends may become finer, the axis is looked at again on the mesh at hand."""
 
-    def hot(point, how):
+    def hot(point, how, T):
         low = 0.05 * min(0.2 ** len(how.ends), halved(how, "axial_m") ** -2.0)
         return {p: T * (1.0 - low) for p, T in EXACT.items()}
 
-    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
     found = chosen_mesh(MACHINE, 5.0, FIRST, silent, most=2000)
     assert found.met
     assert found.meshing.ends
@@ -181,13 +188,13 @@ def test_what_thinner_ends_have_mended_is_not_left_along_the_axis(second_order, 
 def test_triangles_of_the_one_part_that_moves_the_hot_spot_are_smaller(second_order, monkeypatch):
     """Where they alone do what smaller ones everywhere would, the others stay as they are."""
 
-    def hot(point, how):
+    def hot(point, how, T):
         low = 0.04 / (halved(how, "size_m") * 2.0 ** how.finer.count("stator.core")) ** 2
         return {p: T * (1.0 - low) for p, T in EXACT.items()}
 
     monkeypatch.setitem(GAINS, "shaft", 0.01)
     monkeypatch.setitem(GAINS, "stator.core", 0.02)
-    monkeypatch.setattr(mesh_choice, "_hot_spots", hot)
+    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
     found = chosen_mesh(MACHINE, 4.0, FIRST, silent)
     assert found.met
     assert set(found.meshing.finer) == {"stator.core"}
@@ -199,18 +206,6 @@ def test_of_two_ways_that_leave_alike_the_cheaper_one_is_refined(second_order):
     left = {"size_m": 0.1, "axial_m": 3.0, "stator.core": 2.0}
     assert mesh_choice._refined(looks, FIRST, left, 170_000) == "stator.core"  # nothing is added by thinner ends here
     assert mesh_choice._refined(looks, FIRST, {**left, "axial_m": 5.0}, 170_000) == "axial_m"
-
-
-def test_a_loss_foretold_is_about_the_one_that_comes(monkeypatch):
-    """The core of a stator on linear elements or not, in earnest."""
-    core, rest = "stator.core", [part for part in mesh_choice._linear(MACHINE) if part != "stator.core"]
-    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
-    every = replace(FIRST, quadratic=(core, *rest))
-    looks.lose(every)
-    rise = looks.hot(every)["stator.core"]
-    foretold = 0.01 * rise * looks.losses[core][:, list(looks.hot(every)).index("stator.core")].sum()
-    true = rise - looks.hot(replace(FIRST, quadratic=tuple(rest)))["stator.core"]
-    assert 0.5 * true < foretold < 4.0 * true
 
 
 def test_a_machine_is_looked_at_once(monkeypatch):

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from extras.bench.cli import protocol
-from extras.bench.commands.protocol import read_record
 from extras.bench.measuring.protocol import protocol as judged
+from extras.bench.measuring.record_file import read_record
 from geom.errors import InputError
 from thermoscope.console.summary import limited_lines
 

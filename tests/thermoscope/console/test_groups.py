@@ -11,7 +11,7 @@ from thermoscope import cli
 from thermoscope.cli import home_modules, narrowed_app, whole_app
 
 RUN = CliRunner()
-WORDS = [["demo"], ["check"], *([GROUP[name], name] for name in sorted(GROUP))]
+WORDS = [["demo"], ["check"], ["bench", "report"], *([GROUP[name], name] for name in sorted(GROUP))]
 
 
 def said(app, words):
@@ -51,9 +51,13 @@ def test_only_the_command_asked_for_is_loaded(monkeypatch):
 def test_a_command_without_its_group_is_told_where_it_is(thermoscope, monkeypatch, capsys):
     from thermoscope.cli import main
 
-    for word, group in (("compare", "test"), ("rate", "use")):
+    for word, homes in (
+        ("compare", "thermoscope test compare"),
+        ("rate", "thermoscope use rate"),
+        ("report", "thermoscope show report or thermoscope bench report"),
+    ):
         monkeypatch.setattr("sys.argv", ["thermoscope", word, "case"])
         with pytest.raises(SystemExit) as end:
             main()
         assert end.value.code == 2
-        assert f"No such command '{word}'; thermoscope {group} {word}" in capsys.readouterr().err
+        assert f"No such command '{word}'; {homes}\n" in capsys.readouterr().err
