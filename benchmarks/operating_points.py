@@ -350,15 +350,16 @@ def circuit_points(
         split = parallel_shares(ducts, flow / 6e4, fluid)
         at = {FLOW: np.array([flow])}
         for film, duct, share in zip(films, (d for ds in ducts for d in ds), split, strict=True):
-            rate, area = circuit.heat * flow / 6e4 * share, duct.wall / circuit.cells
+            rate, area = fluid.rho * fluid.cp * flow / 6e4 * share, duct.wall / circuit.cells
             N = film_in(duct, flow / 6e4 * share, fluid)[0] * area / rate
             if N < 4.0:
                 stretched.append((float(np.log1p(coefficient(film.law, at, T, 0.0) / rate)), N))
-        whole = circuit.heat * flow / 6e4
+        whole = fluid.rho * fluid.cp * flow / 6e4
         shares += [(coefficient(x.law, at, T, 0.0) / whole, s) for x, s in zip(streams, split, strict=False)]
-        if len(closed) < 20 and flow > 2.0 and T < 60.0:
+        if len(closed) < STEADY and flow > 2.0 and T < 60.0:
             rest = steady(network, {FLOW: flow}, {"inlet": T})
-            closed.append((circuit.heat * flow / 6e4 * (rest["c.outlet"] - T), 2000.0))
+            taken = sum(coefficient(x.law, at, x.hot.at(rest.z), 0.0) for x in network.links if x.kind == "stream")
+            closed.append((taken * (rest["c.outlet"] - T), 2000.0))
     yield "films", stretched
     yield "heat at rest", closed
     yield "shares of branches", shares

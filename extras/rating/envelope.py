@@ -37,10 +37,14 @@ class Rating:
     slope: float
 
 
+class LimitError(InputError):
+    """A limit that is exceeded without any load."""
+
+
 def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
     """The load of a form at a speed (1/min; the reference where None); short times begin where `op` says.
 
-    Raises InputError where a limit is exceeded without any load.
+    Raises LimitError where a limit is exceeded without any load.
     """
     return reached(excess(model, op, form, speed), limits, form, speed)
 
@@ -48,7 +52,7 @@ def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, s
 def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
     """The load at which the first limit is reached.  over : load -> temperatures of the places (degC), growing with it
 
-    Raises InputError where a limit is exceeded without any load.
+    Raises LimitError where a limit is exceeded without any load.
     """
     names, most = list(limits), np.array(list(limits.values()))
 
@@ -66,7 +70,7 @@ def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: s
                 f"rating {form}",
                 "a way for heat to leave every part; effects add one (explain diagnose)",
             )
-        raise InputError(
+        raise LimitError(
             f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
             "--limit",
             "a higher limit, cooler surroundings or a lower speed",

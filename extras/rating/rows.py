@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from extras.rating.derating import deratings
-from extras.rating.envelope import TIMES, Rating, rated
+from extras.rating.envelope import TIMES, LimitError, Rating, rated
 from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import Operation
 from extras.rating.request import Rated
@@ -28,8 +28,11 @@ STEADY_TIME_CONSTANTS = 20.0  # time constants
 
 
 def load_of(old: Rated, form: str, speed: float | None) -> float:
-    """What an earlier model says of a form (load)."""
-    return rated(old.model, old.op, old.limits, form, speed).load
+    """What an earlier model says of a form (load): 0 where it exceeds a limit without any."""
+    try:
+        return rated(old.model, old.op, old.limits, form, speed).load
+    except LimitError:
+        return 0.0
 
 
 def point(folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None) -> dict[str, Any]:

@@ -132,8 +132,8 @@ def assemble(
     blocks: dict[str, Block] = {}
     start = 0
     for i, part in enumerate(mesh.parts):
-        bent = part in quadratic or (bends is not None and bends.of(part))
-        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part], bent)
+        midsides = part in quadratic or (bends is not None and bends.of(part))
+        blocks[part] = block_of(mesh, i, start, conductivity[part], capacity[part], midsides)
         start = blocks[part].dofs.stop
     films = {name: Film(trace_of(mesh, blocks[p.part], p.facets), p.fluid) for name, p in mesh.patches.items()}
     contacts = {

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from geom.arrays import Array as Floats
 
 if TYPE_CHECKING:
-    from fem.matrices.elements import Bent
+    from fem.matrices.elements import Midsides
 
 Bools = NDArray[np.bool_]
 
@@ -48,18 +48,18 @@ class Bends:
         """Every edge of these parts."""
         return cls({part: np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]]) for part in parts})
 
-    def of(self, part: str) -> Bent:
+    def of(self, part: str) -> Midsides:
         """What Elements.on asks."""
         return partial(self._of_edges, part) if part in self.parts else False
 
     def _of_edges(self, part: str, a: Floats, b: Floats) -> Bools:
-        known, asked = self.parts[part], edge_table(a, b)
+        table, edges = self.parts[part], edge_table(a, b)
         out = np.zeros(len(a), bool)
         for kind in (0.0, 1.0):
-            here = known[known[:, 3] == kind] if (known[:, 3] == kind).any() else known
-            those = asked[:, 3] == kind
+            here = table[table[:, 3] == kind] if (table[:, 3] == kind).any() else table
+            those = edges[:, 3] == kind
             scale = np.linalg.norm(here[:, 4:6], axis=1).mean()
-            places = [_place(edges, scale) for edges in (here, asked[those])]
+            places = [_place(each, scale) for each in (here, edges[those])]
             out[those] = here[cKDTree(places[0]).query(places[1])[1], 6] > 0.0
         return out
 

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from fem.matrices import kernels
 from fem.matrices.bends import edge_table
-from fem.matrices.elements import Bent, Elements, HasTensor
+from fem.matrices.elements import Elements, HasTensor, Midsides
 from geom.arrays import Array as Floats
 from geom.arrays import Ints
 from geom.errors import InputError
@@ -89,7 +89,7 @@ class Block:
 
 
 def block_of(
-    mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float, bent: Bent = False
+    mesh: NamedMesh, number: int, start: int, conductivity: HasTensor, rho_cp: float, midsides: Midsides = False
 ) -> Block:
     """Part `number` of a mesh; its unknowns begin at `start`."""
     mine = mesh.region == number
@@ -99,7 +99,7 @@ def block_of(
     points, tets = renumbered(cells, len(mesh.points))
     xyz = np.ascontiguousarray(mesh.points[points])
     volumes = kernels.volumes(xyz, tets)
-    elements = Elements.on(tets, xyz, bent)
+    elements = Elements.on(tets, xyz, midsides)
     dofs = slice(start, start + len(elements.xyz))
     K, M, w = elements.conduction(conductivity), elements.mass(rho_cp * volumes), elements.nodal(volumes)
     return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp, conductivity)

@@ -28,7 +28,9 @@ from fem.matrices import kernels
 from geom.arrays import Array as Floats
 from geom.arrays import Ints
 
-Bent = bool | Callable[[Floats, Floats], NDArray[np.bool_]]  # every edge, none, or those from a to b (n, 3) that bend
+Midsides = (
+    bool | Callable[[Floats, Floats], NDArray[np.bool_]]
+)  # of every edge, of none, or of which from a to b (n, 3)
 EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 RIM = np.array([[0, 1], [0, 2], [1, 2]])  # edges of a facet
 ALIKE = 1e-6  # of an edge's length: nearer points of the plane, or levels, are the same
@@ -58,17 +60,17 @@ class Elements:
     nodes: sp.csr_array
 
     @classmethod
-    def on(cls, tets: Ints, corners: Floats, bent: Bent) -> Elements:
-        """corners (m, 3) m"""
+    def on(cls, tets: Ints, corners: Floats, midsides: Midsides) -> Elements:
+        """corners (m, 3) m;  midsides : which edges have an unknown in their middle"""
         m = len(corners)
         linear = cls(tets, tets, corners, np.empty(0, np.int64), sp.eye_array(m, format="csr"))
-        if bent is False:
+        if midsides is False:
             return linear
         edges, which = np.unique(_keys(tets[:, EDGES], m), return_inverse=True)
         diagonal, rectangle = _upright_diagonals(edges, corners)
         other = np.delete(np.arange(len(edges)), diagonal)
         a, b = edges[other] // m, edges[other] % m
-        bends = np.ones(len(other), bool) if bent is True else bent(corners[a], corners[b])
+        bends = np.ones(len(other), bool) if midsides is True else midsides(corners[a], corners[b])
         if not bends.any():
             return linear
         unknown = np.concatenate([np.arange(m), np.full(len(edges), -1)])
@@ -197,11 +199,11 @@ def _upright_diagonals(edges: Ints, corners: Floats) -> tuple[Ints, Ints]:
 
 def _straight(a: Ints, b: Ints, bends: NDArray[np.bool_], m: int) -> sp.csr_array:
     """(m + n, n_unknowns) corners and middles of n edges from a to b: where they do not bend, the mean of the ends."""
-    kept, other = np.flatnonzero(bends), np.flatnonzero(~bends)
-    row = np.concatenate([np.arange(m), m + kept, m + np.repeat(other, 2)])
-    column = np.concatenate([np.arange(m + len(kept)), np.column_stack([a, b])[other].ravel()])
-    value = np.concatenate([np.ones(m + len(kept)), np.full(2 * len(other), 0.5)])
-    return sp.csr_array((value, (row, column)), shape=(m + len(a), m + len(kept)))
+    middle, other = np.flatnonzero(bends), np.flatnonzero(~bends)
+    row = np.concatenate([np.arange(m), m + middle, m + np.repeat(other, 2)])
+    column = np.concatenate([np.arange(m + len(middle)), np.column_stack([a, b])[other].ravel()])
+    value = np.concatenate([np.ones(m + len(middle)), np.full(2 * len(other), 0.5)])
+    return sp.csr_array((value, (row, column)), shape=(m + len(a), m + len(middle)))
 
 
 def hats(corner: Floats, degree: int = 2) -> Floats:

@@ -21,11 +21,11 @@ import numpy as np
 from fem.matrices.bends import Bends
 from fem.matrices.block import renumbered
 from fem.matrices.elements import Elements
+from fem.solvers.bending_edges import Kelvins, bending_edges, hot_spots
 from fem.solvers.two_processes import in_two_processes
 from geom import Machine
 from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
-from lumped.build.bending_edges import Kelvins, bending_edges, hot_spots
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
@@ -123,8 +123,8 @@ def _read(file: Path) -> MeshChoice:
     how: dict[str, Any] = {
         key: tuple(value) if isinstance(value, list) else value for key, value in content["meshing"].items()
     }
-    kept = {key: content[key] for key in ("percent", "points", "unknowns", "met")}
-    return MeshChoice(Meshing(**how, bends=Bends(parts)), **kept)
+    rest = {key: content[key] for key in ("percent", "points", "unknowns", "met")}
+    return MeshChoice(Meshing(**how, bends=Bends(parts)), **rest)
 
 
 @dataclass
@@ -309,12 +309,17 @@ def _bends(looks: _Looks, how: Meshing, accuracy: float) -> Bends:
     if not linear:
         return Bends({})
     quadratic = looks.ready(looks.every).field
-    found = bending_edges(
-        looks.point, quadratic, lambda bends: looks.ready(replace(how, bends=bends)).field, linear, STRAIGHT * accuracy
+    edges = bending_edges(
+        looks.point,
+        quadratic,
+        lambda bends: looks.ready(replace(how, bends=bends)).field,
+        linear,
+        STRAIGHT * accuracy,
+        FLOOR,
     )
-    looks.losses = found.losses
-    looks.rises |= {looks.every: found.hot_quadratic, replace(how, bends=found.bends): found.hot}
-    return found.bends
+    looks.losses = edges.losses
+    looks.rises |= {looks.every: edges.hot_quadratic, replace(how, bends=edges.bends): edges.hot}
+    return edges.bends
 
 
 def _other(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> Meshing | None:
@@ -372,8 +377,8 @@ def counts_of(machine: Machine, how: Meshing) -> tuple[int, Mapping[str, int]]:
     unknowns = {}
     for k, part in enumerate(mesh.parts):
         points, tets = renumbered(mesh.tets[mesh.region == k], len(mesh.points))
-        bent = wound(machine, part) or (how.bends is not None and how.bends.of(part))
-        unknowns[part] = len(Elements.on(tets, mesh.points[points], bent).xyz)
+        midsides = wound(machine, part) or (how.bends is not None and how.bends.of(part))
+        unknowns[part] = len(Elements.on(tets, mesh.points[points], midsides).xyz)
     return len(mesh.points), unknowns
 
 

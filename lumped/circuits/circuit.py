@@ -18,18 +18,19 @@ from geom.constants import L_MIN, M3_H
 from lumped.circuits.hydraulics import Array, Duct, parallel_shares, pressure_drop, pumping_power, split
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
-from lumped.correlations.streams import LEAST, MOST, streamed
+from lumped.correlations.streams import LEAST, MOST, liquid_range, streamed
 from lumped.model.build import node_row
 from lumped.model.network import NOTHING, Link, Network, Row
 from lumped.transfer.coolant import Coolant
 from lumped.transfer.exchanger import BACKWARDS, Effectiveness, Exchanger, Flow
-from lumped.transfer.laws import CONSTANT, FULL_UNITS, AtUsualTemperature, InputPower, Law, TemperatureLaw
+from lumped.transfer.laws import FULL_UNITS, AtUsualTemperature, InputPower, Law, Table, TemperatureLaw
 from lumped.transfer.properties import Fluid
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
 
 PER_M3S = {"l_min": L_MIN, "m3_h": M3_H}
 TANK_M3 = 5e-5  # of the pipe in which branches meet
+STEPS = 25  # of a coolant's temperatures: between two its heat capacity is straight to 0.02 %
 
 Edge = tuple[str, str]  # from, to
 
@@ -87,9 +88,14 @@ class Circuit:
         """Heat capacity rate of the flow."""
         return Flow(self.heat * (PER_M3S[self.unit] if self.of else self.flow), self.of)
 
-    def _rate(self, temperature: TemperatureLaw = CONSTANT) -> InputPower:
-        """Heat capacity rate (W/K) of the flow as a law, times one of temperature."""
-        return InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), temperature)
+    def _rate(self, temperature: TemperatureLaw) -> Law:
+        """Heat capacity rate (W/K) of the flow as a law, times one of the circuit's mean temperature."""
+        rate = InputPower(self.stream().rate, ((self.of, 1.0, 1.0),) if self.of else (), temperature)
+        return rate if self.follows else AtUsualTemperature(rate)
+
+    def _warmed(self, degC: Array) -> Array:
+        """Heat capacity of the same volume over that at `at_degC`."""
+        return np.array([fluid.rho * fluid.cp / self.heat for fluid in map(self.liquid, degC.tolist())])
 
     def shares(self, flow: float | None = None, degC: float | None = None) -> dict[str, float]:
         """Of a flow (m3/s) through each branch, from equal pressure drop: as declared where nothing else is said."""
@@ -159,19 +165,22 @@ class Circuit:
     def _streams(self, network: Network) -> list[Link]:
         """In both directions, where it is known what flows in from behind and a column carries the flow.
 
-        Branches are streams of their own, whose shares follow flow and mean temperature, and sum to 1.
+        All follow one temperature, the mean of the circuit: what flows into it leaves it. Branches are streams of their
+        own, whose shares follow flow and temperature, and sum to 1.
         """
-        rate = self._rate()
-        if len(self.branches) == 1:
-            (path,) = self._paths.values()
-            return self._both_ways(network, "", [*path, *self._return], rate)
-        middle = _mean(network, [node for path in self._paths.values() for edge in path for node in edge])
-        out = [
-            replace(link, hot=middle, cold=NOTHING)
-            for branch, path in self._paths.items()
-            for link in self._both_ways(network, f".{branch}", path, self._shared(branch))
-        ]
-        return [*out, *(self._both_ways(network, "", self._return, rate) if self._return else [])]
+        degC = np.linspace(*liquid_range(self.liquid), STEPS)
+        rate = self._rate(Table(tuple(degC.tolist()), tuple(self._warmed(degC).tolist())))
+        paths = self._paths
+        ways = (
+            _mean(network, [node for path in paths.values() for edge in path[:-1] for node in edge]),
+            _mean(network, [node for path in paths.values() for edge in path[1:] for node in edge]),
+        )
+        if len(paths) == 1:
+            (path,) = paths.values()
+            return self._both_ways(network, "", [*path, *self._return], rate, ways)
+        branches = ((f".{name}", path, self._shared(name)) for name, path in paths.items())
+        back = [("", self._return, rate)] if self._return else []
+        return [link for of in (*branches, *back) for link in self._both_ways(network, *of, ways)]
 
     @property
     def _paths(self) -> dict[str, list[Edge]]:
@@ -191,10 +200,9 @@ class Circuit:
         """Heat capacity rate (W/K) of a branch."""
         flows, each = self._split
         alike = self._streamed(self.branches[branch][0], branch, 0.0).table
-        number, value = flows - math.log(self._unit), np.tile(each[branch], len(alike.total))
-        table = replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist()))
-        stream = self._rate(table)
-        return stream if self.follows else AtUsualTemperature(stream)
+        value = np.outer(self._warmed(np.array(alike.total)), each[branch]).ravel()
+        number = flows - math.log(self._unit)
+        return self._rate(replace(alike, number=tuple(number.tolist()), value=tuple(value.tolist())))
 
     def _streamed(self, part: Pass, branch: str, stretch: float) -> Streamed:
         """Film (W/m2/K) of a pass onto what leaves its cells, or onto the coolant beside it where nothing stretches."""
@@ -203,7 +211,8 @@ class Circuit:
         def film(size: float, fluid: Fluid) -> tuple[float, Info]:
             share = self.share(branch, size * self._unit, fluid)
             h, info = film_in(part.duct, size * self._unit * share, fluid)
-            return h * _restretched(h * stretch / max(size, 1e-300), share / usual), info
+            rate = share / usual * fluid.rho * fluid.cp / self.heat
+            return h * _restretched(h * stretch / max(size, 1e-300), rate), info
 
         return streamed(self.of, self.flow / self._unit, film, self.liquid, self.at_degC, True, stretch=stretch)
 
@@ -212,28 +221,31 @@ class Circuit:
         """m3/s of an input of 1; a flow that never changes is in m3/s itself."""
         return PER_M3S[self.unit] if self.of else 1.0
 
-    def _both_ways(self, network: Network, suffix: str, edges: list[Edge], law: Law) -> list[Link]:
+    def _both_ways(
+        self, network: Network, suffix: str, edges: list[Edge], law: Law, middle: tuple[Row, Row]
+    ) -> list[Link]:
+        """middle : of the circuit, while it flows forwards and backwards"""
+        forwards, backwards = middle
         if self.of is None:
-            return [self._stream(network, suffix, edges, law)]
+            return [self._stream(network, suffix, edges, law, forwards)]
         if not (self.cooler is not None or self.upstream):
             right = 'backwards_from = "BOUNDARY": what comes in at the outlet when the flow turns round'
             one = OneWay(law, self.of, f"[circuits.{self.name}]", right, self.flow / PER_M3S[self.unit])
-            return [self._stream(network, suffix, edges, one)]
+            return [self._stream(network, suffix, edges, one, forwards)]
         back = [(b, a) for a, b in reversed(edges) if self.cooler is not None or a != self.inlet]
         entry = [] if self.cooler is not None else [(self.upstream, self.outlet)]
         return [
-            self._stream(network, suffix, edges, Direction(law, self.of, 1)),
-            self._stream(network, f"{suffix}:back", [*entry, *back], Direction(law, self.of, -1)),
+            self._stream(network, suffix, edges, Direction(law, self.of, 1), forwards),
+            self._stream(network, f"{suffix}:back", [*entry, *back], Direction(law, self.of, -1), backwards),
         ]
 
-    def _stream(self, network: Network, suffix: str, edges: list[Edge], law: Law) -> Link:
+    def _stream(self, network: Network, suffix: str, edges: list[Edge], law: Law, middle: Row) -> Link:
         """In one direction, as long as edges follow each other; it ends where they meet, or with the last."""
         a, b = [network.column(x) for x, _ in edges], [network.column(x) for _, x in edges]
         rows, cols, vals = np.array(b + b), np.array(b + a), np.repeat([1.0, -1.0], len(edges))
         end = self.outlet if any(x == self.outlet for _, x in edges[1:]) else edges[-1][1]
-        start, out = node_row(network.column(edges[0][0])), node_row(network.column(end))
         places = edges[0][0], end
-        return Link(f"stream:{self.name}{suffix}", "stream", places, rows, cols, vals, law, out, start)
+        return Link(f"stream:{self.name}{suffix}", "stream", places, rows, cols, vals, law, middle, NOTHING)
 
     def _exchanger(self, network: Network) -> list[Link]:
         if self.cooler is None:
@@ -277,9 +289,9 @@ def film_in(duct: Duct, flow: float, fluid: Fluid) -> tuple[float, Info]:
 
 
 def _restretched(units: float, share: float) -> float:
-    """By what to take a film so that a stretch for the usual share is right at `share` times that.
+    """By what to take a film so that a stretch for the usual heat capacity rate is right at `share` times that.
 
-    units : transfer units of a cell at the usual share
+    units : transfer units of a cell at the usual rate
     """
     N = units / share
     if share == 1.0 or N <= 0.0 or math.expm1(FULL_UNITS) < N:

@@ -42,8 +42,7 @@ def streamed(
     """
     with within_silence():
         wide = TABULATED_C[::4] if liquid else [FIRST_C + STEP_K * k for k in range(FILMS)]
-        span = [T for T in (TABULATED_C if liquid else wide) if _exists(fluid, T)]
-        ends = [_limit(fluid, span[0], -GRID_K), _limit(fluid, span[-1], GRID_K)] if liquid else [span[0], span[-1]]
+        ends = liquid_range(fluid) if liquid else (wide[0], wide[-1])
         some = sorted({T for T in (*wide, degC) if ends[0] < T < ends[1]})
         temperatures = list(_between(film, fluid, usual, [ends[0], *some, ends[1]]))
         fluids = [fluid(T) for T in temperatures]
@@ -60,6 +59,12 @@ def streamed(
     table = StreamTable(of, usual, times * degC, totals, tuple(shift), tuple(number), tuple(each), stretch)
     name = film(usual, fluid(degC))[1].name
     return Streamed(value, table, tops[1], name, liquid)
+
+
+def liquid_range(liquid: Callable[[float], Fluid]) -> tuple[float, float]:
+    """From what temperature to what (degC) the properties of a liquid are known."""
+    span = [T for T in TABULATED_C if _exists(liquid, T)]
+    return _limit(liquid, span[0], -GRID_K), _limit(liquid, span[-1], GRID_K)
 
 
 def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -> float:

@@ -38,7 +38,7 @@ def test_no_circuit_and_no_declared_film_is_off_and_heat_closes(monkeypatch):
 )
 def test_beside_the_kinks_of_friction_branches_are_not_off(branches, coolant, seed, monkeypatch):
     """Where one of several branches turns turbulent, its share moves the films of all."""
-    monkeypatch.setattr(operating_points, "steady", lambda network, inputs, at: {"c.outlet": at["inlet"]})
+    monkeypatch.setattr(operating_points, "STEADY", 0)
     data = {"coolant": coolant, "passes": operating_points.CIRCUITS[branches]}
     kinds = dict(operating_points.circuit_points(branches, data, 150, np.random.default_rng(seed)))
     found = worst(((kind, ""), pair) for kind in ("films", "shares of branches") for pair in kinds[kind])
@@ -48,7 +48,7 @@ def test_beside_the_kinks_of_friction_branches_are_not_off(branches, coolant, se
 
 def test_a_coolant_is_followed_until_it_freezes(monkeypatch):
     """Propylene glycol of 40 % by volume is liquid 1 K below the last step of the grid of temperatures."""
-    monkeypatch.setattr(operating_points, "steady", lambda network, inputs, at: {"c.outlet": at["inlet"]})
+    monkeypatch.setattr(operating_points, "STEADY", 0)
     cold = SimpleNamespace(uniform=lambda low, high: -20.9 if low == -40.0 else 0.5 * (low + high))
     data = {"coolant": COOLANTS[2], "passes": operating_points.CIRCUITS["a coil"]}
     kinds = dict(operating_points.circuit_points("a coil", data, 1, cold))

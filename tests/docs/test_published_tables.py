@@ -1,14 +1,29 @@
 """What is published of measured error agrees: the front page and the page of the case, and both with their script."""
 
 import re
+from inspect import signature
 
 import pytest
 
 from fem.matrices.winding import homogenised
 from geom import load_machine
 from geom.description.materials import winding_conductivity
+from lumped.build.mesh_choice import (
+    BEGIN,
+    CHEAP,
+    LARGEST_SHARE,
+    MOST_QUADRATIC,
+    MOST_SOLVED,
+    MOST_UNKNOWNS,
+    ROOM,
+    SAFETY,
+    SHARE,
+    STRAIGHT,
+)
+from lumped.build.network_size import CONDENSED, FIRST_AXIAL, accurate_network
 from lumped.build.pipeline import CASE, FEW, LITTLE
 from scripts.published import FRONT, HUST, ROOT, between, demo_table
+from thermoscope.console.options import ACCURACY
 
 CONDENSATION = (ROOT / "docs" / "condensation.md").read_text(encoding="utf-8")
 RANDOM = 5  # column of the random points, after machine, unknowns and states
@@ -103,6 +118,39 @@ def test_the_page_says_how_shapes_are_learned():
     assert f"less than {100 * LITTLE:g} %" in words
     assert (CASE.random_points, CASE.favour, CASE.thin) == (6, 3.0, 6.0), "six sets, three times, six times"
     assert f"about {FEW} means and shapes" in words
+
+
+def test_the_page_says_how_meshes_are_chosen():
+    """Its numbers are those of the code: what no script gives has no place there."""
+    words = " ".join(CONDENSATION.split())
+    mesh = words[words.index("## The mesh") : words.index("<!-- builds:begin -->")]
+    said = (
+        f"layers of {1e3 * FIRST_AXIAL * signature(accurate_network).parameters['size_m'].default:g} mm",
+        f"three quarters of the {MOST_UNKNOWNS:,} unknowns it is made coarser across slots and bars",
+        f"The default is {ACCURACY:g} %",
+        f"the mesh has {SHARE * ACCURACY:g} ({LARGEST_SHARE * ACCURACY:g} where it is large)",
+        "a tenth of the wish",
+        f"Roache's factor of {SAFETY:g}",
+        f"six tenths of the wish are kept, or three quarters on a mesh beyond {CHEAP:,} unknowns",
+        f"No mesh of more than {MOST_UNKNOWNS:,} unknowns is condensed",
+        f"more than {MOST_SOLVED:,} is solved, but the wholly quadratic one up to {MOST_QUADRATIC:,}",
+        f"no more than {CONDENSED:g} %",
+    )
+    assert [x for x in said if x not in mesh] == []
+    assert (SHARE, LARGEST_SHARE, ROOM, BEGIN, STRAIGHT) == (0.6, 0.75, 0.75, 0.5, 0.1), "tenths, quarters, half"
+    unread = re.sub("|".join(map(re.escape, said)), "", mesh)
+    assert re.findall(r"\d[\d,.]* (?:K|GB|s|mm|unknowns)\b", unread) == [], "numbers that no test reads"
+
+
+def test_builds_end_as_the_page_says():
+    """Whatever the mesh leaves says the exit code, and no mesh is larger than what is condensed."""
+    builds = table_of("builds")
+    assert len(builds) >= 8
+    limit = LARGEST_SHARE * ACCURACY
+    assert f"Where the mesh leaves more than {limit:g} %, the exit code is 1." in " ".join(CONDENSATION.split())
+    for machine, unknowns, leaves, *_, code in builds:
+        assert int(unknowns.replace(",", "")) <= MOST_UNKNOWNS, machine
+        assert (code == "0") == (float(leaves) <= limit), machine
 
 
 def test_the_page_says_what_a_flat_winding_conducts():

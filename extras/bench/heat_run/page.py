@@ -18,8 +18,8 @@ Document = Mapping[str, Any]
 TONES = {"passes": "good", "fails": "warn"}
 BLANK = "\u2007" * 12  # room for a pen
 CLAUSES = (
-    "Clauses are those of IEC 60034-1, as deep as its headings go. Numbers of its tables differ between editions and "
-    "are not quoted, nor is any clause of IEC 60349, IEC 60034-29 or ISO 21782. Expanded uncertainties, 95 %."
+    "Clauses are headings of IEC 60034-1, which could not be read here: check them in your edition. Numbers of its "
+    "tables are left out, and so are clauses of IEC 60349, IEC 60034-29 or ISO 21782. Expanded uncertainties, 95 %."
 )
 COMPACT = """<style>main { max-width: 70rem; padding-top: 1.2rem; } h2 { margin-top: 1.4rem; font-size: 1.1rem; }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(24rem, 100%), 1fr)); gap: 0 2rem; }

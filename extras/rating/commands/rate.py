@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.rating.envelope import DUTIES, rated, until
+from extras.rating.envelope import DUTIES, LimitError, Rating, rated, until
 from extras.rating.operation import Operation
 from extras.rating.points import Model
 from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
@@ -113,7 +113,9 @@ def rating_document(folder: Folder, request: RatingRequest, sure: bool | None, t
     posterior = posterior_of(folder, tell) if request.losses is None and bands_requested(model.network, sure) else None
     tell("envelope over the speed")
     speeds = _speeds(folder, op, request)
-    envelope = [rated(model, op, limits, form, n) for form in DUTIES for n in speeds]
+    envelope = [r for form in DUTIES for n in speeds if (r := _rated_at(it, form, n))]
+    if short := [n for n in speeds if n not in {r.speed for r in envelope if r.form == "S1"}]:
+        notes([f"at {', '.join(f'{n:.4g}' for n in short)} 1/min a limit is exceeded without any load; --top RPM"])
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
@@ -134,6 +136,14 @@ def rating_document(folder: Folder, request: RatingRequest, sure: bool | None, t
         "cycle": _cycle(folder, it, request, tell),
         "map": _map(it, (load, here["S2 10 s"].load), speeds, tell) if request.mapped else {},
     }
+
+
+def _rated_at(it: Rated, form: str, speed: float) -> Rating | None:
+    """A point of the envelope; none where a speed alone overheats the machine."""
+    try:
+        return rated(it.model, it.op, it.limits, form, speed)
+    except LimitError:
+        return None
 
 
 def _before(folder: Folder, request: RatingRequest, tell: Progress) -> Rated | None:
@@ -187,8 +197,8 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
 
 
 def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:
-    """From rest to the largest speed that was fitted or asked for."""
-    if op.speed is None:
+    """From rest to the largest speed that was fitted or asked for; none where it carries the load itself."""
+    if op.speed is None or op.speed in op.loads:
         return []
     fitted = standing_reference(folder.case).signals.get(op.speed)
     peaks = [abs(fitted.low), abs(fitted.high)] if fitted else []

@@ -122,6 +122,45 @@ def test_what_is_wrong_is_one_message(thermoscope, tmp_path):
         assert message in said.err.splitlines()[-1]
 
 
+SPUN = """
+[network]
+name = "spun"
+boundaries = ["ambient"]
+[nodes.body]
+C_J_K = 6000
+[links.body-air]
+between = ["body", "ambient"]
+G_W_K = 2
+[losses.copper]
+kind = "copper"
+at = "body"
+R20_ohm = 0.01
+alpha_1_K = 0
+currents = ["current_A"]
+[losses.windage]
+kind = "windage"
+at = "body"
+P_W = 50
+of = { input = "speed_rpm", at = 1000, exponent = 2 }
+"""
+
+
+def test_a_speed_that_overheats_the_machine_by_itself_is_left_out_with_a_note(thermoscope, tmp_path):
+    """50 W at 1,000 rpm and 2 W/K reach 100 K at 2,000 rpm; below, copper has what windage leaves."""
+    (tmp_path / "network.toml").write_text(SPUN)
+    (tmp_path / "case.toml").write_text('[case]\nname = "spun"\nnetwork = "network.toml"\n')
+    at = ("--at", "current_A=100", "--at", "speed_rpm=1000", "--at", "ambient=20", "--no-bands", "--json", "-")
+    said = thermoscope("use", "rate", tmp_path, "--limit", "body=120", "--top", "2500", *at)
+    assert said.code == 0, said.err
+    rest = {r["speed_rpm"]: r["value"] for r in said.document["envelope"] if r["form"] == "S1"}
+    speeds = [0.0, 500.0, 1000.0, 1500.0]
+    assert list(rest) == speeds
+    assert list(rest.values()) == pytest.approx([np.sqrt((200.0 - 5e-5 * n**2) / 0.01) for n in speeds], rel=2e-3)
+    assert "at 2000, 2500 1/min a limit is exceeded without any load; --top RPM" in said.err
+    spun = thermoscope("use", "rate", tmp_path, "--limit", "body=120", "--load", "speed_rpm", *at)
+    assert (spun.code, spun.document["envelope"]) == (0, [])
+
+
 def test_a_role_stands_for_its_places():
     rows = dict.fromkeys(("winding.field", "armature", "yoke"), Row(np.array([0]), np.ones(1)))
     what = {"winding.field": Identity(Role.WINDING), "armature": Identity(Role.WINDING), "yoke": Identity(Role.IRON)}

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from fem.matrices.bends import Bends
+from fem.solvers import bending_edges as edges
 from geom import load_machine
-from lumped.build import bending_edges as edges
 from lumped.build import mesh_choice
+from lumped.build.crosscheck import FLOOR
 from lumped.build.pipeline import Meshing, silent
 from lumped.machine.shapes import wound
 
@@ -29,7 +30,7 @@ def looks(tmp_path_factory):
 def found(looks):
     every = looks.ready(replace(FIRST, bends=Bends.everywhere(LINEAR))).field
     return edges.bending_edges(
-        looks.point, every, lambda bends: looks.ready(replace(FIRST, bends=bends)).field, LINEAR, PERCENT
+        looks.point, every, lambda bends: looks.ready(replace(FIRST, bends=bends)).field, LINEAR, PERCENT, FLOOR
     )
 
 
@@ -55,7 +56,7 @@ def test_points_that_pass_the_hot_spot_get_their_middles_back(looks, monkeypatch
     every = looks.ready(replace(FIRST, bends=Bends.everywhere(LINEAR))).field
     monkeypatch.setattr(edges, "linear_losses", lambda field, K, T, influence: 0.0 * influence)
     with_bends = lambda bends: looks.ready(replace(FIRST, bends=bends)).field  # noqa: E731
-    few = edges.bending_edges(looks.point, every, with_bends, LINEAR, PERCENT)
+    few = edges.bending_edges(looks.point, every, with_bends, LINEAR, PERCENT, FLOOR)
     heated = [part for part in few.bends.parts if few.bends.parts[part][:, -1].any()]
     assert heated
     assert set(heated) <= set(few.hot)

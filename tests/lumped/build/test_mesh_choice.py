@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fem.matrices.bends import Bends
+from fem.solvers.bending_edges import BendingEdges
 from geom import load_machine
 from lumped.build import mesh_choice, network_size
-from lumped.build.bending_edges import BendingEdges
 from lumped.build.mesh_choice import LARGEST_SHARE, SHARE, chosen_mesh
 from lumped.build.pipeline import Meshing, silent
 from lumped.machine.shapes import wound
@@ -62,7 +62,7 @@ def second_order(monkeypatch):
         linear = sum(gain for part, gain in GAINS.items() if not bent(how, part))
         return {p: T * (1.0 - low(how) - linear) for p, T in EXACT.items()}
 
-    def edges(point, every, with_bends, parts, percent):
+    def edges(point, every, with_bends, parts, percent, floor):
         bends = Bends.everywhere([part for part in parts if 100.0 * GAINS.get(part, 0.0) > percent])
         fewer = with_bends(bends)
         lost = {part: np.full(2, 100.0 * GAINS.get(part, 0.0)) for part in parts}

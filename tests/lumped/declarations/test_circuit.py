@@ -55,25 +55,32 @@ def closed(**more):
     return loop
 
 
+def heat_rate(degC, flow=8.0):
+    """m cp (W/K) of a flow (l/min) of glycol."""
+    fluid = glycol("ethylene", 50)(degC)
+    return flow / 60000 * fluid.rho * fluid.cp
+
+
 HOT = glycol("ethylene", 50)(60.0)
-MCP = 8 / 60000 * HOT.rho * HOT.cp
+MCP = heat_rate(60.0)
 
 
 def test_one_pass_warms_the_coolant_by_25_6_K():
-    """12.4 kW into 8 L/min of 50/50 glycol."""
-    rest = steady(network(circuit()), {}, {"ambient": 20.0, "inlet": 20.0})
+    """12.4 kW into 8 L/min of 50/50 glycol, as it is at 60 degC."""
+    rest = steady(network(circuit(films="fixed")), {}, {"ambient": 20.0, "inlet": 20.0})
     assert rest["water.outlet"] - 20.0 == pytest.approx(LOSS_W / MCP, rel=1e-10)
     assert rest["water.outlet"] - 20.0 == pytest.approx(25.6, abs=0.1)
 
 
-def test_the_loop_warms_from_20_to_80_while_the_rise_through_the_jacket_stays_25_6_K():
+def test_the_loop_warms_from_20_to_80_while_what_the_coolant_takes_up_stays_the_loss():
     net = network(closed(), closed=True)
     time = np.arange(0.0, 7201.0, 5.0)
     z = simulate(net, Record(time, {}, {"ambient": 20.0}), keep_states=True).z
     out, reservoir = (z[:, net.column(f"water.{n}")] for n in ("outlet", "reservoir"))
     assert out[0] == 20.0
     assert out[-1] == pytest.approx(80.0, abs=1.0)
-    assert out[-1] - reservoir[-1] == pytest.approx(25.6, abs=0.1)
+    middle = np.mean([z[-1, net.column(f"water.1.{k}")] for k in range(1, 9)])
+    assert out[-1] - reservoir[-1] == pytest.approx(LOSS_W / heat_rate(middle), rel=2e-3)
     assert np.all(np.diff(out[10:]) > -1e-9)
 
 
@@ -100,7 +107,7 @@ def test_heat_in_is_heat_out_and_stored(kind):
 
 
 def test_what_a_stream_carries_is_m_cp_times_its_rise():
-    net = network(circuit())
+    net = network(circuit(films="fixed"))
     rest = steady(net, {}, {"ambient": 20.0, "inlet": 35.0})
     run = balance(net, Record(np.linspace(0.0, 1e5, 201), {}, {"ambient": 20.0, "inlet": 35.0}, 60.0))
     assert run.power("stream:water")[-1] == pytest.approx(MCP * (rest["water.outlet"] - 35.0), rel=1e-6)
@@ -126,8 +133,9 @@ def test_cells_along_an_even_wall_are_the_exact_exponential():
 @pytest.mark.parametrize("more", [{}, {"coil_diameter_mm": 250.0}], ids=["straight", "coil"])
 def test_at_another_flow_and_temperature_the_wall_is_as_warm_as_by_the_correlation(flow, inlet, more):
     """Of a channel declared at 60 degC and 8 l/min: what leaves T_w - (T_w - T_in) exp(-N), N by Gnielinski or Schmidt
-    at the logarithmic mean of the coolant, at a loss that warms it by 10 K."""
-    duct, rate = Duct(0.02, 0.006, 1.2, 2, 1e-3 * more.get("coil_diameter_mm", 0.0)), flow / 8 * MCP
+    at the logarithmic mean of the coolant, at a loss that warms it by 10 K. Its heat capacity is the one of then: per
+    volume 10 % less at -30 degC than at 60."""
+    duct, rate = Duct(0.02, 0.006, 1.2, 2, 1e-3 * more.get("coil_diameter_mm", 0.0)), heat_rate(inlet + 5.0, flow)
     data = circuit(flow_l_min_input="flow_l_min", passes=[{**CHANNEL, **more}])
     net = network(data, loss=10.0 * rate)
     found = steady(net, {"flow_l_min": flow}, {"ambient": 20.0, "inlet": inlet})
@@ -136,7 +144,7 @@ def test_at_another_flow_and_temperature_the_wall_is_as_warm_as_by_the_correlati
         N = film_in(duct, flow / 60000, glycol("ethylene", 50)(middle))[0] * duct.wall / rate
         wall = inlet + 10.0 / -np.expm1(-N)
         middle = wall - 10.0 / N
-    assert found["water.outlet"] == pytest.approx(inlet + 10.0, abs=1e-6)
+    assert found["water.outlet"] == pytest.approx(inlet + 10.0, abs=0.03)
     assert found["housing"] - middle == pytest.approx(wall - middle, rel=0.02)
 
 
@@ -149,18 +157,18 @@ def test_branches_share_the_flow_as_their_pressures_ask_for_at_any_flow_and_temp
     streams = [x.law for x in net.links if x.name.startswith("stream:water.")]
     for flow in (1.0, 8.0, 30.0):
         at = {"flow_l_min": np.array([flow])}
-        got = [coefficient(law, at, inlet, 0.0) / (flow / 8 * MCP) for law in streams]
+        got = [coefficient(law, at, inlet, 0.0) / heat_rate(inlet, flow) for law in streams]
         assert_allclose(got, parallel_shares(ducts, flow / 60000, glycol("ethylene", 50)(inlet)), rtol=5e-3)
-        assert sum(got) == pytest.approx(1.0, rel=1e-12)
+        assert sum(got) == pytest.approx(1.0, rel=1e-5)
     rest = steady(net, {"flow_l_min": 3.0}, {"ambient": 20.0, "inlet": inlet})
-    assert rest["water.outlet"] - inlet == pytest.approx(LOSS_W / (3 / 8 * MCP), rel=1e-9)
+    middle = next(x.hot for x in net.links if x.name == "stream:water.a").at(rest.z)
+    taken = sum(coefficient(law, {"flow_l_min": np.array([3.0])}, middle, 0.0) for law in streams)
+    assert taken * (rest["water.outlet"] - inlet) == pytest.approx(LOSS_W, rel=1e-9)
 
 
 def test_a_coolant_that_freezes_and_a_flow_beyond_the_correlation_say_so():
     net = network(circuit(flow_l_min_input="flow_l_min"))
-    with pytest.warns(
-        RangeWarning, match=r"film:water.1.1:housing: its coolant at -5\d.* degC outside -3[56][.\d]* to"
-    ):
+    with pytest.warns(RangeWarning, match=r"stream:water: its coolant at -5\d.* degC outside -3[56][.\d]* to"):
         steady(net, {"flow_l_min": 30.0}, {"ambient": 20.0, "inlet": -60.0})
     with pytest.warns(RangeWarning, match=r"duct_film: flow_l_min = 1e\+05 outside 0 to \d"):
         steady(net, {"flow_l_min": 1e5}, {"ambient": 20.0, "inlet": 60.0})
@@ -186,9 +194,8 @@ def test_films_follow_the_coolant_s_temperature(inlet):
 
 
 def test_series_passes_heat_the_second_wall_with_what_the_first_gave():
-    rest = steady(
-        network(circuit(passes=[CHANNEL, {**CHANNEL, "wall": "flange"}])), {}, {"ambient": 20.0, "inlet": 20.0}
-    )
+    both = circuit(passes=[CHANNEL, {**CHANNEL, "wall": "flange"}], films="fixed")
+    rest = steady(network(both), {}, {"ambient": 20.0, "inlet": 20.0})
     assert rest["housing"] > rest["flange"] > 25.0
     assert rest["water.outlet"] - 20.0 == pytest.approx(LOSS_W / MCP, rel=1e-9)
 
@@ -200,7 +207,7 @@ def test_two_sides_cool_better_than_one():
     two = steady(both, {}, {"ambient": 20.0, "inlet": 20.0})
     assert two["housing"] > one["housing"]
     assert two["flange"] < one["flange"]
-    assert two["water.outlet"] == pytest.approx(one["water.outlet"], rel=1e-9)
+    assert two["water.outlet"] == pytest.approx(one["water.outlet"], rel=1e-3)
 
 
 def test_equal_branches_share_alike_and_long_ones_get_less():

@@ -50,9 +50,8 @@ def test_the_documented_circuit_warms_from_20_to_80_degC(root):
     z = simulate(network, Record(np.arange(0.0, 9000.0, 10.0), {}, {"ambient": 20.0}), keep_states=True).z
     assert z[0, network.column("glycol.outlet")] == 20.0
     assert z[-1, network.column("glycol.outlet")] == pytest.approx(80.0, abs=1.0)
-    assert z[-1, network.column("glycol.outlet")] - z[-1, network.column("glycol.reservoir")] == pytest.approx(
-        25.6, abs=0.1
-    )
+    rise = z[-1, network.column("glycol.outlet")] - z[-1, network.column("glycol.reservoir")]
+    assert rise == pytest.approx(25.4, abs=0.1)  # 12,420 W into 8 l/min of 1,036 kg/m3 and 3,532 J/kg/K, at 67 degC
     assert [p.name for p in network.parameters] == ["film.glycol"]
 
 

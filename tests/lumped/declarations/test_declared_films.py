@@ -1,6 +1,8 @@
 """Films of known surfaces in network.toml are the correlations they name, and every one of them can be declared."""
 
 import pickle
+import re
+import warnings
 from functools import partial
 
 import ht
@@ -266,6 +268,37 @@ def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
 def test_slips_are_named(mechanism, keys, message):
     with pytest.raises(InputError, match=message):
         read_network(document(mechanism, keys))
+
+
+@pytest.mark.parametrize(
+    ("watts", "ambient", "said"),
+    [
+        (60.0, 20.0, []),
+        (60.0, -80.0, [r"its film at -80 degC outside -60 to 200"]),
+        (4000.0, 20.0, [r"\d+ K beside its air outside 0 to 300", r"its film at [\d.]+ degC outside -60 to 200"]),
+    ],
+)
+def test_still_air_beyond_its_table_is_said(watts, ambient, said):
+    """Too cold, too hot, and too far above the air; where properties are declared, the last alone."""
+    data = document("natural", {"surface": "vertical plate", "size_m": 0.3})
+    data["losses"]["heat"]["P_W"] = watts
+    for fixed in (False, True):
+        if fixed:
+            data["links"]["out"]["natural"]["fluid_degC"] = 20.0
+        record = Record(np.linspace(0.0, 5e4, 200), {}, {"ambient": ambient}, ambient)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            simulate(read_network(data), record)
+        words = sorted({str(w.message) for w in caught})
+        assert len(words) == len(kept := [x for x in said if not (fixed and "film" in x)])
+        assert all(re.search(pattern, word) for pattern, word in zip(kept, words, strict=True))
+
+
+def test_a_size_outside_its_correlation_is_said_once():
+    data = document("natural", {"surface": "plate facing up", "size_m": 0.005})
+    with pytest.warns(RangeWarning, match=r"mcadams_plate: Ra = 31\d.* outside 10000 to 1e\+11") as caught:
+        read_network(data)
+    assert len(caught) == 1
 
 
 def test_a_shaft_fan_blows_over_a_face_that_stands():

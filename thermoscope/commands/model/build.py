@@ -45,13 +45,13 @@ def build_machine(machine: str, out: Path | None, target: str | None, accuracy: 
     with progress() as tell:
         built, size = built_from(source, accuracy, tell)
 
-        def solids_written() -> list[CadCheck]:
+        def export_solids() -> list[CadCheck]:
             tell("solids")
             export_cad(source, folder)
             write_vtu(built.mesh, folder / f"{source.name}.vtu")
             return check_cad(source)
 
-        both: list[Callable[[], Any]] = [lambda: crosscheck.checked(built, size, tell), solids_written]
+        both: list[Callable[[], Any]] = [lambda: crosscheck.checked(built, size, tell), export_solids]
         checked, solids = in_two_processes(lambda one: one(), both, size.mesh.unknowns if size and size.mesh else 0)
         document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +16,33 @@ from numpy.typing import NDArray
 from fem.matrices.assembly import FieldModel
 from fem.matrices.bends import Bends
 from fem.solvers.linear_losses import linear_losses
-from lumped.build.crosscheck import FLOOR
-from lumped.build.fixed_coefficients import FixedCoefficients
-from lumped.model.network import Array
+from geom.arrays import Array
 
 Bools = NDArray[np.bool_]
 
 ROUNDS = 3  # of fields in which points near hot spots are held against those of the quadratic one
 Kelvins = Mapping[str, float]  # heated part -> K
+
+
+class OperatingPoint(Protocol):
+    """Films, contacts, losses and streams, all of them fixed;  watts : heated part -> W"""
+
+    @property
+    def films(self) -> Mapping[str, float]: ...
+
+    @property
+    def contacts(self) -> Mapping[str, float]: ...
+
+    @property
+    def watts(self) -> Mapping[str, float]: ...
+
+    def of_field(self, field: FieldModel) -> Array:
+        """(n,) K, steady."""
+        ...
+
+    def influence(self, field: FieldModel, rows: Callable[[Array], Array]) -> tuple[Array, Array]:
+        """The same, and (n, k) K/W of a watt anywhere on each of the readings rows(T) (n, k)."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -39,15 +59,17 @@ class BendingEdges:
 
 
 def bending_edges(
-    point: FixedCoefficients,
+    point: OperatingPoint,
     field: FieldModel,
     field_with: Callable[[Bends], FieldModel],
     parts: Sequence[str],
     percent: float,
+    floor: float,
 ) -> BendingEdges:
     """The fewest edges of `parts` without which hot spots would be off by more than so much, at a point.
 
     field : quadratic in all of these;  field_with : the same with middles on some edges
+    floor : of the largest rise: what a part of less is held against
     """
 
     def readings(T: Array) -> Array:
@@ -57,7 +79,7 @@ def bending_edges(
 
     T, influence = point.influence(field, readings)
     hot = hot_spots(point, field, T)
-    scale = np.maximum(list(hot.values()), FLOOR * max(hot.values()))
+    scale = np.maximum(list(hot.values()), floor * max(hot.values()))
     lost = 100.0 * linear_losses(field, field.stiffness(point.films, point.contacts), T, influence) / scale
     each = {part: lost[block.dofs][len(block.points) :] for part, block in field.blocks.items() if part in parts}
     edges = {part: field.blocks[part].bending for part in each}
@@ -69,7 +91,7 @@ def bending_edges(
         fewer = field_with(bends)
         T_fewer, more = point.of_field(fewer), False
         for part in near.keys() & worth.keys():
-            touched = _near_moved_points(field, fewer, part, T, T_fewer, near[part])
+            touched = _edges_near_hot_spot(field, fewer, part, T, T_fewer, near[part])
             more |= bool((touched & ~worth[part]).any())
             worth[part] |= touched
         if not (more and left):
@@ -77,12 +99,12 @@ def bending_edges(
     return BendingEdges(bends, hot_spots(point, fewer, T_fewer), hot, losses)
 
 
-def hot_spots(point: FixedCoefficients, field: FieldModel, T: Array) -> dict[str, float]:
+def hot_spots(point: OperatingPoint, field: FieldModel, T: Array) -> dict[str, float]:
     """Heated part -> its largest rise (K)."""
     return {part: float(T[k]) for part, k in hottest(point, field, T).items()}
 
 
-def hottest(point: FixedCoefficients, field: FieldModel, T: Array) -> dict[str, int]:
+def hottest(point: OperatingPoint, field: FieldModel, T: Array) -> dict[str, int]:
     """Heated part -> its hottest unknown."""
     dofs = {part: field.blocks[part].dofs for part in point.watts}
     return {part: mine.start + int(np.argmax(T[mine])) for part, mine in dofs.items()}
@@ -99,10 +121,12 @@ def _without_cheapest(each: Mapping[str, Array], percent: float) -> dict[str, Bo
     return dict(zip(each, np.split(worth, ends), strict=True))
 
 
-def _near_moved_points(field: FieldModel, fewer: FieldModel, part: str, T: Array, T_fewer: Array, near: float) -> Bools:
+def _edges_near_hot_spot(
+    field: FieldModel, fewer: FieldModel, part: str, T: Array, T_fewer: Array, near: float
+) -> Bools:
     """Whether each edge of a part ends at a point that moved by more than `near` (K), and is as near to the hottest."""
     block, m = field.blocks[part], len(field.blocks[part].points)
     before, after = T[block.dofs], T_fewer[fewer.blocks[part].dofs][:m]
-    moved = (np.abs(after - before[:m]) > near) & (np.maximum(after, before[:m]) > before.max() - near)
+    near_it = (np.abs(after - before[:m]) > near) & (np.maximum(after, before[:m]) > before.max() - near)
     ends = block.elements.middles
-    return np.asarray(moved[ends // m] | moved[ends % m])
+    return np.asarray(near_it[ends // m] | near_it[ends % m])
