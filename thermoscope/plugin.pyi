@@ -172,7 +172,7 @@ from measured.importing.draft import (
     squares_of as squares_of,
     test_name as test_name,
 )
-from measured.importing.case_files import imported_table as imported_table, read_timed as read_timed
+from measured.importing.case_files import imported_table as imported_table, read_runs as read_runs
 from measured.importing.guess import assigned as assigned, guesses as guesses
 from measured.importing.source import BINARY as BINARY
 from measured.importing.stream import Stream as Stream

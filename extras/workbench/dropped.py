@@ -27,7 +27,7 @@ from thermoscope.plugin import (
     missing_inputs,
     model_of_case,
     number,
-    read_timed,
+    read_runs,
     save_case,
     squares_of,
     target_of,
@@ -121,7 +121,7 @@ def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
     target, recordings = target_of(network), []
     for file in files:
         tell(f"reading {file.name}")
-        recordings.append(read_timed(file))
+        recordings += read_runs(file)
     return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
 
 

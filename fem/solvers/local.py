@@ -60,4 +60,9 @@ def _unit_loads(field: FieldModel, loads: Floats, part: str) -> Floats:
 
 def of_unit_energy(T: Floats, A: sp.csr_array) -> Floats:
     """Fields (n, k) scaled to T' A T = 1."""
-    return np.asarray(T / np.sqrt(np.einsum("ij,ij->j", T, A @ T)))
+    return np.asarray(T * unit_energy_scale(T, A))
+
+
+def unit_energy_scale(T: Floats, A: sp.csr_array) -> Floats:
+    """(k,) what scales fields (n, k) to T' A T = 1."""
+    return np.asarray(1.0 / np.sqrt(np.einsum("ij,ij->j", T, A @ T)))

@@ -6,7 +6,7 @@ its sides of contacts and films at nominal coefficients), so the separate pieces
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,12 +14,13 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.matrices.assembly import Block, FieldModel, Trace
-from fem.solvers.local import local_solutions, of_unit_energy
+from fem.solvers.local import local_solutions, of_unit_energy, unit_energy_scale
 from fem.solvers.solve import Solve, Solver
 from fem.solvers.two_processes import in_two_processes
 from geom.arrays import Array as Floats
 
 SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
+CHUNK = 128  # fields that a matrix is multiplied with at a time, so that memory stays small
 
 
 @dataclass(frozen=True)
@@ -175,8 +176,9 @@ def _each(
 
 
 def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
-    S = S - (block.w @ S) / block.volume
-    strength, U = np.linalg.eigh(S.T @ (A @ S))
+    S -= (block.w @ S) / block.volume
+    each = (slice(k, k + CHUNK) for k in range(0, S.shape[1], CHUNK))
+    strength, U = np.linalg.eigh(np.hstack([S.T @ (A @ S[:, some]) for some in each]))
     # A Gram matrix keeps half the digits.
     keep = np.flatnonzero(strength > 1e-13 * strength[-1])[::-1]
     return Principal(strength[keep], S @ (U[:, keep] / np.sqrt(strength[keep])))
@@ -227,16 +229,17 @@ def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
 def enriched(
     field: FieldModel,
     principal: Mapping[str, Principal],
-    S: Floats,
+    S: Sequence[Floats],
     films: Mapping[str, float],
     contacts: Mapping[str, float],
     energy: Mapping[str, sp.csr_array],
 ) -> dict[str, Principal]:
-    """Principal fields with more solutions S (n, k) among the snapshots."""
-    S = of_unit_energy(S, field.stiffness(films, contacts))
+    """Principal fields with more solutions, each S (n, k), among the snapshots."""
+    K = field.stiffness(films, contacts)
+    scales = [unit_energy_scale(X, K) for X in S]
 
     def columns(name: str, block: Block) -> Floats:
         fields = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)
-        return np.column_stack([fields, S[block.dofs]])
+        return np.column_stack([fields, *(X[block.dofs] * scale for X, scale in zip(S, scales, strict=True))])
 
     return _each(field, energy, columns)

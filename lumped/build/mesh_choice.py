@@ -39,7 +39,7 @@ LARGEST_SHARE = 0.75  # of a mesh beyond CHEAP, or where nothing finer fits: the
 CHEAP = 90_000  # unknowns that are condensed within a minute of two cores
 ORDER = 2.0  # of the means and the hottest points of linear elements; windings, quadratic, converge faster
 SAFETY = 1.25  # Roache's factor where the order is known (1994, J. Fluids Eng. 116, 405)
-UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order; one is assumed: left is what halving moved
+UNCONFIRMED = 3.0  # his factor where nothing finer confirms an order: of what smaller triangles of one part move
 SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothing can be foretold
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 2.8 GB, and with the choice some 3 min of a core
@@ -201,11 +201,14 @@ class _Way:
         """One more would tell more: two known halvings show the order."""
         return len(self.moves) == self.level < 2
 
+    def less(self, gain: Kelvins) -> _Way:
+        """After smaller triangles of one part have moved the hot spots by so much, a halving's worth at most."""
+        rest = [{p: max(K - gain[p], 0.5**ORDER * K) for p, K in move.items()} for move in self.moves]
+        return replace(self, moves=tuple(rest))
+
     def left(self, part: str) -> float:
         """What the mesh at hand is off by (K), factor of safety included."""
         moves = [move[part] for move in self.moves]
-        if len(moves) == 1 and self.level == 1:
-            return UNCONFIRMED * moves[0]
         k = min(self.level, len(moves) - 1)
         ratio = _ratio(moves[k - 1], moves[k]) if k else 0.5**ORDER
         return SAFETY * moves[k] / (1.0 - ratio) * (ratio if self.level == len(moves) else 1.0)
@@ -224,11 +227,11 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     stale: set[str] = set()  # ways looked at before another step was taken, which may have done some of theirs
     while True:
         first = replace(looks.first, bends=how.bends)
-        others = {way: other for way, halvings in ways.items() if (other := _other(looks, how, way, halvings))}
-        candidates = (other.along(way, 0.5) for way, other in others.items() if way not in WAYS)
-        looks.solve([how, first, *others.values()], candidates)
-        for way, other in others.items():
-            ways[way] = _looked_further(looks, how, way, other, ways[way])
+        pairs = {way: _halved(looks, how, way) for way, halvings in ways.items() if halvings.unsure}
+        candidates = (finer.along(way, 0.5) for way, (_, finer) in pairs.items() if way not in WAYS)
+        looks.solve([how, first, *(mesh for pair in pairs.values() for mesh in pair)], candidates)
+        for way, pair in pairs.items():
+            ways[way] = replace(ways[way], moves=(*ways[way].moves, looks.moved(*pair)))
         linear = looks.moved(first, looks.every)
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
@@ -243,12 +246,14 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         way_left = max(ways, key=lambda w: ways[w].left(worst))
         if stale and (way is None or way_left in stale):
             again = stale if way is None else {way_left}
-            finer = {w for w in again if _solvable(looks, how.along(w, 0.5), w)}  # others keep what a finer mesh said
+            finer = {w for w in again if _solvable(looks, how.along(w, 0.5))}  # others keep what a finer mesh said
             ways, stale = {**ways, **dict.fromkeys(finer, _Way())}, stale - again
         elif (way is None or way in IN_PLANE or (ways[way].left(worst) < plane and not will_do)) and (
             alone := _one_part_finer(looks, how, worst, plane, in_vain, most)
         ):
-            how, ways = alone, {**ways, **dict.fromkeys(IN_PLANE, _Way())}
+            most_left = max(IN_PLANE, key=lambda w: ways[w].left(worst))
+            ways[most_left] = ways[most_left].less(looks.moved(how, alone))
+            how, ways = alone, ways | {w: _Way() for w in IN_PLANE if _solvable(looks, alone.along(w, 0.5))}
         elif way is None:
             return MeshChoice(how, percent, *looks.size(how), percent[worst] <= LARGEST_SHARE * accuracy)
         else:
@@ -322,29 +327,19 @@ def _bends(looks: _Looks, how: Meshing, accuracy: float) -> Bends:
     return edges.bends
 
 
-def _other(looks: _Looks, how: Meshing, way: str, halvings: _Way) -> Meshing | None:
-    """One halving more where that tells more and can be solved; where none can be, one coarser instead."""
-    if not halvings.unsure:
-        return None
-    if _solvable(looks, there := how.along(way, 0.5), way):
-        return there
-    coarser = how.along(way, 2.0 ** (1 + halvings.level))
-    acts = not halvings.level or looks.size(how.along(way, 2.0))[0] > ACTS * looks.size(coarser)[0]
-    return coarser if acts else None
+def _halved(looks: _Looks, how: Meshing, way: str) -> tuple[Meshing, Meshing]:
+    """Two meshes that are one halving apart: from the one at hand, or where its halving cannot be solved, from one that
+    is coarser the other ways, since the errors of the ways add up."""
+    here = how
+    for other in 2 * [w for w in reversed(WAYS) if w != way]:
+        if _solvable(looks, here.along(way, 0.5)):
+            break
+        here = here.along(other, 2.0)
+    return here, here.along(way, 0.5)
 
 
-def _solvable(looks: _Looks, there: Meshing, way: str) -> bool:
-    """Towards ends there is nothing coarser to look at."""
-    return looks.size(there)[1] <= MOST_SOLVED or way not in WAYS
-
-
-def _looked_further(looks: _Looks, how: Meshing, way: str, other: Meshing, halvings: _Way) -> _Way:
-    if other == how.along(way, 0.5):
-        return replace(halvings, moves=(*halvings.moves, looks.moved(how, other)))
-    if not halvings.level:
-        return _Way((looks.moved(how, other),), 1)
-    between = how.along(way, 2.0)
-    return _Way((looks.moved(between, other), looks.moved(how, between)), 2)
+def _solvable(looks: _Looks, there: Meshing) -> bool:
+    return looks.size(there)[1] <= MOST_SOLVED
 
 
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:

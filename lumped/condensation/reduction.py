@@ -140,7 +140,7 @@ class Reduction:
 
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""
-        S = np.column_stack([p.X for p in points])
+        S = [p.X for p in points]
         return replace(self, principal=enriched(self.field, self.principal, S, self.films, self.contacts, self.energy))
 
 

@@ -145,6 +145,7 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is no bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
+RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec|min|h|hr)$")  # speed_rad_s, flow_l_per_min
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
 
 
@@ -165,6 +166,8 @@ def split_unit(header: str) -> tuple[str, str]:
         return before[2], unit_of(before[1]) or before[1]
     if (inner := INNER.match(header)) and is_unit(inner[2]):
         return f"{inner[1]} {SERIAL.sub('', inner[3])}", unit_of(inner[2]) or inner[2]
+    if (ratio := RATIO.match(header)) and is_unit(over := f"{ratio[2]}/{ratio[3]}"):
+        return ratio[1], unit_of(over) or over
     if (
         (last := TRAILING.match(header))
         and last[1]

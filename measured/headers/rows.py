@@ -41,7 +41,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         raise InputError("the file has one column only", where, "a time or an input, and at least one temperature")
     first = _first(head, width, where)
     block = _block(rows, first, width)
-    units = next((i for i in reversed(block) if _all_units(rows[i])), None)
+    unit_rows = [i for i in block if _all_units(rows[i])]  # "Date", "Time" and "sec" alone are units too
+    units = max(unit_rows, key=lambda i: (len([c for c in rows[i] if c]), i), default=None)
     candidates = [i for i in block if i != units]
     if not candidates:
         return Layout(_legend(rows[:first], width), ("",) * width, first, width)
@@ -84,7 +85,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     unit_cells = _padded(rows[units] if units is not None else [], width)
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
-    unit_cells[0] *= is_time(names[0]) or is_unit(unit_cells[0])  # what stands before units is the row's own label
+    if not is_unit(unit_cells[0]):
+        unit_cells[0] = split_unit(unit_cells[0])[1]  # the row's own label, such as "Unit [s]"
     has_unit = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
     unit_cells = [u if has else split_unit(group)[1] for u, has, group in zip(unit_cells, has_unit, groups)]
     return Layout(tuple(names), tuple(unit_cells), first, width, block[0], header)
@@ -137,10 +139,8 @@ def _called(names: list[str], before: Sequence[Row]) -> list[str]:
     table = {str(row[0]).strip(): row for row in lines if len(row) > 1 and str(row[0]).strip() in labels}
     if len(table) < 2 or any(map(roles_of, names)):
         return names
-    scores = [
-        sum(bool(roles_of(str(row[j])) or quantities_of(str(row[j]))) for row in table.values() if j < len(row))
-        for j in range(max(map(len, table.values())))
-    ]
+    cells = [{str(row[j]) for row in table.values() if j < len(row)} for j in range(max(map(len, table.values())))]
+    scores = [sum(bool(roles_of(c) or quantities_of(c)) for c in column) for column in cells]
     column = max(range(1, len(scores)), key=lambda j: scores[j])
     called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and scores[column]}
     heads = [str(cell).strip().lower() for row in before if len(row) == len(scores) for cell in row]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,12 +12,21 @@ from geom.description.roles import Role
 
 WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[^\W\d_A-Za-zªµºÀ-ſ]+")
 
+SHORTEST = 4  # letters of a word that may be looked for inside another
+IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
 
 
 def _words(text: str) -> frozenset[str]:
-    return frozenset(text.split())
+    """Words, and long ones without their accents too, as controllers and CAN tools have to write them."""
+    words = text.split()
+    return frozenset(words) | {plain(w) for w in words if len(w) > SHORTEST}
+
+
+def plain(word: str) -> str:
+    """Latin letters without what stands over or under them."""
+    return "".join(unicodedata.normalize("NFD", c)[0] if "À" <= c <= "ſ" else c for c in word)
 
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
@@ -39,7 +49,9 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANN
         "mean",
     )
 )
-INSTRUMENT, MACHINE = (_words(VOCABULARY["words"][name]) for name in ("instrument", "machine"))
+INSTRUMENT, MACHINE, SPARE, RUNS = (
+    _words(VOCABULARY["words"][name]) for name in ("instrument", "machine", "spare", "runs")
+)
 PHRASES = {
     re.compile(rf"(?<![^\W\d_])(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
@@ -48,12 +60,11 @@ PHRASES = {
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
-SHORTEST = 4  # letters of a word that may be looked for inside another
-IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
 OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
+DESIRED = re.compile(r"(?<=[^\W\d])(?:[_ ][Dd]es|Des)(?=\s*(?:$|[\\(\[]))")  # last: in French it is an article
 AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:current|strom)[_ .]?(d|q)(?![a-z])")
 
 
@@ -126,7 +137,17 @@ def roles_of(name: str) -> list[Role]:
 
 def is_setpoint(name: str) -> bool:
     """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
-    return is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
+    return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
+
+
+def is_rise(header: str) -> bool:
+    """Is it a difference of temperatures?"""
+    return "Δ" in header or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
+
+
+def without_rise(name: str) -> str:
+    """ "Winding" of "Winding rise ΔT": the words that say no difference."""
+    return " ".join(word for word in re.split(r"[\s_]+", name) if not is_rise(word))
 
 
 def is_spoken(name: str, terms: frozenset[str]) -> bool:

@@ -14,6 +14,7 @@ from measured.importing.source import Source
 from measured.recordings.alignment import column_onset
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
+LEAST = 0.5  # of a recording, that has to be left where a column has gaps
 WHOLE_S = 10.0  # from where on a test is cut at whole seconds
 
 
@@ -74,16 +75,32 @@ def common(
     return (begins, stops), (f"the test is where all recorders ran: {begins:.6g} to {stops:.6g} s of {first.name}",)
 
 
-def longest_part(first: Recording, limit_s: float) -> tuple[tuple[float, float | None], tuple[str, ...]]:
-    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note."""
-    t = first.clock.seconds[np.isfinite(first.clock.seconds)]
-    gaps = np.flatnonzero(np.diff(t) > max(limit_s, 2 * first.step_s))
-    if not gaps.size:
+def longest_part(
+    first: Recording, limit_s: float, columns: Sequence[str] = ()
+) -> tuple[tuple[float, float | None], tuple[str, ...]]:
+    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note.
+
+    columns : that have to be known throughout
+    """
+    t, gaps = first.clock.seconds, list[tuple[float, float, str]]()
+    rows = np.isfinite(t)
+    for column in ("", *columns):
+        at = t[rows & np.isfinite(first.source.numbers(column))] if column else t[rows]
+        usual = float(np.median(np.diff(at))) if at.size > 1 else 0.0
+        gaps += [
+            (float(at[k]), float(at[k + 1]), column) for k in np.flatnonzero(np.diff(at) > max(limit_s, 2 * usual))
+        ]
+    if not gaps:
         return (0.0, None), ()
-    starts, ends = t[np.r_[0, gaps + 1]], t[np.r_[gaps, t.size - 1]]
-    k = int(np.argmax(ends - starts))
-    begin, end = float(starts[k]), float(ends[k])
-    what = f"no rows of {first.name} from {t[gaps[0]]:.6g} s to {t[gaps[0] + 1]:.6g} s"
+    gaps.sort()
+    begins = np.maximum.accumulate([t[rows][0], *(end for _, end, _ in gaps)])
+    ends = np.array([*(start for start, *_ in gaps), t[rows][-1]])
+    k = int(np.argmax(ends - begins))
+    begin, end = float(begins[k]), float(ends[k])
+    if columns and end - begin < LEAST * (ends[-1] - begins[0]):
+        return longest_part(first, limit_s)  # readings so far apart are no gaps: what reads them says what is lacking
+    start, stop, column = gaps[0]
+    what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
 
 

@@ -20,10 +20,10 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
-from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock
+from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
-from measured.importing.source import Source, read_source, source_of_recording
+from measured.importing.source import Source, over_room, read_source, read_sources, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
@@ -111,13 +111,17 @@ def _file(draft: Draft, i: int) -> str:
     return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
 
 
-def read_timed(file: Path, period_s: float | None = None) -> tuple[Source, Clock]:
-    """A recording and its clock, rows in the order of time.  period_s : between rows, where it has no clock"""
-    return with_clock(read_source(file), period_s)
+def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, Clock]]:
+    """A recording and its clock, rows in the order of time; one of each sheet, one from each row where it starts anew.
+
+    period_s : between rows, where it has no clock
+    """
+    runs = [run for source in read_sources(file) for run in runs_of(over_room(source), period_s)]
+    return [with_clock(run, period_s) for run in runs]
 
 
 def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:
-    """With its clock, as read_timed.  InputError for times that run back, and for more than a year."""
+    """With its clock, rows in the order of time.  InputError for times that run back, and for more than a year."""
     source = on_one_clock(source)
     try:
         clock = clock_of(source, period_s)

@@ -15,7 +15,7 @@ import numpy as np
 from geom.arrays import Array
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.headers.words import CLOCKS, VOCABULARY, is_time, tokens
+from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, tokens
 from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME, joined
 from measured.recordings.units import QUANTITIES
@@ -52,6 +52,7 @@ TIME_UNITS = {**{u: f for u, (f, _) in QUANTITIES["time"].units.items()}, "us": 
 SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
 LEAST = 3  # rows with a time
+FEWEST = 20  # rows of a run that is a test
 EVEN = 1.5  # the longest step over the usual one of a record without gaps
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
@@ -134,6 +135,34 @@ def on_one_clock(source: Source) -> Source:
     units, labels = {**source.units, TIME: "s"}, {**source.labels, TIME: TIME}
     cells = {str(name): readings for name, readings in joined(signals)}
     return replace(source, cells=cells, units=units, labels=labels, notes=(*source.notes, note), values={})
+
+
+def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
+    """The source, or a part from each row on in which its clock, or where it has none its number of the run, says that
+    it starts anew; with a note.
+
+    A clock that turns over after a minute, an hour or a day is none that does.
+    """
+    clock = None if period_s is not None else _guessed_clock(source)
+    if clock is None:
+        runs = [c for c in source.cells if RUNS & {*tokens(source.labels[c])} and source.is_numeric(c)]
+        number = source.numbers(runs[0]) if runs else np.zeros(source.rows)
+        at = np.flatnonzero(np.diff(number)) + 1
+        anew = np.isfinite(number).all() and np.unique(number).size == at.size + 1
+    else:
+        t = clock.seconds
+        at = np.flatnonzero(np.diff(t) < 0) + 1
+        usual = float(np.nanmedian(np.abs(np.diff(t)))) if t.size > 1 else 0.0
+        anew = clock.start is None and bool((np.abs(t[at] - t[:1]) <= usual).all())
+        anew &= not any(abs(t[k - 1] + usual - turn) <= usual for k in at[:1] for turn in (60.0, HOUR_S, DAY_S))
+    edges = [0, *at.tolist(), source.rows]
+    if not (anew and at.size) or min(np.diff(edges)) < FEWEST or in_time_order(source) is not source:
+        return [source]
+    note = f"{source.file.name}: starts anew in row {edges[1] + 1}: {len(edges) - 1} tests, one from each start on"
+    return [
+        replace(source, cells={n: c[a:b] for n, c in source.cells.items()}, notes=(*source.notes, note), values={})
+        for a, b in itertools.pairwise(edges)
+    ]
 
 
 def in_time_order(source: Source) -> Source:

@@ -14,7 +14,6 @@ from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import unit_of
 from measured.headers.words import (
-    DIFFERENCE,
     EXTREME,
     INLET,
     INSTRUMENT,
@@ -28,8 +27,10 @@ from measured.headers.words import (
     READ,
     ROLES,
     SETPOINT,
+    SPARE,
     SPREAD,
     axis_of,
+    is_rise,
     is_setpoint,
     is_spoken,
     quantities_of,
@@ -44,6 +45,7 @@ from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITC
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
+STATES = 16  # whole numbers below it, under the name of a part alone
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
@@ -160,6 +162,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     worded = unit_text or "temperature" in quantities_of(label)
     if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
         return Guess(column, "", doubt="counts the rows")
+    whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
+    if quantity == "temperature" and not worded and whole:
+        return Guess(column, "", doubt="a state, by its values")
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
@@ -192,10 +197,12 @@ def _left_out(source: Source, column: str) -> str:
     if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
-    if (words & DIFFERENCE or "Δ" in label) and not words & QUANTITY["power"]:
+    if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
     if (parts := PATH.split(label))[1:] and parts[-1].strip().lower() in QUALITY:  # TI101.PV beside TI101.Q
         return "the quality of a reading"
+    if words & SPARE:
+        return "a spare channel, by its name"
     if words & SPREAD:
         return "a spread of readings, not a reading"
     if words & NOTHING and unit in WEAK:
@@ -337,15 +344,22 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
         key = g.feeds or (g.place if g.place in target.boundaries else "")
         if not key:
             continue
+        if g.feeds and is_setpoint(g.column):  # also a share of what is read in its own unit
+            key = next((f for q in quantities_of(g.column) if (f := QUANTITIES[q].feeds) in owner), key)
         if key not in owner:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif g.feeds and g.feeds not in target.inputs and not is_setpoint(g.column):
+        elif g.feeds and (g.feeds not in target.inputs or _of_part(g)) and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]
+
+
+def _of_part(g: Guess) -> bool:
+    """Is it a power of one part, as of copper or iron, beside which others have theirs?"""
+    return g.quantity == "power" and bool(roles_of(g.column))
 
 
 def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:

@@ -7,6 +7,7 @@ import re
 import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -15,15 +16,16 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.names import plain_header
+from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
 from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
-from measured.headers.words import is_time, quantities_of, roles_of
+from measured.headers.words import is_rise, is_time, quantities_of, roles_of, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
 from measured.recordings.data_table import DataTable
-from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, workbook_rows
+from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
 from measured.recordings.units import QUANTITIES
 
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
@@ -36,7 +38,7 @@ SCALED = re.compile(
 )  # x0.1 °C, 1/10 °C, 10 mA
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
-TAG = re.compile(r"\s*<[^<>]*>")  # of a channel, which is no part of its name: 101 Winding <TC K>
+TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
@@ -95,22 +97,65 @@ def as_numbers(cells: Sequence[Any]) -> Array:
 
 
 def read_source(file: Path) -> Source:
-    """Any file a recorder writes. InputError where it is no record, MissingDependency where a package is not there."""
+    """The longest of the tables of a file."""
+    return max(read_sources(file), key=lambda source: source.rows)
+
+
+def read_sources(file: Path) -> list[Source]:
+    """Any file a recorder writes; of a workbook all sheets with the columns of the largest.
+
+    InputError where it is no record, MissingDependency where a package is not there.
+    """
     if file.is_dir():
         raise InputError("is a folder", str(file), f"the recordings in it, such as {file}/*.csv")
     if not file.is_file():
         raise InputError("no such file", str(file), "a recording")
     suffix = file.suffix.lower()
     if suffix in BOOKS:
-        rows = guarded(file, BOOK, "openpyxl", lambda: workbook_rows(file, None))
-        rows = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
-        plan = layout(rows, str(file))
+        return _of_sheets(file)
+    if suffix not in BINARY:
+        return [source_of_table(file, *text_table(file))]
+    return [source_of_recording(file, read_recording(file))]
+
+
+def over_room(source: Source) -> Source:
+    """With rises over the room as temperatures, and a note, where the room is the only temperature beside them."""
+    units = {c: unit_of(text) for c, text in source.units.items() if source.is_numeric(c)}
+    hot = [c for c in units if units[c] in ("K", "degC", "degF")]
+    rises = {c: parts[0] for c in hot if is_rise(source.labels[c]) and len(parts := roles_of(source.labels[c])) == 1}
+    rooms = [c for c in hot if c not in rises]
+    if not rises or [(units[c], *roles_of(source.labels[c])[:1]) for c in rooms] != [("degC", Role.AMBIENT)]:
+        return source
+    if {units[c] for c in rises} - {"K", "degC"} or {Role.AMBIENT, Role.COOLANT} & {*rises.values()}:
+        return source
+    room = rooms[0]
+    names = {c: f"{c} + {room}" if c in rises else c for c in source.cells}
+    cells = {n: source.numbers(c) + source.numbers(room) if c in rises else source.cells[c] for c, n in names.items()}
+    labels = {n: without_rise(source.labels[c]) if c in rises else source.labels[c] for c, n in names.items()}
+    texts = {n: "degC" if c in rises else source.units[c] for c, n in names.items()}
+    note = f"{source.file.name}: '{next(iter(rises))}' and the like are rises: '{room}' is added to them"
+    return replace(source, cells=cells, labels=labels, units=texts, notes=(*source.notes, note), values={})
+
+
+def _of_sheets(file: Path) -> list[Source]:
+    sheets = guarded(file, BOOK, "openpyxl", lambda: worksheets(file))
+    for name, rows in sheets.items():
+        sheets[name] = [*map(list, zip(*map(trimmed, rows), strict=False))] if transposed(rows) else rows
+    largest = max(sheets, key=lambda name: len(sheets[name]) * len(sheets[name][0]), default="")
+    plans = {largest: layout(sheets.get(largest, []), str(file))}
+    for name in sheets.keys() - plans.keys():
+        with suppress(InputError):  # a page of words
+            plans[name] = layout(sheets[name], str(file))
+    alike = [name for name in sheets if name in plans and plans[name].names == plans[largest].names]
+    notes = [f"{file.name}: a test from each of the worksheets {', '.join(alike)}"] * (len(alike) > 1)
+    notes += [f"{file.name}: worksheet '{name}' is left out" for name in sheets if name in plans.keys() - {*alike}]
+    out = []
+    for name in alike:
+        plan, rows = plans[name], sheets[name]
         body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
         columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        return source_of_table(file, plan, columns, _formulas(file))
-    if suffix not in BINARY:
-        return source_of_table(file, *text_table(file))
-    return source_of_recording(file, read_recording(file))
+        out.append(source_of_table(file, plan, columns, [*notes, *_formulas(file)]))
+    return out
 
 
 def source_of_recording(file: Path, table: DataTable) -> Source:

@@ -194,7 +194,7 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         doubts = [r.clock.doubt for r in draft.records if r.clock.doubt]
         if doubts:
             out.setdefault("clock", doubts[0])
-    return list(out.values())
+    return list(dict.fromkeys(out.values()))
 
 
 ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")

@@ -169,14 +169,16 @@ def _xlsx(file: Path, worksheet: str) -> Contents:
     return zip(names, columns, strict=True), {"line": plan.first + 1, "units": plan.units_by_name}
 
 
-def workbook_rows(file: Path, worksheet: str | None) -> list[list[Any]]:
-    """Rows of a worksheet: of the first where its name is "", of the one with the most cells where it is None."""
+def worksheets(file: Path) -> dict[str, list[list[Any]]]:
+    """Name -> rows of every worksheet that has any."""
+    with _workbook(file) as book:
+        return {sheet.title: rows for sheet in book.worksheets if (rows := _rows(sheet, file))}
+
+
+def workbook_rows(file: Path, worksheet: str) -> list[list[Any]]:
+    """Rows of a worksheet: of the first where its name is ""."""
     with _workbook(file) as book:
         sheets = {sheet.title: sheet for sheet in book.worksheets}
-        if worksheet is None:
-            return max(
-                (_rows(s, file) for s in sheets.values()), key=lambda rows: len(rows) * len(rows[0]) if rows else 0
-            )
         if worksheet and worksheet not in sheets:
             raise InputError(f"no worksheet '{worksheet}'", str(file), suggestion(worksheet, sheets))
         return _rows(sheets[worksheet or next(iter(sheets))], file)

@@ -111,7 +111,7 @@ def test_copper_loss_feeds_back():
     assert error < 3e-3 * (found.T.max() - 40)
     assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.2)
     assert found.injected > 6e4 * 0.05 * (0.05 / 32) ** 2 * (1 + 0.00393 * 20)
-    assert found.energy_balance < 1e-9
+    assert found.energy_balance < 1e-8  # 40 degC through a film of 1e9 W/m2/K are rounded off by 2e-9 of this heat
 
 
 def test_thermal_runaway_is_refused():

@@ -16,7 +16,7 @@ from geom.errors import InputError
 from measured.headers.cells import split_unit, unit_of
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, longest_part
-from measured.importing.case_files import read_timed
+from measured.importing.case_files import read_runs
 from measured.importing.clock import Clock, clock_of, in_time_order
 from measured.importing.guess import guesses
 from measured.importing.source import Source, read_source
@@ -426,7 +426,7 @@ def test_clocks_that_differ_are_each_their_own_signals(tmp_path, stamp):
     """Of one rate they would be one clock; the room is read half as often, and its recorder goes on for longer."""
     rows = [f"{stamp(5 * k)};{20 + k};{stamp(10 * k)};{50 - k}" for k in range(60)]
     (tmp_path / "a.csv").write_text("\n".join(["Time;T_winding [°C];Time;T_room [°C]", *rows]) + "\n")
-    source, clock = read_timed(tmp_path / "a.csv")
+    [(source, clock)] = read_runs(tmp_path / "a.csv")
     read = source.numbers("T_room [°C]")
     assert clock.end_s == 295.0  # where the first of them ends
     assert clock.seconds[np.isfinite(read)] == pytest.approx(np.arange(0.0, 295.0, 10.0))
@@ -442,7 +442,7 @@ def test_a_row_for_every_reading_in_a_parquet_file(tmp_path):
     tags = np.repeat(["T_winding", "T_room", "current"], 30)
     columns = {"ts": np.tile(stamps, 3), "tag": tags, "value": np.arange(90.0)}
     write_table(pyarrow.table(columns), tmp_path / "a.parquet")
-    source, clock = read_timed(tmp_path / "a.parquet")
+    [(source, clock)] = read_runs(tmp_path / "a.parquet")
     assert clock.seconds == pytest.approx(10.0 * np.arange(30))
     assert source.numbers("T_room") == pytest.approx(30.0 + np.arange(30))
 
@@ -654,7 +654,7 @@ def test_rows_of_a_clock_that_was_set_back_are_not_shuffled_into_each_other(tmp_
     stamps = [6 * k - 400 * (k > 60) for k in range(120)]
     (tmp_path / "a.csv").write_text("t [s],T_coil [C]\n" + "".join(f"{t},{20 + k}\n" for k, t in enumerate(stamps)))
     with pytest.raises(InputError, match="runs back by 394 s in row 62"):
-        read_timed(tmp_path / "a.csv", None)
+        read_runs(tmp_path / "a.csv", None)
 
 
 @pytest.mark.parametrize("stamp", ["%Y. %m. %d. %H:%M:%S", "%Y.%m.%d. %H:%M:%S", "%Y.%m.%d %H:%M:%S"])
@@ -681,7 +681,7 @@ def test_lines_without_the_names_of_most_are_no_rows(tmp_path):
     lines = [f"{at} -> Tmotor={w:.2f}C I={i:.2f}A" for at, w, i in rows]
     head = ["=~=~ log 2026.03.28 =~=~", "11:59:58.000 -> heat run", "11:59:59.000 -> found 3 sensors"]
     (tmp_path / "a.log").write_text("\n".join([*head, *lines[:50], "12:04:10.000 -> retry", *lines[50:]]))
-    source, clock = read_timed(tmp_path / "a.log", None)
+    [(source, clock)] = read_runs(tmp_path / "a.log", None)
     assert clock.seconds == pytest.approx(S["t"])
     assert source.numbers("Tmotor") == pytest.approx(S["W"], abs=0.006)
     assert source.units["I"] == "A"
@@ -692,7 +692,7 @@ def test_a_blank_between_number_and_unit_in_a_line_of_names(tmp_path, between):
     stamps = [datetime.fromtimestamp(1762157670 + t, UTC).strftime("%Y-%m-%d %H:%M:%S,250") for t in S["t"]]
     lines = [f"{at}{between}winding={w:.2f} degC I={i:.2f} A" for at, w, i in zip(stamps, S["W"], S["I"])]
     (tmp_path / "a.log").write_text("\n".join([*lines[:5], f"{stamps[5]} - bench - DEBUG - output on", *lines[5:]]))
-    source, clock = read_timed(tmp_path / "a.log", None)
+    [(source, clock)] = read_runs(tmp_path / "a.log", None)
     assert clock.seconds == pytest.approx(S["t"])
     assert source.numbers("winding") == pytest.approx(S["W"], abs=0.006)
     assert (source.units["winding"], source.units["I"]) == ("degC", "A")

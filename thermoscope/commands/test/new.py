@@ -20,7 +20,7 @@ from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
-from measured.importing.case_files import folder_whole, read_timed, write_case
+from measured.importing.case_files import folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
@@ -76,7 +76,7 @@ class Model:
 
 
 def new(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, TDMS, MF4 or Parquet.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, text, xlsx, MAT, TDMS, MF4, Parquet.")],
     machine: Annotated[str | None, typer.Option(metavar="M", help="Hold them against this machine.")] = None,
     network: Annotated[Path | None, typer.Option(metavar="N", help="Or against this network.toml.")] = None,
     out: Annotated[
@@ -115,7 +115,7 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         read = []
         for file in dict.fromkeys(files):
             tell(f"reading {file.name}")
-            read.append(read_timed(file, wishes.period_s))
+            read += read_runs(file, wishes.period_s)
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
     with progress() as tell:
@@ -233,7 +233,8 @@ def drafts_of(
     out: list[Draft] = []
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
-        whole, cut = longest_part(first, MAX_GAP_S) if window_s == (0.0, None) else (window_s, ())
+        needed = [g.column for g in first.guesses if g.feeds or g.place in dialogue.target.boundaries]
+        whole, cut = longest_part(first, MAX_GAP_S, needed) if window_s == (0.0, None) else (window_s, ())
         part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]

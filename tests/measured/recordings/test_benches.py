@@ -1,0 +1,164 @@
+"""Files as benches, controllers and CAN tools write them: runs in one file, ratios as units, powers of parts."""
+
+import numpy as np
+import openpyxl
+import pytest
+
+from geom.description.roles import Role
+from geom.errors import InputError
+from measured.headers.cells import split_unit
+from measured.headers.rows import layout
+from measured.headers.words import is_setpoint, roles_of
+from measured.importing.aligned import Recording, longest_part
+from measured.importing.case_files import read_runs
+from measured.importing.guess import guesses
+from measured.importing.source import Source, read_source
+from measured.importing.target import Target
+
+ROWS = 60
+T = np.arange(0.0, 2 * ROWS, 2.0)
+
+
+def read(tmp_path, **columns):
+    """Columns of a CSV file under their names, with a clock in front unless one is given."""
+    columns = {"t [s]": T, **columns}
+    lines = [",".join(columns), *(",".join(f"{v:g}" for v in row) for row in zip(*columns.values(), strict=True))]
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    return tmp_path / "a.csv"
+
+
+@pytest.mark.parametrize(
+    ("name", "role"),
+    [
+        ("stator_winding_temp", Role.WINDING),
+        ("EM_StatorTemp", Role.IRON),
+        ("T_w_in", Role.COOLANT),
+        ("tCool_EmOut", Role.COOLANT),
+        ("DB10.Temp_Carcaca", Role.HOUSING),
+        ("Temp_Gehause", Role.HOUSING),
+        ("铁芯温度", Role.IRON),
+        ("鉄心温度", Role.IRON),
+        ("T induit", Role.ROTOR),
+    ],
+)
+def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role):
+    assert roles_of(name)[0] == role
+
+
+@pytest.mark.parametrize(
+    ("header", "name", "unit"),
+    [
+        ("shaft_speed_rad_s", "shaft_speed", "rad/s"),
+        ("flow_l_per_min", "flow", "l/min"),
+        ("mdot_kg_h", "mdot", "kg/h"),
+        ("t_s", "t", "s"),
+    ],
+)
+def test_a_ratio_at_the_end_of_a_name_is_its_unit(header, name, unit):
+    assert split_unit(header) == (name, unit)
+
+
+@pytest.mark.parametrize(("name", "asked"), [("trqEM_Des", True), ("n_des [rpm]", True), ("T_des_bobines", False)])
+def test_what_is_desired_is_asked_for(name, asked):
+    assert is_setpoint(name) == asked
+
+
+def test_a_row_of_units_stands_over_that_of_the_clock():
+    rows = [
+        ["Tag", "", "", "U-PHASE SLOT", "FRAME", "POWER"],
+        ["Unit", "", "", "°C", "°C", "kW"],
+        ["Date", "Time", "sec"],
+    ]
+    plan = layout(
+        [*rows, *([["2021/08/17", f"13:02:{k:02d}", "0", str(20 + k), "21", "8"] for k in range(9)])], "a.csv"
+    )
+    assert plan.units[3:] == ("°C", "°C", "kW")
+
+
+def test_channels_are_called_by_what_differs_between_them():
+    settings = [[f"CH{k}", name, "TEMP", "TC_K"] for k, name in enumerate(["Coil", "Frame", "Bearing", "Room"], 1)]
+    head = ["Number", *(f"CH{k}" for k in range(1, 5))]
+    plan = layout(
+        [*settings, ["Logic/Pulse", "Off"], ["Data"], head, *([[str(k), "20", "21", "22", "23"] for k in range(9)])],
+        "a.csv",
+    )
+    assert plan.names == ("Number", "CH1 Coil", "CH2 Frame", "CH3 Bearing", "CH4 Room")
+
+
+def test_what_is_no_reading_of_the_machine_is_left_out(tmp_path):
+    rise = 20 + 0.1 * T
+    others = {"TC spare [°C]": 2290 + rise, "CU digital inputs": T % 3, "Brake": T % 4, "Efficiency [%]": rise}
+    asked = {"Speed Cmd (%)": rise, "Speed [rpm]": 30 * rise, "trq\\ETKC:1 [Nm]": rise, "trqDes\\ETKC:1 [Nm]": rise}
+    source = read_source(read(tmp_path, **{"T_winding [°C]": rise}, **others, **asked))
+    found = {g.column: g.quantity for g in guesses(source, ["t [s]"], Target({"winding": Role.WINDING})) if g.used}
+    assert found == {"T_winding [°C]": "temperature", "Speed [rpm]": "speed", "trq\\ETKC:1 [Nm]": "torque"}
+
+
+def test_powers_of_parts_are_each_an_input(tmp_path):
+    target = Target({"winding": Role.WINDING}, {}, {"power_W": "power"})
+    source = read_source(read(tmp_path, **{"T_winding [°C]": 20 + T, "P_Cu [W]": 1 + T, "P_Fe [W]": 2 + T}))
+    assert [g.feeds for g in guesses(source, ["t [s]"], target)] == ["", "power_W", "p_fe_w_W"]
+
+
+@pytest.mark.parametrize("sign", ["clock", "number"])
+def test_a_file_of_several_runs_is_as_many_tests(tmp_path, sign):
+    run = np.repeat([3.0, 7.0, 4.0], 20)
+    columns = {"t [s]": np.tile(T[:20], 3)} if sign == "clock" else {"t [s]": 0 * T, "profile_id": run}
+    file = read(tmp_path, **columns, **{"T_winding [°C]": 20 + T})
+    if sign == "number":
+        file.write_text("\n".join(line.partition(",")[2] for line in file.read_text().splitlines()) + "\n")
+    runs = read_runs(file, None)
+    assert [source.numbers("T_winding [°C]")[0] for source, _ in runs] == [20.0, 60.0, 100.0]
+    assert "3 tests, one from each start on" in runs[0][0].notes[-1]
+
+
+def test_a_clock_that_turns_over_starts_nothing_anew(tmp_path):
+    with pytest.raises(InputError, match="runs back"):
+        read_runs(read(tmp_path, **{"t [s]": T % 60, "T_winding [°C]": 20 + T}), None)
+
+
+def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_path):
+    ((source, clock),) = read_runs(read(tmp_path, **{"t [s]": 100 * T, "T_winding [°C]": 20 + T, "I [A]": T}), None)
+    current = np.where((T > 30) & (T < 50), np.nan, T)
+    record = Recording(Source({**source.cells, "I [A]": current}, file=source.file), clock, [])
+    window, notes = longest_part(record, 120.0, ["I [A]"])
+    assert window == (5000.0, 11800.0)
+    assert "no 'I [A]' in a.csv from 3000 s to 5000 s" in notes[0]
+
+
+def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
+    book, names = openpyxl.Workbook(), ["t [s]", "T_winding [°C]"]
+    for sheet, first in (("Run 1", 20.0), ("Run 2", 30.0)):
+        page = book.create_sheet(sheet)
+        for row in (names, *([t, first + t] for t in T[: 30 + int(first)].tolist())):
+            page.append(row)
+    for page, head in ((book.active, ["step", "W"]), (book.create_sheet("Words"), ["About", "this"])):
+        for row in (head, *([[k, 2] for k in range(4)] if head[0] == "step" else [])):
+            page.append(row)
+    book.save(tmp_path / "a.xlsx")
+    runs = read_runs(tmp_path / "a.xlsx")
+    assert [source.numbers(names[1])[0] for source, _ in runs] == [20.0, 30.0]
+    assert [note.partition(": ")[2] for note in runs[0][0].notes] == [
+        "a test from each of the worksheets Run 1, Run 2",
+        "worksheet 'Sheet' is left out",
+    ]
+
+
+def test_the_clocks_unit_behind_the_label_of_the_row_of_units():
+    rows = [
+        ["Name", "T_coil", "I"],
+        ["Unit [s]", "°C", "A"],
+        ["Comment", "", ""],
+        *([[str(k), "20", "5"] for k in range(9)]),
+    ]
+    assert layout(rows, "a.txt").units == ("s", "°C", "A")
+
+
+@pytest.mark.parametrize(("room", "added"), [("Ambient [°C]", True), ("Water in [°C]", False)])
+def test_rises_beside_the_room_alone_are_temperatures(tmp_path, room, added):
+    columns = {"Winding rise ΔT [K]": T, "dT_Frame [K]": 0.5 * T, room: 20 + 0.1 * T}
+    [(source, _)] = read_runs(read(tmp_path, **columns))
+    assert ("Winding" in source.labels.values()) == added
+    if added:
+        assert source.numbers(f"Winding rise ΔT [K] + {room}") == pytest.approx(20 + 1.1 * T)
+        assert f"'{room}' is added" in source.notes[-1]
