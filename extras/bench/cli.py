@@ -86,11 +86,11 @@ def curves(
     from extras.bench.commands.drift import drift_between, drift_picture, drift_summary
 
     with progress() as tell:
-        found = drift_between(case, test, against, tell)
-    give(found.document(), json, lambda: drift_summary(found.document()))
+        difference = drift_between(case, test, against, tell)
+    give(difference.document(), json, lambda: drift_summary(difference.document()))
     if out is not None:
-        notes([f"written: {drift_picture(found, out)}"])
-    return 0 if found.verdict == "equal" else 1
+        notes([f"written: {drift_picture(difference, out)}"])
+    return 0 if difference.verdict == "equal" else 1
 
 
 @commands.command()

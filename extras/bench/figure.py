@@ -67,17 +67,17 @@ def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Pa
 
 
 @paper.styled
-def two_tests(found: Drift, *, png: str | Path | None = None) -> Figure:
+def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
     """A panel per sensor, what changed first: the earlier test with the band of equal ones, and the later test."""
-    first = [c.channel for c in found.changes]
-    sensors = sorted(found.sensors, key=lambda s: first.index(s.changes[0].channel))[:TOP]
-    titles = f"{found.later} against {found.earlier}: {found.verdict}", "time (min)", "rise over ambient (K)"
+    first = [c.channel for c in result.changes]
+    sensors = sorted(result.sensors, key=lambda s: first.index(s.changes[0].channel))[:TOP]
+    titles = f"{result.later} against {result.earlier}: {result.verdict}", "time (min)", "rise over ambient (K)"
     figure, axes = paper.panels(len(sensors), 3, (3.4, 2.4), *titles)
     for ax, s in zip(axes, sensors, strict=False):
         changed = any(c.verdict == "changed" for c in s.changes)
         ax.fill_between(s.minutes, s.earlier - s.band, s.earlier + s.band, color=LIGHT.faint, alpha=0.3, lw=0)
-        ax.plot(s.minutes, s.earlier, color=LIGHT.ink, lw=1.0, label=found.earlier)
-        ax.plot(s.minutes, s.later, color=VERMILION if changed else BLUE, label=found.later)
+        ax.plot(s.minutes, s.earlier, color=LIGHT.ink, lw=1.0, label=result.earlier)
+        ax.plot(s.minutes, s.later, color=VERMILION if changed else BLUE, label=result.later)
         ax.set_title(s.changes[0].place)
         rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
         ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)

@@ -52,10 +52,10 @@ def drift_summary(document: Mapping[str, Any]) -> Summary:
     )
 
 
-def drift_picture(found: Drift, out: Path) -> Path:
+def drift_picture(result: Drift, out: Path) -> Path:
     """Both tests, sensor by sensor."""
     from extras.bench.figure import two_tests
 
-    path = out / f"{file_stem(f'{found.later}-{found.earlier}')}.png"
-    two_tests(found, png=path)
+    path = out / f"{file_stem(f'{result.later}-{result.earlier}')}.png"
+    two_tests(result, png=path)
     return path

@@ -1,4 +1,4 @@
-"""Two tests of one machine under one load, weeks apart: does the later one repeat the earlier one, or what changed?
+"""Two tests of one machine under one load, weeks spread: does the later one repeat the earlier one, or what changed?
 
     later - earlier = g rise - s d(rise)/d(ln rate) + start + offset + noise        g, s : change of rise, time constant
 
@@ -36,8 +36,9 @@ WIDE = 0.05  # of a rise or a time constant: surer than that, nine in ten change
 LEAST = 8  # instants that both tests have of a sensor: four numbers and the noise are found from them
 STRETCH = 0.05  # of time: small against what a network may be wrong by
 RESOLVED_K = 0.03  # a logger of 0.1 K rounds by so much (1 / sqrt(12)): no difference is surer
-DONE = 1.0 - np.exp(-1.0)  # share of a rise after one time constant
+TIME_CONSTANT_SHARE = 1.0 - np.exp(-1.0)  # share of a rise after one time constant
 VERDICTS: tuple[Verdict, ...] = ("changed", "equal", "cannot tell")  # the first that is found holds for the machine
+ALIKE_SHARE = 0.5  # of a rise's change that a time constant changes by: more is cooling
 WAYS = {"rise": ("K", "more", "less"), "time constant": ("min", "longer", "shorter")}
 
 
@@ -106,8 +107,8 @@ class Drift:
     @property
     def verdict(self) -> Verdict:
         """Changed if anything did; equal if no rise that can be told is another."""
-        found = {c.verdict for c in self.changes if c.quantity == "rise" or c.verdict == "changed"}
-        return next(v for v in VERDICTS if v in found)
+        verdicts = {c.verdict for c in self.changes if c.quantity == "rise" or c.verdict == "changed"}
+        return next(v for v in VERDICTS if v in verdicts)
 
     @property
     def sentence(self) -> str:
@@ -130,9 +131,12 @@ class Drift:
         rise, slow = next(s.changes for s in self.sensors if s.changes[0].place == place)
         if rise.verdict != "changed" or max(rise.U95, slow.U95) > WIDE:
             return ""
-        if slow.verdict == "equal":
+        share = (
+            slow.change / rise.change
+        )  # 1 by a poorer film; copper that is warmer makes more heat, and adds a little
+        if abs(share) <= ALIKE_SHARE:
             return ", in its heat or a contact within: it cools as before"
-        return f", it cools {'less' if rise.change > 0 else 'better'}" if slow.change * rise.change > 0 else ""
+        return f", it cools {'less' if rise.change > 0 else 'better'}" if share > 0 else ""
 
     def document(self) -> dict[str, Any]:
         return {
@@ -165,16 +169,18 @@ def drift(case: Case, later: Test, earlier: Test) -> Drift:
         return [run - test.boundaries[air], (fast - run) / STRETCH]
 
     rises = (np.array([c.y for c in t.channels]) - t.boundaries[air] for t in (later, earlier))
-    own, rows = ([y, *predicted(t), *predicted(_calm(t, air))] for t, y in zip((later, earlier), rises, strict=True))
-    there = [[_onto(earlier.time, later.time, y) for y in row] for row in own]
+    later_rows, rows = (
+        [y, *predicted(t), *predicted(_calm(t, air))] for t, y in zip((later, earlier), rises, strict=True)
+    )
+    there = [[_onto(earlier.time, later.time, y) for y in row] for row in later_rows]
     warm = predicted(_calm(earlier, air, 1.0))[0]
     columns = np.stack([*there, *rows, warm], axis=1)
-    found = [(c.name, _sensor(c, earlier.time, x)) for c, x in zip(earlier.channels, columns, strict=True)]
-    sensors = [s for _, s in found if s is not None]
+    each = [(c.name, _sensor(c, earlier.time, x)) for c, x in zip(earlier.channels, columns, strict=True)]
+    sensors = [s for _, s in each if s is not None]
     if not sensors:
         words = f"shares fewer than {LEAST} readings of any sensor with {earlier.name}, or none warms"
         raise InputError(words, f"test {later.name!r}", "two tests that are long enough, with a load")
-    left_out = tuple(name for name, s in found if s is None)
+    left_out = tuple(name for name, s in each if s is None)
     return Drift(case, later.name, earlier.name, tuple(_judged(sensors)), left_out)
 
 
@@ -208,10 +214,10 @@ def _calm(test: Test, air: str, above_K: float = 0.0) -> Test:
     return replace(test, boundaries=mean, initial=float(mean[air][0]) + above_K)
 
 
-def _onto(time: Array, own: Array, y: Array) -> Array:
+def _onto(time: Array, other: Array, y: Array) -> Array:
     """Values at other times of the test, missing before the first and after the last reading."""
     read = np.isfinite(y)
-    return np.interp(time, own[read], y[read], np.nan, np.nan) if read.any() else np.full(time.shape, np.nan)
+    return np.interp(time, other[read], y[read], np.nan, np.nan) if read.any() else np.full(time.shape, np.nan)
 
 
 def _sensor(sensor: Channel, time: Array, columns: Array) -> Sensor | None:
@@ -236,7 +242,10 @@ def _sensor(sensor: Channel, time: Array, columns: Array) -> Sensor | None:
     X = np.column_stack([shape, -scale * heat_gain[1] - air_gain[1], warm - heat[1], np.ones_like(t)])
     offset = np.sqrt(2.0) * sensor.sigma_K  # of the difference of two readings
     changes, covariance, noise_K = _fitted(t, after - rise[1], X, offset)
-    end, first = float(np.mean(rise[1, t >= LATE * t[-1]])), t[np.argmax(shape >= DONE * shape[-1])] / 60.0
+    end, first = (
+        float(np.mean(rise[1, t >= LATE * t[-1]])),
+        t[np.argmax(shape >= TIME_CONSTANT_SHARE * shape[-1])] / 60.0,
+    )
     gain = offset / max(abs(end), sensor.sigma_K)
     sd = np.sqrt(np.diag(covariance)[:2] + np.array([gain**2, 0.0]))
     free = t.size - X.shape[1]
@@ -253,20 +262,20 @@ def _fitted(t: Array, d: Array, X: Array, offset_K: float) -> tuple[Array, Array
     A shape counts by its restricted likelihood: the best one alone would be too sure. offset_K : of start and reading
     Source: Patterson and Thompson 1971, Biometrika 58, 545.
     """
-    known, free, found = np.diag([0.0, 0.0, offset_K**-2, offset_K**-2]), t.size - X.shape[1], []
+    prior, free, fits = np.diag([0.0, 0.0, offset_K**-2, offset_K**-2]), t.size - X.shape[1], []
     for shape in NOISE_SHAPES:
         L, whole = np.linalg.cholesky(shape.matrix(t)), 1.0 + shape.a + shape.b
         white = np.linalg.solve(L, np.column_stack([X, d]))
         A, y = white[:, :-1], white[:, -1]
         left = y - A @ np.linalg.lstsq(A, y, rcond=None)[0]
         variance = max(float(left @ left) / free, RESOLVED_K**2 / whole)
-        H = A.T @ A + variance * known
+        H = A.T @ A + variance * prior
         log = shape.log_prior() - np.log(np.diag(L)).sum() - 0.5 * (np.linalg.slogdet(H)[1] + free * np.log(variance))
-        found.append((log, np.linalg.solve(H, A.T @ y), variance * np.linalg.inv(H), variance * whole))
-    log, each, covariance, noise = (np.array(x) for x in zip(*found, strict=True))
+        fits.append((log, np.linalg.solve(H, A.T @ y), variance * np.linalg.inv(H), variance * whole))
+    log, each, covariance, noise = (np.array(x) for x in zip(*fits, strict=True))
     share = np.exp(log - log.max()) / np.exp(log - log.max()).sum()
-    apart = each - share @ each
-    total = np.einsum("k,kij->ij", share, covariance + apart[:, :, None] * apart[:, None, :])
+    spread = each - share @ each
+    total = np.einsum("k,kij->ij", share, covariance + spread[:, :, None] * spread[:, None, :])
     return share @ each, total, float(np.sqrt(share @ noise))
 
 
@@ -276,8 +285,8 @@ def _judged(sensors: Sequence[Sensor]) -> Iterator[Sensor]:
     Source: Holm 1979, Scandinavian Journal of Statistics 6, 65.
     """
     p = np.sort([c.p for s in sensors for c in s.changes])
-    kept = np.flatnonzero(p > LEVEL / np.arange(p.size, 0, -1))
-    limit = p[kept[0]] if kept.size else np.inf
+    equal = np.flatnonzero(p > LEVEL / np.arange(p.size, 0, -1))
+    limit = p[equal[0]] if equal.size else np.inf
     for s in sensors:
         words: list[Verdict] = [
             "changed" if c.p < limit else "equal" if c.U95 <= WIDE else "cannot tell" for c in s.changes
