@@ -195,6 +195,7 @@ from measured.recordings.formats import (
 from measured.recordings.sheet import Column as Column, Sheet as Sheet, load_sheet as load_sheet
 from measured.recordings.tables import seconds_of as seconds_of
 from measured.recordings.units import QUANTITIES as QUANTITIES
+from measured.sensors.blocks import Blocks as Blocks, groups as blocks_of
 from measured.sensors.operators import head as head
 from validation.bands.at_rest import AtRest as AtRest
 from validation.bands.posterior import (
@@ -217,6 +218,7 @@ from validation.comparison.predict import (
 from validation.comparison.uncertainty import RULE as RULE
 from validation.diagnosis import diagnose as diagnose
 from validation.effects.build import copy_link as copy_link, heat as heat_source
+from validation.noise import GRID as NOISE_SHAPES
 from validation.parameters.model_form import ExponentError as ExponentError, FARTHEST as FARTHEST
 from validation.parameters.reference import LOADS as LOADS
 from validation.parameters.unknowns import (
@@ -230,7 +232,14 @@ from validation.parameters.unknowns import (
 from validation.revision import revise as revise
 from validation.tables import bases_table as bases_table, fall as fall, offers as offers
 from geom.one_thread import one_blas_thread as one_blas_thread
-from viz.colours import BLUE as BLUE, DARK as DARK, LIGHT as LIGHT, Theme as Theme, heat as heat_colours
+from viz.colours import (
+    BLUE as BLUE,
+    DARK as DARK,
+    LIGHT as LIGHT,
+    Theme as Theme,
+    VERMILION as VERMILION,
+    heat as heat_colours,
+)
 from viz.data import Comparison as Comparison, Sensor as Sensor, short as short
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
@@ -324,11 +333,13 @@ __all__ = [
     "LimitOption",
     "MachineDescription",
     "MeasuredCase",
+    "NOISE_SHAPES",
     "OutOption",
     "StoredRevision",
     "TomlTable",
     "USUAL_DOUBT",
     "USUAL_QUANTITIES",
+    "blocks_of",
     "heat_colours",
     "heat_source",
     "integration_stages",

@@ -57,20 +57,40 @@ def report(
 def curves(
     case: Case,
     resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
+    against: Annotated[str | None, typer.Option(metavar="TEST|CASE", help="An earlier test, or its case.")] = None,
+    test: Annotated[str | None, typer.Option(help="The later test, with --against; by default the last one.")] = None,
+    out: Out = None,
     json: Json = None,
 ) -> int:
-    """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; exit code 1 if these two fail."""
-    from extras.bench.commands.curves import curves_summary
-    from extras.bench.measuring.curves import curves as found_in
-    from thermoscope.plugin import give, open_case, progress
+    """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; --against finds what changed since.
+
+    Exit code 1 if the rule fails, equal tests differ, or the later test is not equal to the earlier one.
+    """
+    from thermoscope import InputError
+    from thermoscope.plugin import give, notes, open_case, progress
+
+    if against is None:
+        from extras.bench.commands.curves import curves_summary
+        from extras.bench.measuring.curves import curves as found_in
+
+        if test or out:
+            raise InputError("is for two tests", "--test" if test else "--out", "--against TEST beside it")
+        with progress() as tell:
+            folder = open_case(case, tell)
+            tell("fitting the warming curves")
+            result = found_in(folder.case, resolution)
+        document = result.document()
+        give(document, json, lambda: curves_summary(document))
+        return 0 if result.agrees else 1
+
+    from extras.bench.commands.drift import drift_between, drift_picture, drift_summary
 
     with progress() as tell:
-        folder = open_case(case, tell)
-        tell("fitting the warming curves")
-        result = found_in(folder.case, resolution)
-    document = result.document()
-    give(document, json, lambda: curves_summary(document))
-    return 0 if result.agrees else 1
+        difference = drift_between(case, test, against, tell)
+    give(difference.document(), json, lambda: drift_summary(difference.document()))
+    if out is not None:
+        notes([f"written: {drift_picture(difference, out)}"])
+    return 0 if difference.verdict == "equal" else 1
 
 
 @commands.command()

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import halfnorm
 
-from thermoscope.plugin import BLUE, LIGHT, paper
+from thermoscope.plugin import BLUE, LIGHT, VERMILION, paper
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from extras.bench.measuring.drift import Drift
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
@@ -61,6 +63,25 @@ def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Pa
     _bars(ax, [r["factor"] for r in up], sizes, [BLUE] * len(up))
     ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=LIGHT.ink, lw=1.0)
     ax.set(xlabel=measure, title=title, xlim=(0, None))
+    return paper.save(figure, png)
+
+
+@paper.styled
+def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
+    """A panel per sensor, what changed first: the earlier test with the band of equal ones, and the later test."""
+    first = [c.channel for c in result.changes]
+    sensors = sorted(result.sensors, key=lambda s: first.index(s.changes[0].channel))[:TOP]
+    titles = f"{result.later} against {result.earlier}: {result.verdict}", "time (min)", "rise over ambient (K)"
+    figure, axes = paper.panels(len(sensors), 3, (3.4, 2.4), *titles)
+    for ax, s in zip(axes, sensors, strict=False):
+        changed = any(c.verdict == "changed" for c in s.changes)
+        ax.fill_between(s.minutes, s.earlier - s.band, s.earlier + s.band, color=LIGHT.faint, alpha=0.3, lw=0)
+        ax.plot(s.minutes, s.earlier, color=LIGHT.ink, lw=1.0, label=result.earlier)
+        ax.plot(s.minutes, s.later, color=VERMILION if changed else BLUE, label=result.later)
+        ax.set_title(s.changes[0].place)
+        rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
+        ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)
+    axes[0].legend(fontsize=8, frameon=False, loc="lower right")
     return paper.save(figure, png)
 
 

@@ -57,15 +57,15 @@ def warmed(time, current=15.0):
     return np.interp(time, np.arange(len(out)) * step, out)
 
 
-def equal_tests(folder, offsets):
-    """A case of equal tests of 20 h at 15 A, each read with its own offset (K)."""
+def equal_tests(folder, offsets, currents=(15.0, 15.0, 15.0)):
+    """A case of equal tests of 20 h at 15 A, each read with its own offset (K).  currents : what really flowed (A)"""
     (folder / "tests").mkdir(parents=True)
     (folder / "network.toml").write_text(NETWORK)
     time = np.arange(0.0, 72001.0, 600.0)
-    true = warmed(time)
     entries = "".join(f'[tests.{name}]\nrole = "calibrate"\n' for name in RUNS)
     (folder / "case.toml").write_text(f'[case]\nname = "two"\nnetwork = "network.toml"\nsample_s = 600\n{entries}')
-    for name, off in zip(RUNS, offsets, strict=True):
+    for name, off, current in zip(RUNS, offsets, currents, strict=True):
+        true = warmed(time, current)
         rows = "".join(f"{t:g},15,20,{T + off:.3f}\n" for t, T in zip(time, true, strict=True))
         (folder / "tests" / f"{name}.csv").write_text(f"time_s,current_A,T_air,T_core\n{rows}")
         (folder / "tests" / f"{name}.toml").write_text(SHEET)
@@ -103,6 +103,36 @@ def test_curves_that_do_not_repeat_exit_with_1(thermoscope, tmp_path):
     code, out, _ = thermoscope("curves", equal_tests(tmp_path / "two", (-4.0, 0.0, 4.0)), "--json", "-")
     assert code == 1
     assert '"repeat": false' in out
+
+
+def test_a_later_test_repeats_an_earlier_one(thermoscope, tmp_path):
+    """The last test is the later one; what an offset of a sigma adds is within uncertainty."""
+    case = equal_tests(tmp_path / "two", (0.0, 0.0, 0.4))
+    done = thermoscope("curves", case, "--against", "run-1", "--json", "-")
+    assert done.code == 0, done.err
+    assert (done.document["test"], done.document["against"]) == ("run-3", "run-1")
+    assert (done.document["verdict"], done.document["part"]) == ("equal", None)
+    assert {c["quantity"] for c in done.document["changes"]} == {"rise", "time constant"}
+
+
+def test_a_drift_is_told_and_pictured(thermoscope, tmp_path):
+    """5 % more current than was read: a tenth more heat, and a rise by the two resistances at either current."""
+    case = equal_tests(tmp_path / "two", (0.0, 0.0, 0.0), (15.0, 15.0, 15.75))
+    done = thermoscope("curves", case, "--against", "run-2", "--out", tmp_path / "out", "--json", "-")
+    assert done.code == 1, done.err
+    rises = [i**2 / (5.0 - i**2 * 0.00393 * (1 + 5 / 20)) for i in (15.0, 15.75)]
+    (rise,) = [c for c in done.document["changes"] if c["quantity"] == "rise"]
+    assert (rise["before"], rise["after"]) == pytest.approx(rises, rel=0.03)  # 2 % is to come in the last quarter
+    assert rise["percent"] == pytest.approx(100 * (rises[1] / rises[0] - 1), abs=rise["U95_percent"])
+    assert (rise["verdict"], done.document["part"]) == ("changed", "core")
+    assert "it cools as before" in done.document["sentence"]
+    assert (tmp_path / "out" / "run-3-run-2.png").stat().st_size > 10_000
+
+
+def test_a_second_case_may_have_the_earlier_test(thermoscope, tmp_path):
+    cases = [equal_tests(tmp_path / name, (0.0, 0.0, 0.0)) for name in ("now", "then")]
+    done = thermoscope("curves", cases[0], "--against", cases[1], "--test", "run-2", "--json", "-")
+    assert (done.code, done.document["against"]) == (0, "two/run-2")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,61 @@
+"""thermoscope bench curves CASE --against TEST"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from extras.bench.measuring.drift import Drift, drift
+from thermoscope import InputError
+from thermoscope.plugin import MeasuredCase, Progress, Summary, Table, Test, file_stem, open_case, suggestion
+
+
+def drift_between(case: str, test: str | None, against: str, tell: Progress) -> Drift:
+    """against : a test of the case, or a second case, of which it is the test of the same name, else the last one."""
+    here = open_case(case, tell).case
+    tests = {t.name: t for t in here.tests}
+    if against not in tests and Path(against).is_dir():
+        other = open_case(against, tell).case
+        earlier = _named(other, test) if test in {t.name for t in other.tests} else other.tests[-1]
+        earlier = replace(earlier, name=f"{other.name}/{earlier.name}")
+    else:
+        earlier = _named(here, against, "--against")
+    later = _named(here, test) if test else next((t for t in reversed(here.tests) if t is not earlier), earlier)
+    if later is earlier:
+        right = "two tests of the case, or the folder of a second one"
+        raise InputError(f"there is no other test than {earlier.name}", here.name, right)
+    tell("comparing two tests")
+    return drift(here, later, earlier)
+
+
+def _named(case: MeasuredCase, name: str | None, option: str = "--test") -> Test:
+    tests = {t.name: t for t in case.tests}
+    if name not in tests:
+        raise InputError(f"unknown test {name!r} of {case.name}", option, suggestion(str(name), tests))
+    return tests[name]
+
+
+def drift_summary(document: Mapping[str, Any]) -> Summary:
+    """What changed; then both quantities of every sensor."""
+    columns = "sensor=place | *quantity | before | after | *difference (%)=percent | *+- 95 %=U95_percent"
+    table = Table.of(
+        "At the earlier test's conditions",
+        document["changes"],
+        f"{columns} | uncertainties | channel | *verdict",
+        ["changed"],
+    )
+    names = ", ".join(document["left_out"])
+    return Summary(
+        document["sentence"], [table, *([f"too few readings, or no rise: {names}"] if names else [])], "--out DIR"
+    )
+
+
+def drift_picture(result: Drift, out: Path) -> Path:
+    """Both tests, sensor by sensor."""
+    from extras.bench.figure import two_tests
+
+    path = out / f"{file_stem(f'{result.later}-{result.earlier}')}.png"
+    two_tests(result, png=path)
+    return path
