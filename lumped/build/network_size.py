@@ -24,8 +24,8 @@ ROUNDS = 3  # of learning: each solves the field at new points
 POINTS_EACH = 3  # random ones and extreme ones: each costs a solve of the field, and errors of a kind are alike
 CONTACT_FACTORS = (0.2, 5.0)  # times all contacts at once: about the spread of one contact in the tables
 SEGMENTS = 48  # chords per turn
-BYTES = 18_500  # per unknown: snapshots, factor and the points that are learned from; 2.85 GB at 154,000
-SECONDS, FACTOR_ORDER = 120.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
+BYTES, PROGRAM = 20_000, 0.9e9  # per unknown (snapshots, factors, points learned from), and of all else: both processes
+SECONDS, FACTOR_ORDER = 140.0, 4.0 / 3.0  # of one core at 100,000 unknowns, growing as a factor by nested dissection
 FIRST_AXIAL = 1.5  # thickest layer over the size of a triangle: quadratic elements are as good as two linear ones each
 MISSED = 0.5  # of the wish, asked of the condensation where the mesh has used it up: the table says no in any case
 CONDENSED = 2.0  # percent that the condensation may add at most, whatever the mesh leaves: films and contacts change it
@@ -90,7 +90,7 @@ def accurate_network(
 
 def needs(unknowns: int) -> str:
     """What a build on so many unknowns takes."""
-    gigabytes, minutes = BYTES * unknowns / 1e9, SECONDS / 60.0 * (unknowns / 1e5) ** FACTOR_ORDER
+    gigabytes, minutes = (PROGRAM + BYTES * unknowns) / 1e9, SECONDS / 60.0 * (unknowns / 1e5) ** FACTOR_ORDER
     return f"{unknowns:,} unknowns, about {gigabytes:.1f} GB and {max(minutes, 0.1):.1f} min of a core"
 
 

@@ -193,8 +193,8 @@ def table_two() -> Section:
     for name, published in TRUE_BASES.items():
         heat, _ = carried_off(name)
         ours = (
-            f"{_with_interval(name, 'path_W_K')}: {heat.conduction:.0f} W through the foot, "
-            f"{heat.convection:.0f} W by convection, {heat.radiation:.0f} W by radiation"
+            f"{_with_interval(name, 'path_W_K')}: {heat.conduction:.1f} W through the foot, "
+            f"{heat.convection:.1f} W by convection, {heat.radiation:.1f} W by radiation"
         )
         rows.append(Row(f"base, {name}", published, ours, f"hidden {hidden()[name]['base_path_W_K']:.2f} W/K"))
     rows += [
