@@ -229,14 +229,14 @@ def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:
 def enriched(
     field: FieldModel,
     principal: Mapping[str, Principal],
-    S: Sequence[Floats],
+    S: Sequence[NDArray[np.floating]],
     films: Mapping[str, float],
     contacts: Mapping[str, float],
     energy: Mapping[str, sp.csr_array],
 ) -> dict[str, Principal]:
     """Principal fields with more solutions, each S (n, k), among the snapshots."""
     K = field.stiffness(films, contacts)
-    scales = [unit_energy_scale(X, K) for X in S]
+    scales = [unit_energy_scale(np.asarray(X, float), K) for X in S]
 
     def columns(name: str, block: Block) -> Floats:
         fields = np.asarray(principal[name].fields, float) * np.sqrt(principal[name].strength)

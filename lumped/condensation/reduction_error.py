@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.recovery import PartShape, Shapes
@@ -122,7 +123,7 @@ class LoadCases:
     watts: Array
     kelvin: Array
 
-    def of_field(self, X: Array) -> Array:
+    def of_field(self, X: NDArray[np.floating]) -> Array:
         """(n, n_case) from unit solutions X (n, n_zone + n_fluid)."""
         return np.asarray(X @ np.hstack([self.watts, self.kelvin]).T)
 
@@ -158,7 +159,11 @@ def network_states(
 
 
 def point_errors(
-    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], X: Array, cases: LoadCases
+    network: Network,
+    films: Mapping[str, float],
+    contacts: Mapping[str, float],
+    X: NDArray[np.floating],
+    cases: LoadCases,
 ) -> Errors:
     """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
     x, full = network_states(network, films, contacts, cases), cases.of_field(X)
