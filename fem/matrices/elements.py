@@ -28,9 +28,8 @@ from fem.matrices import kernels
 from geom.arrays import Array as Floats
 from geom.arrays import Ints
 
-Midsides = (
-    bool | Callable[[Floats, Floats], NDArray[np.bool_]]
-)  # of every edge, of none, or of which from a to b (n, 3)
+# Of every edge, of none, or of which of those from a to b (n, 3).
+Midsides = bool | Callable[[Floats, Floats], NDArray[np.bool_]]
 EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 RIM = np.array([[0, 1], [0, 2], [1, 2]])  # edges of a facet
 ALIKE = 1e-6  # of an edge's length: nearer points of the plane, or levels, are the same

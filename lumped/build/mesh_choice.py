@@ -221,18 +221,17 @@ def _ratio(before: float, after: float) -> float:
 
 def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     how = replace(looks.first, bends=_bends(looks, looks.first, accuracy))
+    linear = looks.moved(how, looks.every)
     ends = [p.name for p in looks.machine.parts if laminated(looks.machine, p.name)]
     ways = dict.fromkeys((*WAYS, *ends), _Way())
     in_vain: set[tuple[str, str]] = set()
     stale: set[str] = set()  # ways looked at before another step was taken, which may have done some of theirs
     while True:
-        first = replace(looks.first, bends=how.bends)
         pairs = {way: _halved(looks, how, way) for way, halvings in ways.items() if halvings.unsure}
         candidates = (finer.along(way, 0.5) for way, (_, finer) in pairs.items() if way not in WAYS)
-        looks.solve([how, first, *(mesh for pair in pairs.values() for mesh in pair)], candidates)
+        looks.solve([how, *(mesh for pair in pairs.values() for mesh in pair)], candidates)
         for way, pair in pairs.items():
             ways[way] = replace(ways[way], moves=(*ways[way].moves, looks.moved(*pair)))
-        linear = looks.moved(first, looks.every)
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)

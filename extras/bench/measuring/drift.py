@@ -131,9 +131,8 @@ class Drift:
         rise, slow = next(s.changes for s in self.sensors if s.changes[0].place == place)
         if rise.verdict != "changed" or max(rise.U95, slow.U95) > WIDE:
             return ""
-        share = (
-            slow.change / rise.change
-        )  # 1 by a poorer film; copper that is warmer makes more heat, and adds a little
+        # 1 by a poorer film; copper that is warmer makes more heat, and adds a little.
+        share = slow.change / rise.change
         if abs(share) <= ALIKE_SHARE:
             return ", in its heat or a contact within: it cools as before"
         return f", it cools {'less' if rise.change > 0 else 'better'}" if share > 0 else ""
