@@ -39,8 +39,8 @@ EXTRAS = {
         ),
         Extra(
             "bench",
-            ("asammdf", "nptdms", "pyarrow", "SALib"),
-            "recordings in TDMS, MF4 and Parquet; sensitivities of a screening",
+            ("aiomqtt", "asammdf", "nptdms", "pyarrow", "SALib"),
+            "recordings in TDMS, MF4 and Parquet; sensitivities of a screening; rows from an MQTT broker",
         ),
         Extra("oil", ("CoolProp",), "properties of oil"),
         Extra("optimise", ("pymoo",), "designs that trade one aim for another"),

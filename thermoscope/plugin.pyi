@@ -11,6 +11,7 @@ from geom.description.profile import ArcGrid as ArcGrid, loop_length as loop_len
 from geom.description.roles import Role as Role
 from geom.description.toml_file import read_toml as read_toml
 from geom.disk_cache import recalled as recalled, store as store
+from geom.errors import NoSolution as NoSolution
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
 from geom.machine_file import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
@@ -205,9 +206,14 @@ from validation.bands.posterior import (
 )
 from validation.bases.which_base import which_base as which_base
 from validation.calibration.calibrate import minimise as minimise
-from validation.calibration.model_error import neighbours as neighbours
+from validation.calibration.model_error import (
+    ModelError as ModelError,
+    model_error as model_error,
+    neighbours as neighbours,
+)
 from validation.comparison.compare import errors as errors, physical as physical
 from validation.comparison.error_budget import model_of as model_of
+from validation.comparison.linearisation import Segment as Segment, segments as segments
 from validation.comparison.moved_inputs import moved_boundaries as moved_boundaries, moved_inputs as moved_inputs
 from validation.comparison.predict import (
     heat_model as heat_model,
@@ -216,8 +222,13 @@ from validation.comparison.predict import (
     thermal as thermal,
 )
 from validation.comparison.uncertainty import RULE as RULE
-from validation.diagnosis import diagnose as diagnose
+from validation.diagnosis import diagnose as diagnose, infer as infer
 from validation.effects.build import copy_link as copy_link, heat as heat_source
+from validation.inference.evidence import Evidence as Evidence
+from validation.inference.decide import Posterior as Posterior
+from validation.inference.hypotheses import probabilities as probabilities
+from validation.inference.say import explanations as explanations, hidden_effects as hidden_effects
+from validation.inference.score import fit_prior as fit_prior, total as total
 from validation.noise import GRID as NOISE_SHAPES
 from validation.parameters.model_form import ExponentError as ExponentError, FARTHEST as FARTHEST
 from validation.parameters.reference import LOADS as LOADS

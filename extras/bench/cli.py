@@ -176,3 +176,27 @@ def carry(
     }
     give(document, json, lambda: show_transfer(document))
     return 0 if all(one.agrees for one in transfers) else 1
+
+
+@commands.command()
+def live(
+    case: Case,
+    follow: Annotated[str, typer.Option("--follow", metavar="ROWS", help="FILE, -, tcp://HOST:PORT or mqtt://HOST.")],
+    test: Annotated[str, typer.Option(metavar="NAME", help="The test of the case that the rows become.")] = "live",
+    drive: Annotated[bool, typer.Option("--drive", help="Send the set points; else a person sets them.")] = False,
+    out: Out = None,
+    json: Json = None,
+) -> int:
+    """A test that steers itself: rows come in, the next set point goes out, until one cause has 90 %.
+
+    Exit code 1 if it ends without an answer.
+    """
+    from extras.bench.commands.live import live_document, live_picture, live_summary
+    from thermoscope.plugin import give, notes, progress
+
+    with progress() as tell:
+        document = live_document(case, follow, test, drive, json, tell)
+    give(document, json, lambda: live_summary(document))
+    if out is not None:
+        notes([f"written: {live_picture(case, test, out)}"])
+    return 0 if document["decided"] else 1

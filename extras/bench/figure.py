@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
+LINES = 5  # causes in one picture
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
 
@@ -82,6 +83,34 @@ def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
         rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
         ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)
     axes[0].legend(fontsize=8, frameon=False, loc="lower right")
+    return paper.save(figure, png)
+
+
+@paper.styled
+def odds_over_time(events: Sequence[Row], *, png: str | Path | None = None) -> Figure:
+    """The odds of a live bench over bench time, and the set points beneath, each as a share of its largest.
+
+    events : of its journal
+    """
+    looks, sets = ([e for e in events if e["event"] == kind] for kind in ("odds", "set"))
+    begin = next((e["begin_s"] for e in events if e["event"] == "begin"), 0.0)
+    figure, (upper, lower) = paper.subplots(7.2, 4.6, rows=2)
+    peak: dict[str, float] = {}
+    for look in looks:
+        peak |= {name: max(p, peak.get(name, 0.0)) for name, p in look["odds"]}
+    time = [(look["time_s"] - begin) / 60.0 for look in looks]
+    for name in sorted(peak, key=lambda n: -peak[n])[:LINES]:
+        upper.plot(time, [100.0 * dict(look["odds"]).get(name, 0.0) for look in looks], label=name)
+    upper.axhline(90.0, color=LIGHT.faint, lw=1.0, ls="--")
+    upper.set(ylabel="odds (%)", ylim=(0, 101))
+    upper.legend(fontsize=8, frameon=False, loc="center left")
+    at = [(e["time_s"] - begin) / 60.0 for e in sets]
+    for name in sets[0]["set_point"] if sets else ():
+        level = [e["set_point"][name] for e in sets]
+        most = max(map(abs, level)) or 1.0
+        lower.step([*at, *time[-1:]], [100.0 * v / most for v in [*level, level[-1]]][: len(at) + len(time[-1:])], where="post", label=f"{name}, 100 % = {most:g}")
+    lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
+    lower.legend(fontsize=8, frameon=False, loc="center left")
     return paper.save(figure, png)
 
 

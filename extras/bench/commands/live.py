@@ -1,0 +1,77 @@
+"""thermoscope bench live CASE --follow ROWS"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from extras.bench.live.session import Session
+from extras.bench.live.settings import read_bench
+from extras.bench.live.sources import source_of
+from extras.bench.live.steering import UNDECIDED, Steering
+from extras.bench.live.store import Store
+from thermoscope import InputError
+from thermoscope.plugin import PACKAGE, STDOUT, Progress, Summary, Table, file_stem, find_case, load_case, notes, percent, say
+
+OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
+
+
+def live_document(case: str, follow: str, test: str, drive: bool, json: str | None, tell: Progress) -> dict[str, Any]:
+    """What a run on the bench ended with; its rows are a test of the case."""
+    path = find_case(case)
+    if PACKAGE in path.resolve().parents:
+        raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
+    if file_stem(test) != test:
+        raise InputError(f"'{test}' is no name of a file", "--test", f"a name like {file_stem(test)}")
+    tell("reading the case")
+    network = load_case(path, untested=True).case.model.network
+    bench = read_bench(path, network)
+    store = Store(path, test, bench.sheet_file)
+    lines: Callable[[str], None] = (lambda line: notes([line])) if json == STDOUT or follow == "-" else say
+    try:
+        steering = Steering(bench, store)
+        session = Session(steering, source_of(follow), path, drive, lines, follow != "-")
+        stop = session.run()
+        thought, events = session.thought, store.events()
+    finally:
+        store.close()
+    belief = thought.belief if thought else None
+    return {
+        "case": path.name,
+        "test": test,
+        "source": follow,
+        "stop": stop,
+        "decided": stop not in OPEN,
+        "minutes": (steering.time - steering.begin) / 60.0,
+        "odds": [{"cause": n, "probability": p} for n, p in (belief.odds if belief else ())],
+        "sensors_over": list(belief.over if belief else ()),
+        "cannot_see": list(belief.unseen if belief else ()),
+        "set_points": [e for e in events if e["event"] == "set"],
+        "file": str(store.path),
+    }
+
+
+def live_summary(document: Mapping[str, Any]) -> Summary:
+    """How it ended, the odds, and what was set."""
+    odds = Table.of("Odds", document["odds"], "*cause | *probability", probability=lambda o: percent(o["probability"]))
+    rows = [[e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())] for e in document["set_points"]]
+    parts: list[Table | str] = [odds, Table("Set points", ["from (min)", "set point"], rows)]
+    if document["sensors_over"]:
+        parts.append(f"sensors over: {', '.join(document['sensors_over'])}")
+    if document["cannot_see"]:
+        parts.append(f"cannot see: {', '.join(document['cannot_see'])}")
+    return Summary(f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}")
+
+
+def live_picture(case: str, test: str, out: Path) -> Path:
+    """Odds over time, set points beneath."""
+    from extras.bench.figure import odds_over_time
+
+    path = find_case(case)
+    store = Store(path, test, read_bench(path, load_case(path, untested=True).case.model.network).sheet_file)
+    events = store.events()
+    store.close()
+    file = out / f"{test}-odds.png"
+    odds_over_time(events, png=file)
+    return file

@@ -1,0 +1,1 @@
+"""A bench that steers itself to the answer: rows in, set points out, odds in between."""

@@ -1,0 +1,220 @@
+"""The next set point: expected information per minute, under limits that the upper band of the model must not cross.
+
+Under each hypothesis the coming readings are normal, their mean and covariance by the tangents of the calibrated model:
+
+    mu_h = X_h x_h,  S_h = 1 + X_h P_h X_h'        X_h : whitened columns of the coming readings, x_h, P_h : at present
+
+What they would tell of which hypothesis holds is, from pairwise distances D of these (Bhattacharyya),
+
+    I >= - sum_h p_h ln sum_l p_l exp(-D_hl)
+
+Source: Kolchinsky and Tracey 2017, Estimating mixture entropy with pairwise distances, Entropy 19, 361.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from extras.bench.live.belief import Belief
+from extras.bench.live.settings import Bench, SetPoint
+from scipy.linalg import solve_triangular
+from thermoscope.plugin import (
+    USUAL_DOUBT,
+    Array,
+    Channel,
+    Evidence,
+    ModelError,
+    NoSolution,
+    Segment,
+    Test,
+    fit_prior,
+    model_error,
+    probabilities,
+    segments,
+    total,
+)
+
+MINUTE = 60.0
+LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over again
+STEP_S = 30.0  # of a planned record: sensors and windings take as long to follow
+PAST, CHECKED = 40, 3  # blocks of what was read; set points that are looked at again
+RIVALS, LEAST = 8, 0.01  # hypotheses that are told apart, and the probability from which one of them counts
+BAND = 2.5  # standard deviations of the upper band
+CHANGE_MIN = 1.0  # until a set point that was asked for is there
+LIMIT = "limit: "
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A hypothesis.  p : its probability;  lead : the cause it counts for;
+
+    at : its columns among parameters, model error, causes;  mean, covariance : of these by the readings so far
+    """
+
+    p: float
+    lead: str
+    at: tuple[int, ...]
+    mean: Array
+    covariance: Array
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A set point that the limits allow.  nats : expected of `minutes` of it;  hottest : limit -> upper band (degC)"""
+
+    set_point: dict[str, float]
+    minutes: float
+    nats: float
+    hottest: dict[str, float]
+
+    @property
+    def rate(self) -> float:
+        """Nats per minute; to change a set point costs some as well."""
+        return self.nats / (self.minutes + CHANGE_MIN)
+
+
+def rivals(belief: Belief) -> list[Rival]:
+    """The hypotheses that carry weight, with what the readings so far say of their parameters."""
+    e = belief.posterior.evidence
+    p = probabilities(belief.posterior.hypotheses)
+    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), e.scale
+    known = [(float(q), h) for q, h in zip(p, belief.posterior.hypotheses, strict=True) if not h.heat]
+    out = []
+    for q, h in sorted(known, key=lambda x: -x[0])[:RIVALS]:
+        k = list(h.members)
+        weight = np.concatenate([sd, scale[k]]) ** -2.0
+        A = np.block([[G.JJ, G.JZ[:, k]], [G.JZ[:, k].T, G.ZZ[np.ix_(k, k)]]]) + np.diag(weight)
+        covariance = np.linalg.inv(A)
+        names = (*(e.names[i] for i in k), *(() if k else (e.name(h),)))
+        lead = next((cause for cause, _ in belief.odds if cause in names), names[0])
+        at = (*range(theta.size), *(theta.size + i for i in k))
+        b = np.concatenate([G.Jr - weight[: theta.size] * theta, G.Zr[k]])
+        out.append(Rival(q, lead, at, covariance @ b, covariance))
+    whole = sum(r.p for r in out)
+    return [replace(r, p=r.p / whole) for r in out if r.p >= LEAST * out[0].p]
+
+
+def choices(belief: Belief, bench: Bench, now: SetPoint, only: Sequence[SetPoint] | None = None) -> list[Choice]:
+    """Every set point that the limits allow, most information per minute first.
+
+    The first few are looked at again with what a model of this kind gets wrong: it takes most of what tangents promise.
+    """
+    some = rivals(belief)
+    out = [c for s in (bench.set_points(now) if only is None else only) for c in _lengths(belief, bench, some, s)]
+    out.sort(key=lambda c: -c.rate)
+    first = {str(c.set_point): c.set_point for c in out}
+    again = [c for s in list(first.values())[:CHECKED] for c in _lengths(belief, bench, some, s, True)]
+    return sorted(again, key=lambda c: -c.rate)
+
+
+def _lengths(
+    belief: Belief, bench: Bench, some: Sequence[Rival], set_point: SetPoint, doubting: bool = False
+) -> Iterator[Choice]:
+    e = belief.posterior.evidence
+    test = planned(belief.test, bench, set_point)
+    columns = (*e.fit.unknowns.parameters, *e.parameters)
+    try:
+        parts = segments(e.network, [_with_limits(test, bench, belief)], e.fit.values, columns)
+        error = model_error(e.fit.network, [test], e.fit.values, sensed=e.tests) if doubting else None
+    except NoSolution:  # the model runs away there
+        return
+    begin = float(belief.test.time[-1])
+    bands = {s.channel[len(LIMIT) :]: _after(s, begin) for s in parts if s.channel.startswith(LIMIT)}
+    q = e.p + (e.fit.error.size if e.fit.error else 0)
+    cold = min(float(u[-1]) for u in belief.test.boundaries.values())
+    hottest = {x.name: _band(bands[x.name], e.p, q, some, x.hot_spot, cold) for x in bench.limits}
+    most = {x.name: x.most_C for x in bench.limits}
+    read = [_innovations(e, s, begin, error) for s in parts if not s.channel.startswith(LIMIT)]
+    for minutes in LENGTHS_MIN:
+        inside = {n: T[s <= minutes * MINUTE + bench.deaf_s].max() for n, (s, T) in hottest.items()}
+        if any(inside[n] > most[n] for n in inside):
+            return
+        J = np.vstack([white[time <= begin + minutes * MINUTE] for time, white in read])
+        yield Choice(dict(set_point), minutes, information(J, some), {n: float(T) for n, T in inside.items()})
+
+
+def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
+    """The rows so far, then a set point for as long as any plan looks ahead; all else stays where it is."""
+    ahead = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
+    n, m = ahead.size, test.time.size
+
+    def on(u: Array, value: float | None = None) -> Array:
+        u = np.broadcast_to(np.asarray(u, float), test.time.shape)
+        return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
+
+    before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
+    return replace(
+        test,
+        time=np.concatenate([test.time, test.time[-1] + ahead]),
+        inputs={k: on(u, set_point.get(k)) for k, u in test.inputs.items()},
+        boundaries={k: on(u) for k, u in test.boundaries.items()},
+        channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
+        recorded=None,
+        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(ahead), prepend=-1))]),
+    )
+
+
+def _block(ahead: Array) -> Array:
+    """Which block a planned instant is in: they grow as what is looked for gets slower."""
+    return np.floor(8.0 * np.log2(1.0 + ahead / 240.0))
+
+
+def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> tuple[Array, Array]:
+    """Times of the coming readings of a channel, and their whitened columns given all that was read before.
+
+    Columns: calibrated parameters, model error, causes.
+    """
+    d = e.fit.error.size if e.fit.error else 0
+    doubts = np.zeros((s.r.size, d))
+    if error and e.fit.error:  # doubts that the plan adds, such as of its own steps, are none of the fit's
+        n = min(error.model_columns, e.fit.error.model_columns)
+        doubts[:, :n] = error.of(s)[:, :n]
+    J = np.column_stack([s.J[:, : e.p], doubts, s.J[:, e.p :]])
+    late = s.time > begin
+    return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
+
+
+def _with_limits(test: Test, bench: Bench, belief: Belief) -> Test:
+    places = belief.posterior.evidence.network.places
+    still = np.zeros(test.time.size)
+    more = (Channel(f"{LIMIT}{x.name}", x.place, places[x.place].mean, still, lag_s=0.0) for x in bench.limits)
+    return replace(test, channels=(*test.channels, *more))
+
+
+def _after(s: Segment, begin: float) -> Segment:
+    late = s.time > begin
+    return replace(s, time=s.time[late], r=s.r[late], J=s.J[late])
+
+
+def _band(s: Segment, p: int, q: int, some: Sequence[Rival], hot_spot: float, cold: float) -> tuple[Array, Array]:
+    """Seconds from now, and the upper band of the hottest point under every hypothesis that carries weight."""
+    upper = []
+    J = np.column_stack([s.J[:, :p], np.zeros((s.r.size, q - p)), s.J[:, p:]])
+    for r in some:
+        X = J[:, r.at]
+        mean = -s.r + X @ r.mean
+        slow = USUAL_DOUBT["slow"] * np.abs(mean - cold)
+        sd = np.sqrt(np.einsum("ij,jk,ik->i", X, r.covariance, X) + slow**2)
+        upper.append(mean + BAND * sd)
+    return s.time - s.time[0] + STEP_S, cold + hot_spot * (np.max(upper, axis=0) - cold)
+
+
+def information(J: Array, some: Sequence[Rival]) -> float:
+    """Expected information (nats) of readings with whitened columns J about which cause leads; a lower bound."""
+    normal = []
+    for r in some:
+        X = J[:, r.at]
+        S = np.eye(len(X)) + X @ r.covariance @ X.T
+        normal.append((X @ r.mean, S, np.linalg.slogdet(S)[1]))
+    D = np.zeros((len(some), len(some)))
+    for (i, a), (j, b) in combinations(enumerate(normal), 2):
+        if some[i].lead != some[j].lead:  # which partner a cause has is not what is asked
+            L = np.linalg.cholesky(0.5 * (a[1] + b[1]))
+            z = solve_triangular(L, a[0] - b[0], lower=True)
+            D[i, j] = D[j, i] = 0.125 * z @ z + np.sum(np.log(np.diag(L))) - 0.25 * (a[2] + b[2])
+    p = np.array([r.p for r in some])
+    return float(-np.sum(p * np.log(np.exp(-D) @ p)))

@@ -1,0 +1,114 @@
+"""A run of the bench: rows from the source to the steering, odds worked out beside, set points back."""
+
+from __future__ import annotations
+
+import queue
+import sys
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+
+from extras.bench.live.settings import Bench
+from extras.bench.live.sources import Parser, Source
+from extras.bench.live.steering import Steering, Thought
+from extras.bench.live.store import Fault
+from thermoscope import InputError
+
+WAKE_S = 0.2  # between two looks at a thought that goes on and at what a person typed
+Tell = Callable[[str], None]
+
+
+class Session:
+    """drive : send set points;  tell : lines for a person;  hear : whether a person types "done" on stdin"""
+
+    def __init__(self, steering: Steering, source: Source, case: Path, drive: bool, tell: Tell, hear: bool) -> None:
+        if drive and source.send is None:
+            raise InputError("set points cannot go to a file", "--drive", "a pipe, tcp://HOST:PORT or mqtt://HOST")
+        self.steering, self.source, self.case, self.drive, self.tell = steering, source, case, drive, tell
+        self.parser = Parser(source.where, list(steering.store.header))
+        self.thinking: Future[Thought] | None = None
+        self.typed: queue.Queue[str] = queue.Queue()
+        self.thought: Thought | None = None
+        if hear and not drive:
+            threading.Thread(target=lambda: [self.typed.put(x.strip()) for x in sys.stdin], daemon=True).start()
+
+    @property
+    def bench(self) -> Bench:
+        return self.steering.bench
+
+    def run(self) -> str:
+        """Why it ended. A fault is raised once the bench is set safe."""
+        with ThreadPoolExecutor(1) as pool:
+            try:
+                return self._run(pool)
+            except (InputError, OSError, KeyboardInterrupt) as fault:
+                self._safe()
+                self.steering.store.note({"event": "fault", "time_s": self.steering.time, "what": str(fault)})
+                if isinstance(fault, OSError):
+                    raise Fault(f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept") from None
+                raise
+
+    def _safe(self) -> None:
+        try:
+            self._out(self.steering.make_safe())
+        except OSError:  # the line is gone: nothing can be sent any more
+            self.tell("the bench cannot be reached: set it safe by hand")
+
+    def _run(self, pool: ThreadPoolExecutor) -> str:
+        heard, over = time.monotonic(), False
+        while True:
+            try:
+                line = self.source.line(WAKE_S)
+            except queue.Empty:
+                if time.monotonic() - heard > self.bench.silence_s:
+                    raise Fault(f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on") from None
+                line = ""
+            over = over or line is None
+            if line and (row := self.parser.row(line)) is not None:
+                heard = time.monotonic()
+                self._out(self.steering.row(row, replay=self.steering.replays))
+            if not self.typed.empty() and self.typed.get() == "done":
+                self.steering.done()
+            if self.thinking is not None and (self.thinking.done() or over):
+                thought, self.thinking = self.thinking.result(), None
+                self._take(thought)
+                if thought.stop:
+                    return thought.stop
+            if self.thinking is None and self.steering.is_due:
+                self.thinking = pool.submit(self.steering.think, self.case)
+            elif over and self.thinking is None:
+                self._safe()
+                return "the rows are at their end"
+
+    def _take(self, thought: Thought) -> None:
+        self.thought = thought
+        self.tell(words(thought))
+        sent = self.steering.apply(thought)
+        if not self.drive and thought.choice and not thought.stop:
+            self.tell(f"set {_set_words(self.steering)}, then type done")
+        self._out(sent)
+
+    def _out(self, sent: list[dict[str, float]]) -> None:
+        for set_point in sent:
+            if self.drive:
+                self.source.set(set_point)
+
+
+def _set_words(steering: Steering) -> str:
+    rate = {k.name: k.rate_per_s for k in steering.bench.knobs}
+    return ", ".join(f"{n} = {v:g} (at most {rate[n]:g} per s)" for n, v in steering.now.items())
+
+
+def words(thought: Thought) -> str:
+    """A look at the odds in one line."""
+    odds = ", ".join(f"{name} {p:.0%}" for name, p in thought.belief.odds[:3])
+    out = [f"{thought.time / 60.0:6.1f} min  {odds}"]
+    if thought.belief.over:
+        out.append(f"sensors over: {', '.join(thought.belief.over)}")
+    if thought.belief.unseen:
+        out.append(f"cannot see yet: {', '.join(thought.belief.unseen[:3])}")
+    if thought.left_min < 1e4 and not thought.stop:
+        out.append(f"about {thought.left_min:.0f} min left")
+    return "; ".join(out)

@@ -1,0 +1,220 @@
+"""A run from row to row: guards first, then odds, then the next set point; and when it stops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+import numpy as np
+
+from extras.bench.live.belief import FEWEST, NOTHING, Belief, believe
+from extras.bench.live.planning import MINUTE, Choice, choices
+from extras.bench.live.settings import OVER, Bench, SetPoint
+from extras.bench.live.store import Fault, Row, Store
+from thermoscope.plugin import load_case
+
+SURE = 0.9  # probability of one name, or of nothing, from which the run ends
+NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
+DULL, LOOKS = 0.02, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
+UNDECIDED = "no allowed set point would decide"
+LEFT_NATS = 0.33  # what is not known of two when one has 90 %
+
+Policy = Callable[[Belief, Sequence[Choice]], Choice | None]
+
+
+def most_informative(belief: Belief, allowed: Sequence[Choice]) -> Choice | None:
+    """The set point with most information per minute."""
+    return allowed[0] if allowed else None
+
+
+@dataclass(frozen=True)
+class Thought:
+    """What a look at the rows gave.  choice : the next set point, None where none is due;  left_min : to the answer
+
+    stop : why the run is over, "" while it goes on
+    """
+
+    time: float
+    belief: Belief
+    choice: Choice | None = None
+    left_min: float = math.inf
+    stop: str = ""
+
+
+@dataclass
+class Steering:
+    """now : the set point;  sent : how far towards it the bench was told;  due : when the next one is chosen (s)
+
+    since : when `now` was asked for;  obeyed : that the meters show it, or a person said so
+    """
+
+    bench: Bench
+    store: Store
+    policy: Policy = most_informative
+    now: dict[str, float] = field(default_factory=dict)
+    sent: dict[str, float] = field(default_factory=dict)
+    minutes: float = 0.0
+    due: float = -math.inf
+    since: float = -math.inf
+    obeyed: bool = True
+    begin: float = math.nan
+    last: Row | None = None
+    count: int = 0
+    looked: float = -math.inf
+    dull: int = 0
+    replays: bool = True
+    rate: float = math.nan
+
+    def __post_init__(self) -> None:
+        self.now = dict(self.bench.safe)
+        self.sent = dict(self.now)
+        self.time_of = self.bench.sheet.time
+        for event in self.store.events():
+            if event["event"] == "set":
+                self.now, self.minutes = event["set_point"], event["minutes"]
+                self.since, self.due = event["time_s"], event["time_s"] + MINUTE * event["minutes"]
+            self.begin = event.get("begin_s", self.begin)
+        last = self.store.last()
+        if last is not None:
+            self.last, self.count = last, FEWEST
+            self.sent = {n: v for n in self.now if math.isfinite(v := self._input(n, last))} or dict(self.now)
+
+    @property
+    def time(self) -> float:
+        return self.last[self.time_of] if self.last else -math.inf
+
+    def _input(self, name: str, row: Mapping[str, float]) -> float:
+        c = next(c for c in self.bench.sheet.columns if c.feeds == name)
+        return float(c.in_memory(np.array([row.get(c.header, math.nan)]))[0])
+
+    def row(self, row: Row, replay: bool = False) -> list[dict[str, float]]:
+        """Takes a row, on the disk first. Returns set points to send. Raises Fault where the bench must be left safe."""
+        t = row.get(self.time_of, math.nan)
+        if replay and t <= self.time:
+            return []
+        if not math.isfinite(t):
+            raise Fault("a row without a time", f"column '{self.time_of}'", "seconds that rise from row to row")
+        step = t - self.time
+        if step <= 0.0:
+            self.store.note({"event": "refused", "row": row})
+            what = "is out of order" if step > -self.bench.jump_s else "jumps back"
+            raise Fault(f"time {t:g} {what} after {self.time:g}", self.store.name, "one writer, with a clock that rises")
+        self.store.append(row)
+        if self.last is not None and step > self.bench.jump_s:
+            raise Fault(f"the clock jumps from {self.time:g} to {t:g} s", self.store.name, f"steps up to {self.bench.jump_s:g} s")
+        if self.last is None:
+            self.begin = t
+            self.store.note({"event": "begin", "begin_s": t})
+        self.last, self.count, self.replays = row, self.count + 1, False
+        self._check(row)
+        if not self.obeyed and self._near(row):
+            self.done()
+        return self._ramp(step)
+
+    def done(self) -> None:
+        """The set point is reached: its minutes count from now."""
+        self.obeyed, self.due = True, self.time + MINUTE * self.minutes
+
+    def _near(self, row: Row) -> bool:
+        gaps = [abs(self._input(k.name, row) - self.now[k.name]) <= NEAR * max(k.most, 1e-9) for k in self.bench.knobs]
+        return all(gaps)
+
+    def _check(self, row: Row) -> None:
+        for k in self.bench.knobs:
+            if (v := self._input(k.name, row)) > (1.0 + OVER) * k.most:
+                raise Fault(f"{k.name} reads {v:g}", f"[set.{k.name}]", f"{k.most:g} at most")
+        for limit in self.bench.limits:
+            for c in self.bench.sheet.columns:
+                if c.is_temperature and c.place == limit.place:
+                    T = float(c.in_memory(np.array([row.get(c.header, math.nan)]))[0])
+                    if T > limit.most_C:
+                        raise Fault(f"{c.name} reads {T:.1f} degC", f"[limits.{limit.name}]", f"{limit.most_C:g} degC at most")
+
+    def _ramp(self, step: float) -> list[dict[str, float]]:
+        """The next step towards the set point, no faster than each input may change."""
+        if self.sent == self.now:
+            return []
+        step = min(step, MINUTE) if math.isfinite(step) else 1.0
+        most = {k.name: k.rate_per_s * step for k in self.bench.knobs}
+        self.sent = {n: v + float(np.clip(self.now[n] - v, -most[n], most[n])) for n, v in self.sent.items()}
+        return [dict(self.sent)]
+
+    @property
+    def is_due(self) -> bool:
+        """Is it time to look at the odds again?"""
+        if self.count < FEWEST:
+            return False
+        return self.time - self.looked >= self.bench.every_s or self.time >= self.due
+
+    def think(self, case: Path) -> Thought:
+        """The odds on all rows so far, and the next set point where the present one is over, or gets too hot."""
+        self.store.listed()
+        self.looked = self.time
+        time, elapsed = self.time, (self.time - self.begin) / MINUTE
+        folder = load_case(case)
+        belief = believe(folder, self.store.name)
+        stop = ""
+        if self._named(belief):
+            belief = believe(folder, self.store.name, quick=False)
+            stop = self._named(belief)
+        if stop:
+            return Thought(time, belief, stop=stop, left_min=0.0)
+        waits = not self.obeyed and time - self.since < self.bench.deaf_s
+        running = waits or time < self.due
+        if running and self._allowed(belief):
+            return Thought(time, belief, left_min=self._left(belief, None))
+        allowed = choices(belief, self.bench, self.now)
+        choice = self.policy(belief, allowed) or Choice(self.bench.safe, 3.0, 0.0, {})
+        left = self._left(belief, max((c.rate for c in allowed), default=0.0))
+        self.dull = self.dull + 1 if max((c.nats for c in allowed), default=0.0) < DULL else 0
+        if self.dull >= LOOKS or elapsed >= self.bench.budget_min:
+            stop = UNDECIDED if self.dull >= LOOKS else "the time is over"
+        return Thought(time, belief, choice, left, stop)
+
+    def _named(self, belief: Belief) -> str:
+        cause, p = belief.odds[0]
+        if p < SURE or cause.startswith("heat@"):
+            return ""
+        return "nothing is missing" if cause == NOTHING else f"{cause} is missing"
+
+    def _allowed(self, belief: Belief) -> bool:
+        """Does what runs stay below every limit until the next look?"""
+        return bool(choices(belief, self.bench, self.now, [self.now])) or self.now == self.bench.safe
+
+    def _left(self, belief: Belief, rate: float | None) -> float:
+        """Minutes to the answer, as far as information per minute goes on."""
+        self.rate = self.rate if rate is None else rate
+        need = max(belief.entropy - LEFT_NATS, 0.0)
+        return need / self.rate if self.rate > 0.0 else math.inf
+
+    def apply(self, thought: Thought) -> list[dict[str, float]]:
+        """Goes on as thought. Returns set points to send."""
+        stop = {"stop": thought.stop} if thought.stop else {}
+        odds = [list(o) for o in thought.belief.odds[:5]]
+        over = list(thought.belief.over)
+        self.store.note({"event": "odds", "time_s": thought.time, "odds": odds, "over": over, "left_min": _plain(thought.left_min), **stop})
+        if thought.stop:
+            return self.make_safe()
+        if thought.choice is None:
+            return []
+        return self._set(thought.choice.set_point, thought.choice.minutes, thought.choice.nats)
+
+    def _set(self, set_point: SetPoint, minutes: float, nats: float = 0.0) -> list[dict[str, float]]:
+        changed = dict(set_point) != self.now
+        self.now, self.minutes, self.since = dict(set_point), minutes, self.time
+        self.obeyed, self.due = not changed, self.time + MINUTE * minutes
+        self.store.note({"event": "set", "time_s": self.time, "set_point": self.now, "minutes": minutes, "nats": nats})
+        return self._ramp(1.0) if changed else []
+
+    def make_safe(self) -> list[dict[str, float]]:
+        """The safe set point at once: no ramp where there is danger."""
+        self.now = self.sent = dict(self.bench.safe)
+        self.store.note({"event": "set", "time_s": self.time, "set_point": self.now, "minutes": 0.0, "nats": 0.0})
+        return [dict(self.now)]
+
+
+def _plain(x: float) -> float | None:
+    return x if math.isfinite(x) else None

@@ -1,0 +1,104 @@
+"""Rows as they come, on the disk before anything is made of them: a test of the case, and a journal beside it."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from io import TextIOWrapper
+from pathlib import Path
+from typing import Any
+
+from thermoscope import InputError
+from thermoscope.plugin import csv_lines, toml_value, write_whole
+
+Row = dict[str, float]
+
+
+class Fault(InputError):
+    """What ends a run: the bench is set safe before it is said."""
+
+
+class Store:
+    """tests/NAME.csv of a case, held for one writer, and tests/NAME.jsonl.  sync : on the disk row by row"""
+
+    def __init__(self, case: Path, name: str, sheet: str, sync: bool = True) -> None:
+        self.case, self.name, self.sheet, self.sync = case, name, sheet, sync
+        self.path, self.journal_path = case / "tests" / f"{name}.csv", case / "tests" / f"{name}.jsonl"
+        self.path.parent.mkdir(exist_ok=True)
+        self.rows = self._locked(self.path)
+        self.header = self._resumed()
+        self.journal: TextIOWrapper = self.journal_path.open("a", encoding="utf-8")  # type: ignore[assignment]
+
+    def _locked(self, path: Path) -> TextIOWrapper:
+        file = path.open("a+", encoding="utf-8", newline="")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            file.close()
+            raise InputError("is written by another run", str(path), "one writer: end the other run first") from None
+        return file  # type: ignore[return-value]
+
+    def _resumed(self) -> list[str]:
+        """The header of what is there; a last line that a killed run left half written is dropped."""
+        whole = self.path.read_bytes()
+        if not whole.endswith(b"\n"):
+            self.rows.truncate(whole.rfind(b"\n") + 1)
+        lines = self.path.read_text(encoding="utf-8").splitlines()
+        return lines[0].split(",") if lines else []
+
+    def last(self) -> Row | None:
+        """The last row of an earlier run."""
+        lines = self.path.read_text(encoding="utf-8").splitlines()
+        return self.row(lines[-1].split(",")) if len(lines) > 1 else None
+
+    def row(self, cells: Sequence[str]) -> Row:
+        return {name: number(cell) for name, cell in zip(self.header, cells, strict=True)}
+
+    def append(self, row: Mapping[str, float]) -> None:
+        """One row under the header of the first; what it lacks stays empty."""
+        if not self.header:
+            self.header = list(row)
+            self.rows.write(csv_lines([self.header]))
+        if extra := next((n for n in row if n not in self.header), None):
+            raise Fault(f"column '{extra}' is new", str(self.path), f"the columns of the first row: {', '.join(self.header)}")
+        cells = (row.get(n, math.nan) for n in self.header)
+        self.rows.write(",".join("" if math.isnan(v) else f"{v:.10g}" for v in cells) + "\n")
+        self._flush(self.rows)
+
+    def note(self, event: Mapping[str, Any]) -> None:
+        """A line of the journal: what was set, what was thought, why it ended."""
+        self.journal.write(json.dumps(event) + "\n")
+        self._flush(self.journal)
+
+    def _flush(self, file: TextIOWrapper) -> None:
+        file.flush()
+        if self.sync:
+            os.fsync(file.fileno())
+
+    def events(self) -> list[dict[str, Any]]:
+        """The journal so far, without a last line that is cut short."""
+        lines = self.journal_path.read_text(encoding="utf-8").splitlines()
+        return [json.loads(line) for line in lines if line.endswith("}")]
+
+    def listed(self) -> None:
+        """The test's table in case.toml, where it has none yet."""
+        file = self.case / "case.toml"
+        text = file.read_text(encoding="utf-8")
+        if f"[tests.{self.name}]" not in text:
+            sheet = toml_value(self.sheet)
+            write_whole(file, f'{text.rstrip()}\n\n[tests.{self.name}]\nrole = "calibrate"\nsheet = {sheet}\n')
+
+    def close(self) -> None:
+        self.rows.close()
+        self.journal.close()
+
+
+def number(cell: str) -> float:
+    """NaN where nothing was read."""
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
