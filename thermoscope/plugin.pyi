@@ -231,7 +231,7 @@ from validation.inference.say import explanations as explanations, hidden_effect
 from validation.inference.score import fit_prior as fit_prior, total as total
 from validation.noise import GRID as NOISE_SHAPES
 from validation.parameters.model_form import ExponentError as ExponentError, FARTHEST as FARTHEST
-from validation.parameters.reference import LOADS as LOADS
+from validation.parameters.reference import LOADS as LOADS, effect_sizes as effect_sizes
 from validation.parameters.unknowns import (
     standing as standing,
     standing_reference as standing_reference,

@@ -105,10 +105,14 @@ def odds_over_time(events: Sequence[Row], *, png: str | Path | None = None) -> F
     upper.set(ylabel="odds (%)", ylim=(0, 101))
     upper.legend(fontsize=8, frameon=False, loc="center left")
     at = [(e["time_s"] - begin) / 60.0 for e in sets]
+    end = max([*time, *at], default=1.0)
     for name in sets[0]["set_point"] if sets else ():
         level = [e["set_point"][name] for e in sets]
         most = max(map(abs, level)) or 1.0
-        lower.step([*at, *time[-1:]], [100.0 * v / most for v in [*level, level[-1]]][: len(at) + len(time[-1:])], where="post", label=f"{name}, 100 % = {most:g}")
+        shares = [100.0 * v / most for v in (*level, level[-1])]
+        lower.step([*at, end], shares, where="post", label=f"{name}, 100 % = {most:g}")
+    for ax in (upper, lower):
+        ax.set_xlim(0.0, end)
     lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
     lower.legend(fontsize=8, frameon=False, loc="center left")
     return paper.save(figure, png)

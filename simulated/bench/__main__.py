@@ -1,4 +1,7 @@
-"""Serve a machine with a hidden truth, row by row:  python -m simulated.bench --kind servo --seed 3 --case CASE --truth FILE"""
+"""Serve a machine with a hidden truth, row by row.
+
+python -m simulated.bench --kind servo --seed 3 --case CASE --truth FILE
+"""
 
 from __future__ import annotations
 

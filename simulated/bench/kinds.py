@@ -64,7 +64,9 @@ KINDS: Mapping[str, Kind] = {
         _C(1500, 6000, 5000, 5000), 50.0, 150.0, 5.0, 0.4, 0.09, 400.0, 160.0, 6000.0, ("pump_share", 120.0, 0.7),
         sensors=("winding", "core", "housing", "rotor"),
     ),
-    "shaft-fan": Kind(_C(1700, 7000, 4500, 6000), 35.0, 60.0, 4.5, 0.4, 1.3, 140.0, 20.0, 1800.0, ("speed_rpm", 16.0, 0.8)),
+    "shaft-fan": Kind(
+        _C(1700, 7000, 4500, 6000), 35.0, 60.0, 4.5, 0.4, 1.3, 140.0, 20.0, 1800.0, ("speed_rpm", 16.0, 0.8),
+    ),
     "spindle": Kind(
         _C(500, 2500, 3000, 2000), 18.0, 60.0, 3.0, 0.2, 0.35, 150.0, 45.0, 9000.0, ("pump_share", 45.0, 0.7),
         friction=60.0, seat=2.5, sensors=("winding", "core", "housing", "flange"),
@@ -79,7 +81,7 @@ def network(name: str) -> str:
     liquid = quantity == "pump_share"
     baths = ["ambient", *(["coolant"] if liquid else []), *(["plate"] if k.bed else [])]
     out = [f'[network]\nname = "{name}"\nboundaries = {baths}'.replace("'", '"')]
-    out += [f'[boundaries.{b}]\nrole = "{r}"' for b, r in (("ambient", "ambient"), ("coolant", "coolant"), ("plate", "test bed")) if b in baths]  # fmt: skip
+    out += [f'[boundaries.{b}]\nrole = "{"test bed" if b == "plate" else b}"' for b in baths]
     if quantity in ("fan_share", "pump_share"):
         out.append(f'[inputs.{quantity}]\nquantity = "share"')
     roles = {"winding": "winding", "core": "iron", "housing": "housing", "rotor": "rotor", "flange": "end shield"}
@@ -100,14 +102,17 @@ def network(name: str) -> str:
     if quantity:
         top = k.rpm if quantity == "speed_rpm" else 1.0
         to = "coolant" if liquid else "ambient"
-        link("stream", "housing", to, cooling, 0.15, f'\nof = {{ input = "{quantity}", at = {top:g}, exponent = {exponent:g} }}')  # fmt: skip
+        of = f'{{ input = "{quantity}", at = {top:g}, exponent = {exponent:g} }}'
+        link("stream", "housing", to, cooling, 0.15, f"\nof = {of}")
     out.append(
         f'[links.still]\nbetween = ["housing", "ambient"]\narea_m2 = {k.area:g}\nprior_sd = 0.15\n'
-        f'[links.still.natural]\nsurface = "horizontal cylinder"\nsize_m = 0.2\n[links.still.radiation]\nemissivity = 0.8'
+        f'[links.still.natural]\nsurface = "horizontal cylinder"\nsize_m = 0.2\n'
+        f"[links.still.radiation]\nemissivity = 0.8"
     )
     out.append(
         f'[losses.copper]\nkind = "copper"\nat = "winding"\ncurrents = ["current_A"]\nfactor = 1.5\nR20_ohm = {k.R:g}\n'
-        f'alpha_1_K = 0.00393\nprior_sd = 0.05\n[losses.iron]\nkind = "iron"\nat = "core"\nhysteresis_W = {0.55 * k.iron:g}\n'
+        f'alpha_1_K = 0.00393\nprior_sd = 0.05\n[losses.iron]\nkind = "iron"\nat = "core"\n'
+        f"hysteresis_W = {0.55 * k.iron:g}\n"
         f'eddy_W = {0.45 * k.iron:g}\nspeed_at = {k.rpm:g}\nprior_sd = 0.15\n[losses.friction]\nkind = "friction"\n'
         f'at = "{"flange" if k.seat else "rotor"}"\nP_W = {k.friction:g}\n'
         f'of = {{ input = "speed_rpm", at = {k.rpm:g}, exponent = 1.2 }}\nprior_sd = 0.25'
@@ -123,8 +128,10 @@ def columns(name: str) -> str:
     inputs += [(k.cooled[0], "share", "1")] if k.cooled[0].endswith("share") else []
     out += [f'[columns.{n}]\nquantity = "{q}"\nunit = "{u}"\ninput = "{n}"' for n, q, u in inputs]
     baths = ["ambient", *(["coolant"] if k.cooled[0] == "pump_share" else []), *(["plate"] if k.bed else [])]
+    sensed = tuple(f"[columns.T_{s}]" for s in k.sensors)
     out += [f'[columns.T_{b}]\nquantity = "temperature"\nunit = "degC"\nplace = "{b}"' for b in baths]
-    out += [f'[columns.T_{s}]\nquantity = "temperature"\nunit = "degC"\nplace = "{s}"\nsigma_K = 0.5\nlag_s = 10' for s in k.sensors]  # fmt: skip
+    out += [f'[columns.T_{b}]\nquantity = "temperature"\nunit = "degC"\nplace = "{b}"' for b in k.sensors]
+    out = [f"{x}\nsigma_K = 0.5\nlag_s = 10" if x.startswith(sensed) else x for x in out]
     return "\n".join(out) + "\n"
 
 
@@ -136,7 +143,9 @@ def bench(name: str) -> str:
         return "[" + ", ".join(f"{s * top:g}" for s in shares) + "]"
 
     out = ['sheet = "tests/columns.toml"']
-    out.append(f"[set.current_A]\nlevels = {levels(k.amperes, (0.0, 0.4, 0.7, 1.0))}\nsafe = 0\nrate_per_s = {k.amperes / 5:g}")
+    out.append(
+        f"[set.current_A]\nlevels = {levels(k.amperes, (0.0, 0.4, 0.7, 1.0))}\nsafe = 0\nrate_per_s = {k.amperes / 5:g}"
+    )
     out.append(f"[set.speed_rpm]\nlevels = {levels(k.rpm, (0.0, 0.5, 1.0))}\nsafe = 0\nrate_per_s = {k.rpm / 10:g}")
     if k.cooled[0].endswith("share"):
         out.append(f"[set.{k.cooled[0]}]\nlevels = [0.3, 1.0]\nsafe = 1.0\nrate_per_s = 0.2\ncooling = true")

@@ -1,4 +1,4 @@
-"""The true machine: a dozen cells with formulas of their own, its instruments, and an operator with a will of his own."""
+"""The true machine: a dozen cells with formulas of their own, its instruments, and an operator who may not obey."""
 
 from __future__ import annotations
 
@@ -52,15 +52,16 @@ def drawn(kind: str, seed: int, hidden: str | None = None) -> Truth:
 
 
 class Plant:
-    """A machine that runs: `set` gives set points, `row` advances to the next row of the logger, None where it is lost."""
+    """A machine that runs: `apply` takes set points, `row` goes on to the next row of the logger."""
 
     def __init__(self, truth: Truth) -> None:
         self.truth, self.kind, self.time = truth, KINDS[truth.kind], 0.0
         self.rng = np.random.default_rng([truth.seed, 12])
         self.ambient = float(self.rng.uniform(18, 26))
         self.T = self.ambient + self.rng.normal(0.0, 0.3, len(CELLS))
-        self.set_points = {"current_A": 0.0, "speed_rpm": 0.0} | ({self.kind.cooled[0]: 1.0} if self.kind.cooled[0].endswith("share") else {})  # fmt: skip
-        self.true = dict(self.set_points)
+        self.true = {"current_A": 0.0, "speed_rpm": 0.0}
+        if self.kind.cooled[0].endswith("share"):
+            self.true[self.kind.cooled[0]] = 1.0
         self.pending: list[tuple[float, dict[str, float]]] = []
         self.lag = {s: float(self.rng.uniform(5, 20)) for s in self.kind.sensors}
         self.bias = {s: float(self.rng.normal(0.0, 0.25)) for s in self.kind.sensors}
@@ -81,8 +82,8 @@ class Plant:
         bridge = 1.5 * t.size * k.liner * (t.hidden == "coupling@winding|housing")
         edges = [
             (0, 1, 1.5 * k.liner), (0, 2, 1.5 * k.liner), (0, 3, 1.25 * k.liner * f["liner"]), (3, 4, 6 * k.fit),
-            (4, 6, 0.6 * 1.1 * fit), (4, 5, 0.2 * 1.1 * fit), (4, 7, 0.2 * 1.1 * fit), (5, 6, 3 * k.fit), (6, 7, 3 * k.fit),
-            (8, 9, 10 * k.gap), (1, 5, 0.5 * bridge + 1e-3), (2, 7, 0.5 * bridge + 1e-3),
+            (4, 6, 0.6 * 1.1 * fit), (4, 5, 0.2 * 1.1 * fit), (4, 7, 0.2 * 1.1 * fit), (5, 6, 3 * k.fit),
+            (6, 7, 3 * k.fit), (8, 9, 10 * k.gap), (1, 5, 0.5 * bridge + 1e-3), (2, 7, 0.5 * bridge + 1e-3),
         ]  # fmt: skip
         edges += [(9, 10, k.seat * f["seat"]), (10, 5, 9 * k.seat)] if k.seat else [(10, 5, 2 * k.fit)]
         self.i, self.j, self.G = (np.array(x) for x in zip(*edges, strict=True))
@@ -109,13 +110,17 @@ class Plant:
         copper = 1.5 * k.R * f["copper"] * self.true["current_A"] ** 2
         q[:3] += copper * np.array([0.46, 0.28, 0.26]) * (1.0 + 0.0039 * (T[:3] - 20.0))
         base = 1.5 * k.R * k.amperes**2
-        q[:3] += 0.8 * t.size * base * (t.hidden == "copper.ac@winding") * amps**2 * n**1.85 * np.array([0.5, 0.25, 0.25])
+        q[:3] += (
+            0.8 * t.size * base * (t.hidden == "copper.ac@winding") * amps**2 * n**1.85 * np.array([0.5, 0.25, 0.25])
+        )
         iron = k.iron * f["iron"] * (0.45 * n + 0.4 * n**2 + 0.15 * n**1.5) * (1.0 - 5e-4 * (T[3] - 40.0))
         q[3:5] += iron * np.array([0.5, 0.5])
         rub = k.friction * f["friction"] * n**1.1 * (1.15 - 4e-3 * (T[10 if k.seat else 9] - 20.0))
         q[10 if k.seat else 9] += rub
         rotor = k.gap * 45.0 * t.size  # W: some ten kelvin across the gap
-        q[8] += rotor * ((t.hidden == "windage@rotor") * n**2.8 + (t.hidden == "loss.rotor.load@rotor") * amps**2 * n**1.7)
+        q[8] += rotor * (
+            (t.hidden == "windage@rotor") * n**2.8 + (t.hidden == "loss.rotor.load@rotor") * amps**2 * n**1.7
+        )
         shell, clean = T[5:8], 1.0 - 0.75 * t.size * (t.hidden == "blockage@housing")
         rise = shell - Ta
         still = 1.35 * f["still"] * np.abs(rise / 0.2) ** 0.25
@@ -134,7 +139,7 @@ class Plant:
         """The next row; None where it is lost."""
         for _ in range(round(PERIOD / STEP)):
             self.time += STEP
-            for due, wanted in [p for p in self.pending if p[0] <= self.time]:
+            for _, wanted in [p for p in self.pending if p[0] <= self.time]:
                 off = 1.0 + 0.03 * self.rng.uniform(-1, 0) * self.truth.lazy
                 self.true |= {name: off * v for name, v in wanted.items() if name in self.true}
             self.pending = [p for p in self.pending if p[0] > self.time]

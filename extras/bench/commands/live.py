@@ -12,7 +12,19 @@ from extras.bench.live.sources import source_of
 from extras.bench.live.steering import UNDECIDED, Steering
 from extras.bench.live.store import Store
 from thermoscope import InputError
-from thermoscope.plugin import PACKAGE, STDOUT, Progress, Summary, Table, file_stem, find_case, load_case, notes, percent, say
+from thermoscope.plugin import (
+    PACKAGE,
+    STDOUT,
+    Progress,
+    Summary,
+    Table,
+    file_stem,
+    find_case,
+    load_case,
+    notes,
+    percent,
+    say,
+)
 
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
@@ -55,13 +67,18 @@ def live_document(case: str, follow: str, test: str, drive: bool, json: str | No
 def live_summary(document: Mapping[str, Any]) -> Summary:
     """How it ended, the odds, and what was set."""
     odds = Table.of("Odds", document["odds"], "*cause | *probability", probability=lambda o: percent(o["probability"]))
-    rows = [[e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())] for e in document["set_points"]]
+    rows = [
+        [e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())]
+        for e in document["set_points"]
+    ]
     parts: list[Table | str] = [odds, Table("Set points", ["from (min)", "set point"], rows)]
     if document["sensors_over"]:
         parts.append(f"sensors over: {', '.join(document['sensors_over'])}")
     if document["cannot_see"]:
         parts.append(f"cannot see: {', '.join(document['cannot_see'])}")
-    return Summary(f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}")
+    return Summary(
+        f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}"
+    )
 
 
 def live_picture(case: str, test: str, out: Path) -> Path:

@@ -7,16 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermoscope.plugin import (
-    Channel,
-    Folder,
-    Posterior,
-    Test,
-    explanations,
-    hidden_effects,
-    infer,
-    probabilities,
-)
+from thermoscope.plugin import Channel, Folder, Posterior, Test, explanations, hidden_effects, infer, probabilities
 
 STUCK_S, MOVED_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
 EQUAL = 5  # last readings of a channel that may be those of a dead sensor

@@ -18,10 +18,10 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from extras.bench.live.belief import Belief
 from extras.bench.live.settings import Bench, SetPoint
-from scipy.linalg import solve_triangular
 from thermoscope.plugin import (
     USUAL_DOUBT,
     Array,
@@ -31,6 +31,7 @@ from thermoscope.plugin import (
     NoSolution,
     Segment,
     Test,
+    effect_sizes,
     fit_prior,
     model_error,
     probabilities,
@@ -77,11 +78,19 @@ class Choice:
         return self.nats / (self.minutes + CHANGE_MIN)
 
 
-def rivals(belief: Belief) -> list[Rival]:
+def sizes(e: Evidence, test: Test, bench: Bench) -> Array:
+    """Usual amplitude of every cause, for a loss by what all set points would make of it: little has run so far."""
+    every = bench.set_points({})
+    inputs = {n: np.array([s.get(n, float(u[-1])) for s in every]) for n, u in test.inputs.items()}
+    now, later = (effect_sizes(e.network, e.names, t) for t in (e.tests, [replace(test, inputs=inputs, recorded=None)]))
+    return e.scale * np.array([now.get(n, 1.0) / later.get(n, now.get(n, 1.0)) for n in e.names])
+
+
+def rivals(belief: Belief, bench: Bench) -> list[Rival]:
     """The hypotheses that carry weight, with what the readings so far say of their parameters."""
     e = belief.posterior.evidence
     p = probabilities(belief.posterior.hypotheses)
-    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), e.scale
+    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), sizes(e, belief.test, bench)
     known = [(float(q), h) for q, h in zip(p, belief.posterior.hypotheses, strict=True) if not h.heat]
     out = []
     for q, h in sorted(known, key=lambda x: -x[0])[:RIVALS]:
@@ -103,7 +112,7 @@ def choices(belief: Belief, bench: Bench, now: SetPoint, only: Sequence[SetPoint
 
     The first few are looked at again with what a model of this kind gets wrong: it takes most of what tangents promise.
     """
-    some = rivals(belief)
+    some = rivals(belief, bench)
     out = [c for s in (bench.set_points(now) if only is None else only) for c in _lengths(belief, bench, some, s)]
     out.sort(key=lambda c: -c.rate)
     first = {str(c.set_point): c.set_point for c in out}
@@ -119,7 +128,7 @@ def _lengths(
     columns = (*e.fit.unknowns.parameters, *e.parameters)
     try:
         parts = segments(e.network, [_with_limits(test, bench, belief)], e.fit.values, columns)
-        error = model_error(e.fit.network, [test], e.fit.values, sensed=e.tests) if doubting else None
+        error = model_error(e.fit.network, [test], e.fit.values) if doubting else None
     except NoSolution:  # the model runs away there
         return
     begin = float(belief.test.time[-1])
@@ -171,8 +180,10 @@ def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None
     d = e.fit.error.size if e.fit.error else 0
     doubts = np.zeros((s.r.size, d))
     if error and e.fit.error:  # doubts that the plan adds, such as of its own steps, are none of the fit's
-        n = min(error.model_columns, e.fit.error.model_columns)
-        doubts[:, :n] = error.of(s)[:, :n]
+        known = {name: i for i, name in enumerate(e.fit.error.names[: e.fit.error.model_columns])}
+        for i, name in enumerate(error.names[: error.model_columns]):
+            if name in known:
+                doubts[:, known[name]] = error.of(s)[:, i]
     J = np.column_stack([s.J[:, : e.p], doubts, s.J[:, e.p :]])
     late = s.time > begin
     return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier

@@ -13,7 +13,7 @@ from pathlib import Path
 from extras.bench.live.settings import Bench
 from extras.bench.live.sources import Parser, Source
 from extras.bench.live.steering import Steering, Thought
-from extras.bench.live.store import Fault
+from extras.bench.live.store import BenchError
 from thermoscope import InputError
 
 WAKE_S = 0.2  # between two looks at a thought that goes on and at what a person typed
@@ -32,7 +32,11 @@ class Session:
         self.typed: queue.Queue[str] = queue.Queue()
         self.thought: Thought | None = None
         if hear and not drive:
-            threading.Thread(target=lambda: [self.typed.put(x.strip()) for x in sys.stdin], daemon=True).start()
+            threading.Thread(target=self._hear, daemon=True).start()
+
+    def _hear(self) -> None:
+        for line in sys.stdin:
+            self.typed.put(line.strip())
 
     @property
     def bench(self) -> Bench:
@@ -47,7 +51,9 @@ class Session:
                 self._safe()
                 self.steering.store.note({"event": "fault", "time_s": self.steering.time, "what": str(fault)})
                 if isinstance(fault, OSError):
-                    raise Fault(f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept") from None
+                    raise BenchError(
+                        f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept"
+                    ) from None
                 raise
 
     def _safe(self) -> None:
@@ -63,7 +69,9 @@ class Session:
                 line = self.source.line(WAKE_S)
             except queue.Empty:
                 if time.monotonic() - heard > self.bench.silence_s:
-                    raise Fault(f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on") from None
+                    raise BenchError(
+                        f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on"
+                    ) from None
                 line = ""
             over = over or line is None
             if line and (row := self.parser.row(line)) is not None:

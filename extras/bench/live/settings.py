@@ -49,7 +49,8 @@ class Limit:
 class Bench:
     """sheet : of the rows;  deaf_s : longest that a set point takes to be obeyed;  silence_s : longest without a row
 
-    budget_min : of bench time;  every_s : bench time between two looks at the odds;  jump_s : largest step of the clock
+    budget_min : of bench time;  patience_min : of it without any gain;  every_s : between two looks at the odds
+    jump_s : largest step of the clock
     """
 
     sheet: Sheet
@@ -59,6 +60,7 @@ class Bench:
     deaf_s: float = 180.0
     silence_s: float = 30.0
     budget_min: float = 180.0
+    patience_min: float = 45.0
     every_s: float = 60.0
     jump_s: float = 600.0
 
@@ -80,7 +82,7 @@ def read_bench(case: Path, network: Network) -> Bench:
     sheet_file = top.word("sheet")
     knobs = tuple(_knob(n, t) for n, t in top.tables("set").items())
     limits = tuple(_limit(n, t, network) for n, t in top.tables("limits").items())
-    usual = {k: getattr(Bench, k) for k in ("deaf_s", "silence_s", "budget_min", "every_s", "jump_s")}
+    usual = {k: getattr(Bench, k) for k in ("deaf_s", "silence_s", "budget_min", "patience_min", "every_s", "jump_s")}
     times = {k: top.number(k, v, low=1.0) for k, v in usual.items()}
     top.close()
     sheet = load_sheet(case / sheet_file)

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import IO, Any
 from urllib.parse import urlsplit
 
-from extras.bench.live.store import Fault, Row, number
+from extras.bench.live.store import BenchError, Row, number
 from thermoscope import InputError
 from thermoscope.plugin import required
 
@@ -47,10 +47,10 @@ class Source:
             self.lines.put(fault)
 
     def line(self, timeout: float) -> str | None:
-        """The next line, None at the end. queue.Empty where none comes in time, Fault where the line is broken."""
+        """The next line, None at the end. queue.Empty where none comes in time, BenchError where the line is broken."""
         got = self.lines.get(timeout=timeout)
         if isinstance(got, Exception):
-            raise Fault(f"is gone: {got}", self.where, "a line that lasts; the rows so far are kept")
+            raise BenchError(f"is gone: {got}", self.where, "a line that lasts; the rows so far are kept")
         return got
 
     def set(self, set_point: Mapping[str, float]) -> None:
@@ -159,11 +159,15 @@ class Parser:
             self.header = cells
             return None
         if len(cells) != len(self.header):
-            raise Fault(f"{len(cells)} cells", f"{self.where} line {self.count}", f"{len(self.header)}: {', '.join(self.header)}")
+            raise BenchError(
+                f"{len(cells)} cells",
+                f"{self.where} line {self.count}",
+                f"{len(self.header)}: {', '.join(self.header)}",
+            )
         return {n: number(c) for n, c in zip(self.header, cells, strict=True)}
 
     def _object(self, text: str) -> Row:
         try:
             return {str(n): math.nan if v is None else float(v) for n, v in json.loads(text).items()}
         except (ValueError, TypeError, AttributeError):
-            raise Fault("is no row", f"{self.where} line {self.count}", '{"time_s": 5, "T_core": 21.4}') from None
+            raise BenchError("is no row", f"{self.where} line {self.count}", '{"time_s": 5, "T_core": 21.4}') from None

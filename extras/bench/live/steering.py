@@ -7,27 +7,22 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-
 import numpy as np
 
 from extras.bench.live.belief import FEWEST, NOTHING, Belief, believe
-from extras.bench.live.planning import MINUTE, Choice, choices
+from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices
 from extras.bench.live.settings import OVER, Bench, SetPoint
-from extras.bench.live.store import Fault, Row, Store
+from extras.bench.live.store import BenchError, Row, Store
 from thermoscope.plugin import load_case
 
 SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
 DULL, LOOKS = 0.02, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
+GAIN = 0.05  # of what was not known, that the readings have to take off while patience lasts
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
 
-Policy = Callable[[Belief, Sequence[Choice]], Choice | None]
-
-
-def most_informative(belief: Belief, allowed: Sequence[Choice]) -> Choice | None:
-    """The set point with most information per minute."""
-    return allowed[0] if allowed else None
+Policy = Callable[[Belief, Bench, SetPoint], Sequence[Choice]]  # what may come next, best first
 
 
 @dataclass(frozen=True)
@@ -53,7 +48,7 @@ class Steering:
 
     bench: Bench
     store: Store
-    policy: Policy = most_informative
+    policy: Policy = choices
     now: dict[str, float] = field(default_factory=dict)
     sent: dict[str, float] = field(default_factory=dict)
     minutes: float = 0.0
@@ -65,6 +60,8 @@ class Steering:
     count: int = 0
     looked: float = -math.inf
     dull: int = 0
+    least: float = math.inf
+    gained: float = -math.inf
     replays: bool = True
     rate: float = math.nan
 
@@ -91,20 +88,26 @@ class Steering:
         return float(c.in_memory(np.array([row.get(c.header, math.nan)]))[0])
 
     def row(self, row: Row, replay: bool = False) -> list[dict[str, float]]:
-        """Takes a row, on the disk first. Returns set points to send. Raises Fault where the bench must be left safe."""
+        """Takes a row, on the disk first. Returns set points to send; BenchError where the bench is to be left safe."""
         t = row.get(self.time_of, math.nan)
         if replay and t <= self.time:
             return []
         if not math.isfinite(t):
-            raise Fault("a row without a time", f"column '{self.time_of}'", "seconds that rise from row to row")
+            raise BenchError("a row without a time", f"column '{self.time_of}'", "seconds that rise from row to row")
         step = t - self.time
         if step <= 0.0:
             self.store.note({"event": "refused", "row": row})
             what = "is out of order" if step > -self.bench.jump_s else "jumps back"
-            raise Fault(f"time {t:g} {what} after {self.time:g}", self.store.name, "one writer, with a clock that rises")
+            raise BenchError(
+                f"time {t:g} {what} after {self.time:g}", self.store.name, "one writer, with a clock that rises"
+            )
         self.store.append(row)
         if self.last is not None and step > self.bench.jump_s:
-            raise Fault(f"the clock jumps from {self.time:g} to {t:g} s", self.store.name, f"steps up to {self.bench.jump_s:g} s")
+            raise BenchError(
+                f"the clock jumps from {self.time:g} to {t:g} s",
+                self.store.name,
+                f"steps up to {self.bench.jump_s:g} s",
+            )
         if self.last is None:
             self.begin = t
             self.store.note({"event": "begin", "begin_s": t})
@@ -125,13 +128,15 @@ class Steering:
     def _check(self, row: Row) -> None:
         for k in self.bench.knobs:
             if (v := self._input(k.name, row)) > (1.0 + OVER) * k.most:
-                raise Fault(f"{k.name} reads {v:g}", f"[set.{k.name}]", f"{k.most:g} at most")
+                raise BenchError(f"{k.name} reads {v:g}", f"[set.{k.name}]", f"{k.most:g} at most")
         for limit in self.bench.limits:
             for c in self.bench.sheet.columns:
                 if c.is_temperature and c.place == limit.place:
                     T = float(c.in_memory(np.array([row.get(c.header, math.nan)]))[0])
-                    if T > limit.most_C:
-                        raise Fault(f"{c.name} reads {T:.1f} degC", f"[limits.{limit.name}]", f"{limit.most_C:g} degC at most")
+                    if limit.most_C < T:
+                        raise BenchError(
+                            f"{c.name} reads {T:.1f} degC", f"[limits.{limit.name}]", f"{limit.most_C:g} degC at most"
+                        )
 
     def _ramp(self, step: float) -> list[dict[str, float]]:
         """The next step towards the set point, no faster than each input may change."""
@@ -166,12 +171,15 @@ class Steering:
         running = waits or time < self.due
         if running and self._allowed(belief):
             return Thought(time, belief, left_min=self._left(belief, None))
-        allowed = choices(belief, self.bench, self.now)
-        choice = self.policy(belief, allowed) or Choice(self.bench.safe, 3.0, 0.0, {})
+        allowed = self.policy(belief, self.bench, self.now)
+        choice = allowed[0] if allowed else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
         left = self._left(belief, max((c.rate for c in allowed), default=0.0))
         self.dull = self.dull + 1 if max((c.nats for c in allowed), default=0.0) < DULL else 0
-        if self.dull >= LOOKS or elapsed >= self.bench.budget_min:
-            stop = UNDECIDED if self.dull >= LOOKS else "the time is over"
+        if belief.entropy < (1.0 - GAIN) * self.least:
+            self.least, self.gained = belief.entropy, time
+        stale = time - self.gained > MINUTE * self.bench.patience_min
+        if stale or self.dull >= LOOKS or elapsed >= self.bench.budget_min:
+            stop = UNDECIDED if stale or self.dull >= LOOKS else "the time is over"
         return Thought(time, belief, choice, left, stop)
 
     def _named(self, belief: Belief) -> str:
@@ -195,7 +203,16 @@ class Steering:
         stop = {"stop": thought.stop} if thought.stop else {}
         odds = [list(o) for o in thought.belief.odds[:5]]
         over = list(thought.belief.over)
-        self.store.note({"event": "odds", "time_s": thought.time, "odds": odds, "over": over, "left_min": _plain(thought.left_min), **stop})
+        self.store.note(
+            {
+                "event": "odds",
+                "time_s": thought.time,
+                "odds": odds,
+                "over": over,
+                "left_min": _plain(thought.left_min),
+                **stop,
+            }
+        )
         if thought.stop:
             return self.make_safe()
         if thought.choice is None:

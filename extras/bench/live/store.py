@@ -17,7 +17,7 @@ from thermoscope.plugin import csv_lines, toml_value, write_whole
 Row = dict[str, float]
 
 
-class Fault(InputError):
+class BenchError(InputError):
     """What ends a run: the bench is set safe before it is said."""
 
 
@@ -63,7 +63,9 @@ class Store:
             self.header = list(row)
             self.rows.write(csv_lines([self.header]))
         if extra := next((n for n in row if n not in self.header), None):
-            raise Fault(f"column '{extra}' is new", str(self.path), f"the columns of the first row: {', '.join(self.header)}")
+            raise BenchError(
+                f"column '{extra}' is new", str(self.path), f"the columns of the first row: {', '.join(self.header)}"
+            )
         cells = (row.get(n, math.nan) for n in self.header)
         self.rows.write(",".join("" if math.isnan(v) else f"{v:.10g}" for v in cells) + "\n")
         self._flush(self.rows)

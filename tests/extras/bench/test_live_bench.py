@@ -1,0 +1,271 @@
+"""A bench that steers itself: what it stores, what stops it, what it asks for, and that it names what was hidden.
+
+The plant is `simulated.bench`, another model than the network that explains it.
+"""
+
+import json
+import queue
+import shutil
+import socket
+import subprocess
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from extras.bench.live.planning import Rival, choices, information
+from extras.bench.live.session import Session
+from extras.bench.live.settings import read_bench
+from extras.bench.live.sources import Parser, source_of
+from extras.bench.live.steering import Steering
+from extras.bench.live.store import BenchError, Store
+from simulated.bench.kinds import KINDS, write_case
+from simulated.bench.plant import Plant, drawn
+from thermoscope import InputError
+from thermoscope.plugin import load_case
+
+ROW = {"time_s": 5.0, "current_A": 0.0, "speed_rpm": 0.0, "T_ambient": 20.0, "T_plate": 20.0}
+ROW |= {"T_winding": 20.0, "T_core": 20.0, "T_housing": 20.0}
+HOT = {"current_A": 5.6, "speed_rpm": 3000.0}
+
+
+def bench_of(case, **changes):
+    return replace(read_bench(case, load_case(case, untested=True).case.model.network), **changes)
+
+
+@pytest.fixture
+def case(tmp_path):
+    return write_case("servo", tmp_path / "servo")
+
+
+@pytest.fixture
+def steering(case):
+    return Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
+
+
+def driven(case, plant, most_min, **changes):
+    """Steers a plant in simulated time; the last thought, and the store's rows."""
+    steering = Steering(bench_of(case, **changes), Store(case, "live", "tests/columns.toml", sync=False))
+    thought = None
+    while plant.time < 60.0 * most_min and not (thought and thought.stop):
+        row = plant.row()
+        for s in steering.row(row) if row else ():
+            plant.apply(s)
+        if steering.is_due:
+            thought = steering.think(case)
+            for s in steering.apply(thought):
+                plant.apply(s)
+    steering.store.close()
+    return thought
+
+
+def test_it_names_what_is_hidden_and_its_rows_are_a_test(case):
+    plant = Plant(drawn("servo", 100, "copper.ac@winding"))
+    thought = driven(case, plant, 60, every_s=120.0)
+    assert thought.stop == "copper.ac@winding is missing"
+    assert [t.name for t in load_case(case).case.tests] == ["live"]
+    assert all(plant.hottest[x.place] <= x.most_C for x in bench_of(case).limits)
+    events = [json.loads(line)["event"] for line in (case / "tests" / "live.jsonl").read_text().splitlines()]
+    assert events[0] == "begin"
+    assert {"odds", "set"} <= set(events)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_has_a_case_that_opens_and_a_bench(kind, tmp_path):
+    case = write_case(kind, tmp_path / kind)
+    bench = bench_of(case)
+    assert all(set(s) == {k.name for k in bench.knobs} for s in bench.set_points({}))
+
+
+def test_set_points_get_no_hotter_than_the_limits(case):
+    plant = Plant(drawn("servo", 7, "nothing"))
+    driven(case, plant, 2.0)
+    steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
+    belief = steering.think(case).belief
+    cool = tuple(replace(x, most_C=45.0) for x in steering.bench.limits)
+    allowed = choices(belief, replace(steering.bench, limits=cool), steering.now)
+    assert allowed
+    assert all(T <= 45.0 for c in allowed for T in c.hottest.values())
+    assert max(c.set_point["current_A"] for c in allowed) < max(steering.bench.knobs[0].levels)
+
+
+def test_one_cooling_is_changed_at_a_time(tmp_path):
+    bench = bench_of(write_case("blower", tmp_path / "blower"))
+    fan = bench.knobs[2]
+    two = replace(bench, knobs=(*bench.knobs, replace(fan, name="pump_share")))
+    now = {**two.safe, "fan_share": 1.0, "pump_share": 1.0}
+    assert all((s["fan_share"] != 1.0) + (s["pump_share"] != 1.0) <= 1 for s in two.set_points(now))
+
+
+def test_information_is_what_two_far_and_two_equal_hypotheses_give():
+    # one reading of one parameter: equal predictions tell nothing, far ones all of ln 2 (Cover and Thomas, 2.4)
+    def rival(mean, lead):
+        return Rival(0.5, lead, (0,), np.array([mean]), np.array([[1e-6]]))
+
+    J = np.ones((4, 1))
+    assert information(J, [rival(0.0, "a"), rival(0.0, "b")]) == pytest.approx(0.0, abs=1e-9)
+    assert information(J, [rival(0.0, "a"), rival(100.0, "b")]) == pytest.approx(np.log(2.0))
+    near = information(J, [rival(0.0, "a"), rival(1.0, "b")])  # D = 4 / 8: a lower bound of what is there to know
+    assert near == pytest.approx(-np.log(0.5 + 0.5 * np.exp(-0.5)), rel=1e-3)
+
+
+def test_a_run_goes_on_from_its_last_row_and_drops_half_a_row(case):
+    store = Store(case, "live", "tests/columns.toml")
+    steering = Steering(bench_of(case), store)
+    for i in range(3):
+        steering.row({**ROW, "time_s": 5.0 * (i + 1)})
+    store.close()
+    path = case / "tests" / "live.csv"
+    path.write_text(path.read_text() + "20,0,0,2")
+    again = Steering(bench_of(case), Store(case, "live", "tests/columns.toml"))
+    assert again.time == 15.0
+    assert again.row({**ROW, "time_s": 10.0}, replay=True) == []  # a recording that is read again from its start
+    again.row({**ROW, "time_s": 20.0})
+    assert [line.split(",")[0] for line in path.read_text().splitlines()] == ["time_s", "5", "10", "15", "20"]
+
+
+def test_two_writers_are_refused(case, steering):
+    with pytest.raises(InputError, match="is written by another run"):
+        Store(case, "live", "tests/columns.toml")
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"time_s": 4.0}, "out of order"),
+        ({"time_s": -9000.0}, "jumps back"),
+        ({"time_s": 9000.0}, "clock jumps"),
+        ({"time_s": float("nan")}, "without a time"),
+        ({"time_s": 10.0, "T_winding": 131.0}, "T_winding reads 131.0 degC"),
+        ({"time_s": 10.0, "current_A": 9.0}, "current_A reads 9"),
+        ({"time_s": 10.0, "extra": 1.0}, "column 'extra' is new"),
+    ],
+)
+def test_a_fault_sets_the_bench_safe_and_says_one_thing(case, steering, change, what):
+    steering.row(ROW)
+    steering._set(HOT, 3.0)
+    source = Scripted([json.dumps({k: None if v != v else v for k, v in {**ROW, **change}.items()})])
+    with pytest.raises(BenchError, match=what):
+        Session(steering, source, case, True, lambda line: None, False).run()
+    assert json.loads(source.sent[-1]) == {"set": {"current_A": 0.0, "speed_rpm": 0.0}}
+    assert (case / "tests" / "live.csv").read_text().count("\n") >= 2
+
+
+class Scripted:
+    """A source of given lines; silence after them."""
+
+    def __init__(self, lines):
+        self.where, self.lines, self.sent = "script", list(lines), []
+        self.send = self.sent.append
+
+    def line(self, timeout):
+        if not self.lines:
+            time.sleep(0.01)
+            raise queue.Empty
+        return self.lines.pop(0)
+
+    def set(self, set_point):
+        self.send(json.dumps({"set": set_point}))
+
+
+def test_a_plant_that_stops_answering(case, steering):
+    steering.bench = replace(steering.bench, silence_s=0.1)
+    source = Scripted([json.dumps(ROW)])
+    with pytest.raises(BenchError, match="no row for"):
+        Session(steering, source, case, True, lambda line: None, False).run()
+    assert source.sent
+
+
+def test_set_points_change_no_faster_than_they_may(steering):
+    steering.row(ROW)
+    steering._set(HOT, 3.0)
+    (after,) = steering.row({**ROW, "time_s": 5.5})
+    rate = {k.name: k.rate_per_s for k in steering.bench.knobs}
+    assert after["current_A"] <= 1.6 * rate["current_A"]
+    assert after["speed_rpm"] <= 1.6 * rate["speed_rpm"]
+
+
+def test_rows_come_as_cells_and_as_objects():
+    parser = Parser("x", [])
+    assert parser.row("time_s,T\n") is None
+    assert parser.row("1,20.5\n") == {"time_s": 1.0, "T": 20.5}
+    assert parser.row('{"time_s": 2, "T": 21}') == {"time_s": 2.0, "T": 21.0}
+    with pytest.raises(BenchError, match="3 cells"):
+        parser.row("1,2,3")
+    with pytest.raises(BenchError, match="is no row"):
+        parser.row("{")
+
+
+def test_a_line_that_breaks_is_said(case, steering):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+
+        def serve():
+            link, _ = server.accept()
+            link.sendall(json.dumps(ROW).encode() + b"\n")
+            time.sleep(0.5)
+            link.close()
+
+        threading.Thread(target=serve, daemon=True).start()
+        session = Session(steering, source_of(f"tcp://127.0.0.1:{port}"), case, True, lambda line: None, False)
+        assert session.run() == "the rows are at their end"
+    with pytest.raises(InputError, match="no bench answers"):
+        source_of(f"tcp://127.0.0.1:{port}")
+
+
+@pytest.mark.skipif(not shutil.which("mosquitto", path="/usr/sbin:/usr/bin"), reason="no broker here")
+def test_rows_and_set_points_go_by_a_broker_and_it_may_be_gone(case, steering):
+    aiomqtt = pytest.importorskip("aiomqtt")
+    import asyncio
+
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    broker = subprocess.Popen([shutil.which("mosquitto", path="/usr/sbin:/usr/bin"), "-p", str(port)])
+    try:
+        source = _patiently(f"mqtt://127.0.0.1:{port}/bench")
+
+        async def talk():
+            async with aiomqtt.Client("127.0.0.1", port) as client:
+                await client.subscribe("bench/set")
+                await client.publish("bench/rows", json.dumps(ROW))
+                assert json.loads(await asyncio.to_thread(source.line, 5.0)) == ROW
+                await asyncio.to_thread(source.set, HOT)
+                async for message in client.messages:
+                    return json.loads(message.payload)
+
+        assert asyncio.run(talk()) == {"set": HOT}
+        broker.terminate()
+        with pytest.raises(BenchError, match="is gone"):
+            Session(steering, source, case, True, lambda line: None, False).run()
+    finally:
+        broker.kill()
+        broker.wait()
+    with pytest.raises(InputError, match="no broker answers"):
+        source_of(f"mqtt://127.0.0.1:{port}/bench")
+
+
+def _patiently(where):
+    for _ in range(50):
+        try:
+            return source_of(where)
+        except InputError:
+            time.sleep(0.1)
+    raise AssertionError("no broker")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("most_C = 130", "most_C = true", "most_C"),
+        ('place = "winding"', 'place = "nowhere"', "place"),
+        ("[set.current_A]", "[set.current]", "measured by no column"),
+        ("safe = 0", "safe = 0\nslow = 1", "unknown key 'slow'"),
+    ],
+)
+def test_a_wrong_bench_file_is_one_message(case, old, new, what):
+    file = case / "bench.toml"
+    file.write_text(file.read_text().replace(old, new, 1))
+    with pytest.raises(InputError, match=what):
+        bench_of(case)
