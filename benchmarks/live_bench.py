@@ -22,7 +22,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from extras.bench.live.belief import Belief  # noqa: E402
+from extras.bench.live.assessment import Assessment  # noqa: E402
 from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices  # noqa: E402
 from extras.bench.live.settings import Bench, SetPoint, read_bench  # noqa: E402
 from extras.bench.live.steering import Policy, Steering  # noqa: E402
@@ -45,15 +45,15 @@ def lowered(bench: Bench, set_point: SetPoint, current: str) -> Iterator[dict[st
         yield {**set_point, current: level}
 
 
-def fixed(belief: Belief, bench: Bench, now: SetPoint) -> Sequence[Choice]:
+def fixed(assessment: Assessment, bench: Bench, now: SetPoint) -> Sequence[Choice]:
     """The plan of three hours; a current that the limits forbid is lowered."""
-    t = (belief.test.time[-1] - belief.test.time[0]) / MINUTE
+    t = (assessment.test.time[-1] - assessment.test.time[0]) / MINUTE
     _, amperes, speed = [row for row in PLAN if row[0] <= t][-1]
     end = next((row[0] for row in PLAN if row[0] > t), 60.0 * HOURS + 1.0)
     most = {k.name: k.most for k in bench.knobs}
     wanted = {**bench.safe, "current_A": amperes * most["current_A"], "speed_rpm": speed * most["speed_rpm"]}
     for s in lowered(bench, wanted, "current_A"):
-        if choices(belief, bench, now, [s]):
+        if choices(assessment, bench, now, [s]):
             return [Choice(s, max(min(end - t, LENGTHS_MIN[2]), 0.5), 1.0, {})]
     return []
 
@@ -61,9 +61,9 @@ def fixed(belief: Belief, bench: Bench, now: SetPoint) -> Sequence[Choice]:
 def random_points(seed: int) -> Policy:
     rng = np.random.default_rng([seed, 13])
 
-    def policy(belief: Belief, bench: Bench, now: SetPoint) -> Sequence[Choice]:
+    def policy(assessment: Assessment, bench: Bench, now: SetPoint) -> Sequence[Choice]:
         for s in rng.permutation(np.array(bench.set_points(now), dtype=object)):
-            if choices(belief, bench, now, [s]):
+            if choices(assessment, bench, now, [s]):
                 return [Choice(s, float(rng.uniform(5.0, 15.0)), 1.0, {})]
         return []
 
@@ -92,7 +92,7 @@ def run(kind: str, seed: int, method: str) -> dict:
                 break
             if steering.is_due:
                 thought = steering.think(case)
-                looks, stop, cause = looks + 1, thought.stop, thought.belief.odds[0][0]
+                looks, stop, cause = looks + 1, thought.stop, thought.assessment.odds[0][0]
                 for s in steering.apply(thought):
                     plant.apply(s)
                 steering.bench = replace(bench, every_s=max(LOOK_S, SHARE * (steering.time - steering.begin)))

@@ -48,7 +48,7 @@ def live_document(case: str, follow: str, test: str, drive: bool, json: str | No
         thought, events = session.thought, store.events()
     finally:
         store.close()
-    belief = thought.belief if thought else None
+    assessment = thought.assessment if thought else None
     return {
         "case": path.name,
         "test": test,
@@ -56,9 +56,9 @@ def live_document(case: str, follow: str, test: str, drive: bool, json: str | No
         "stop": stop,
         "decided": stop not in OPEN,
         "minutes": (steering.time - steering.begin) / 60.0,
-        "odds": [{"cause": n, "probability": p} for n, p in (belief.odds if belief else ())],
-        "sensors_over": list(belief.over if belief else ()),
-        "cannot_see": list(belief.unseen if belief else ()),
+        "odds": [{"cause": n, "probability": p} for n, p in (assessment.odds if assessment else ())],
+        "sensors_over": list(assessment.over if assessment else ()),
+        "cannot_see": list(assessment.unseen if assessment else ()),
         "set_points": [e for e in events if e["event"] == "set"],
         "file": str(store.path),
     }

@@ -20,7 +20,7 @@ from itertools import combinations
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from extras.bench.live.belief import Belief
+from extras.bench.live.assessment import Assessment
 from extras.bench.live.settings import Bench, SetPoint
 from thermoscope.plugin import (
     USUAL_DOUBT,
@@ -86,20 +86,20 @@ def sizes(e: Evidence, test: Test, bench: Bench) -> Array:
     return e.scale * np.array([now.get(n, 1.0) / later.get(n, now.get(n, 1.0)) for n in e.names])
 
 
-def rivals(belief: Belief, bench: Bench) -> list[Rival]:
+def rivals(assessment: Assessment, bench: Bench) -> list[Rival]:
     """The hypotheses that carry weight, with what the readings so far say of their parameters."""
-    e = belief.posterior.evidence
-    p = probabilities(belief.posterior.hypotheses)
-    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), sizes(e, belief.test, bench)
-    known = [(float(q), h) for q, h in zip(p, belief.posterior.hypotheses, strict=True) if not h.heat]
+    e = assessment.posterior.evidence
+    p = probabilities(assessment.posterior.hypotheses)
+    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), sizes(e, assessment.test, bench)
+    weighty = [(float(q), h) for q, h in zip(p, assessment.posterior.hypotheses, strict=True) if not h.heat]
     out = []
-    for q, h in sorted(known, key=lambda x: -x[0])[:RIVALS]:
+    for q, h in sorted(weighty, key=lambda x: -x[0])[:RIVALS]:
         k = list(h.members)
         weight = np.concatenate([sd, scale[k]]) ** -2.0
         A = np.block([[G.JJ, G.JZ[:, k]], [G.JZ[:, k].T, G.ZZ[np.ix_(k, k)]]]) + np.diag(weight)
         covariance = np.linalg.inv(A)
         names = (*(e.names[i] for i in k), *(() if k else (e.name(h),)))
-        lead = next((cause for cause, _ in belief.odds if cause in names), names[0])
+        lead = next((cause for cause, _ in assessment.odds if cause in names), names[0])
         at = (*range(theta.size), *(theta.size + i for i in k))
         b = np.concatenate([G.Jr - weight[: theta.size] * theta, G.Zr[k]])
         out.append(Rival(q, lead, at, covariance @ b, covariance))
@@ -107,34 +107,36 @@ def rivals(belief: Belief, bench: Bench) -> list[Rival]:
     return [replace(r, p=r.p / whole) for r in out if r.p >= LEAST * out[0].p]
 
 
-def choices(belief: Belief, bench: Bench, now: SetPoint, only: Sequence[SetPoint] | None = None) -> list[Choice]:
+def choices(
+    assessment: Assessment, bench: Bench, now: SetPoint, only: Sequence[SetPoint] | None = None
+) -> list[Choice]:
     """Every set point that the limits allow, most information per minute first.
 
     The first few are looked at again with what a model of this kind gets wrong: it takes most of what tangents promise.
     """
-    some = rivals(belief, bench)
-    out = [c for s in (bench.set_points(now) if only is None else only) for c in _lengths(belief, bench, some, s)]
+    some = rivals(assessment, bench)
+    out = [c for s in (bench.set_points(now) if only is None else only) for c in _lengths(assessment, bench, some, s)]
     out.sort(key=lambda c: -c.rate)
     first = {str(c.set_point): c.set_point for c in out}
-    again = [c for s in list(first.values())[:CHECKED] for c in _lengths(belief, bench, some, s, True)]
+    again = [c for s in list(first.values())[:CHECKED] for c in _lengths(assessment, bench, some, s, True)]
     return sorted(again, key=lambda c: -c.rate)
 
 
 def _lengths(
-    belief: Belief, bench: Bench, some: Sequence[Rival], set_point: SetPoint, doubting: bool = False
+    assessment: Assessment, bench: Bench, some: Sequence[Rival], set_point: SetPoint, doubting: bool = False
 ) -> Iterator[Choice]:
-    e = belief.posterior.evidence
-    test = planned(belief.test, bench, set_point)
+    e = assessment.posterior.evidence
+    test = planned(assessment.test, bench, set_point)
     columns = (*e.fit.unknowns.parameters, *e.parameters)
     try:
-        parts = segments(e.network, [_with_limits(test, bench, belief)], e.fit.values, columns)
+        parts = segments(e.network, [_with_limits(test, bench, assessment)], e.fit.values, columns)
         error = model_error(e.fit.network, [test], e.fit.values) if doubting else None
     except NoSolution:  # the model runs away there
         return
-    begin = float(belief.test.time[-1])
+    begin = float(assessment.test.time[-1])
     bands = {s.channel[len(LIMIT) :]: _after(s, begin) for s in parts if s.channel.startswith(LIMIT)}
     q = e.p + (e.fit.error.size if e.fit.error else 0)
-    cold = min(float(u[-1]) for u in belief.test.boundaries.values())
+    cold = min(float(u[-1]) for u in assessment.test.boundaries.values())
     hottest = {x.name: _band(bands[x.name], e.p, q, some, x.hot_spot, cold) for x in bench.limits}
     most = {x.name: x.most_C for x in bench.limits}
     read = [_innovations(e, s, begin, error) for s in parts if not s.channel.startswith(LIMIT)]
@@ -147,9 +149,9 @@ def _lengths(
 
 
 def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
-    """The rows so far, then a set point for as long as any plan looks ahead; all else stays where it is."""
-    ahead = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
-    n, m = ahead.size, test.time.size
+    """The rows so far, then a set point for as long as any plan looks forward; all else stays where it is."""
+    future = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
+    n, m = future.size, test.time.size
 
     def on(u: Array, value: float | None = None) -> Array:
         u = np.broadcast_to(np.asarray(u, float), test.time.shape)
@@ -158,18 +160,18 @@ def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
     before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
     return replace(
         test,
-        time=np.concatenate([test.time, test.time[-1] + ahead]),
+        time=np.concatenate([test.time, test.time[-1] + future]),
         inputs={k: on(u, set_point.get(k)) for k, u in test.inputs.items()},
         boundaries={k: on(u) for k, u in test.boundaries.items()},
         channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
         recorded=None,
-        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(ahead), prepend=-1))]),
+        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(future), prepend=-1))]),
     )
 
 
-def _block(ahead: Array) -> Array:
+def _block(future: Array) -> Array:
     """Which block a planned instant is in: they grow as what is looked for gets slower."""
-    return np.floor(8.0 * np.log2(1.0 + ahead / 240.0))
+    return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
 def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> tuple[Array, Array]:
@@ -180,17 +182,17 @@ def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None
     d = e.fit.error.size if e.fit.error else 0
     doubts = np.zeros((s.r.size, d))
     if error and e.fit.error:  # doubts that the plan adds, such as of its own steps, are none of the fit's
-        known = {name: i for i, name in enumerate(e.fit.error.names[: e.fit.error.model_columns])}
+        index = {name: i for i, name in enumerate(e.fit.error.names[: e.fit.error.model_columns])}
         for i, name in enumerate(error.names[: error.model_columns]):
-            if name in known:
-                doubts[:, known[name]] = error.of(s)[:, i]
+            if name in index:
+                doubts[:, index[name]] = error.of(s)[:, i]
     J = np.column_stack([s.J[:, : e.p], doubts, s.J[:, e.p :]])
     late = s.time > begin
     return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
 
 
-def _with_limits(test: Test, bench: Bench, belief: Belief) -> Test:
-    places = belief.posterior.evidence.network.places
+def _with_limits(test: Test, bench: Bench, assessment: Assessment) -> Test:
+    places = assessment.posterior.evidence.network.places
     still = np.zeros(test.time.size)
     more = (Channel(f"{LIMIT}{x.name}", x.place, places[x.place].mean, still, lag_s=0.0) for x in bench.limits)
     return replace(test, channels=(*test.channels, *more))

@@ -111,12 +111,12 @@ def _set_words(steering: Steering) -> str:
 
 def words(thought: Thought) -> str:
     """A look at the odds in one line."""
-    odds = ", ".join(f"{name} {p:.0%}" for name, p in thought.belief.odds[:3])
+    odds = ", ".join(f"{name} {p:.0%}" for name, p in thought.assessment.odds[:3])
     out = [f"{thought.time / 60.0:6.1f} min  {odds}"]
-    if thought.belief.over:
-        out.append(f"sensors over: {', '.join(thought.belief.over)}")
-    if thought.belief.unseen:
-        out.append(f"cannot see yet: {', '.join(thought.belief.unseen[:3])}")
+    if thought.assessment.over:
+        out.append(f"sensors over: {', '.join(thought.assessment.over)}")
+    if thought.assessment.unseen:
+        out.append(f"cannot see yet: {', '.join(thought.assessment.unseen[:3])}")
     if thought.left_min < 1e4 and not thought.stop:
         out.append(f"about {thought.left_min:.0f} min left")
     return "; ".join(out)

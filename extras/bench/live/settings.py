@@ -88,10 +88,10 @@ def read_bench(case: Path, network: Network) -> Bench:
     sheet = load_sheet(case / sheet_file)
     if not knobs or not limits:
         raise InputError("no set points or no limits", str(file), "[set.NAME] and [limits.NAME], one of each at least")
-    fed = [c.feeds for c in sheet.columns if c.feeds]
+    inputs = [c.feeds for c in sheet.columns if c.feeds]
     for k in knobs:
-        if k.name not in fed:
-            raise InputError(f"[set.{k.name}] is measured by no column", str(file), suggestion(k.name, fed))
+        if k.name not in inputs:
+            raise InputError(f"[set.{k.name}] is measured by no column", str(file), suggestion(k.name, inputs))
     bench = Bench(sheet, sheet_file, knobs, limits, **times)
     if (count := len(bench.set_points({}))) > MOST_SET_POINTS:
         raise InputError(f"{count} set points", str(file), f"levels that make {MOST_SET_POINTS} at most")

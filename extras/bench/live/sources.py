@@ -134,7 +134,7 @@ def _mqtt(where: str, host: str, port: int, topic: str) -> Source:
             raise OSError(str(fault)) from None
 
     threading.Thread(target=lambda: asyncio.run(run()), daemon=True).start()
-    if not ready.wait(10.0) or "fault" in state:
+    if not ready.wait(10.0) or state.get("fault"):
         raise InputError(f"no broker answers: {state.get('fault', 'no reply')}", where, "mqtt://HOST[:PORT][/TOPIC]")
     source.send = send
     return source

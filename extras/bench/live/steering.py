@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extras.bench.live.belief import FEWEST, NOTHING, Belief, believe
+from extras.bench.live.assessment import FEWEST, NOTHING, Assessment, assess
 from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices
 from extras.bench.live.settings import OVER, Bench, SetPoint
 from extras.bench.live.store import BenchError, Row, Store
@@ -22,7 +22,7 @@ GAIN = 0.05  # of what was not known, that the readings have to take off while p
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
 
-Policy = Callable[[Belief, Bench, SetPoint], Sequence[Choice]]  # what may come next, best first
+Policy = Callable[[Assessment, Bench, SetPoint], Sequence[Choice]]  # what may come next, best first
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Thought:
     """
 
     time: float
-    belief: Belief
+    assessment: Assessment
     choice: Choice | None = None
     left_min: float = math.inf
     stop: str = ""
@@ -58,7 +58,7 @@ class Steering:
     begin: float = math.nan
     last: Row | None = None
     count: int = 0
-    looked: float = -math.inf
+    last_look: float = -math.inf
     dull: int = 0
     least: float = math.inf
     gained: float = -math.inf
@@ -152,57 +152,57 @@ class Steering:
         """Is it time to look at the odds again?"""
         if self.count < FEWEST:
             return False
-        return self.time - self.looked >= self.bench.every_s or self.time >= self.due
+        return self.time - self.last_look >= self.bench.every_s or self.time >= self.due
 
     def think(self, case: Path) -> Thought:
         """The odds on all rows so far, and the next set point where the present one is over, or gets too hot."""
         self.store.listed()
-        self.looked = self.time
+        self.last_look = self.time
         time, elapsed = self.time, (self.time - self.begin) / MINUTE
         folder = load_case(case)
-        belief = believe(folder, self.store.name)
+        assessment = assess(folder, self.store.name)
         stop = ""
-        if self._named(belief):
-            belief = believe(folder, self.store.name, quick=False)
-            stop = self._named(belief)
+        if self._named(assessment):
+            assessment = assess(folder, self.store.name, quick=False)
+            stop = self._named(assessment)
         if stop:
-            return Thought(time, belief, stop=stop, left_min=0.0)
+            return Thought(time, assessment, stop=stop, left_min=0.0)
         waits = not self.obeyed and time - self.since < self.bench.deaf_s
         running = waits or time < self.due
-        if running and self._allowed(belief):
-            return Thought(time, belief, left_min=self._left(belief, None))
-        allowed = self.policy(belief, self.bench, self.now)
-        choice = allowed[0] if allowed else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
-        left = self._left(belief, max((c.rate for c in allowed), default=0.0))
-        self.dull = self.dull + 1 if max((c.nats for c in allowed), default=0.0) < DULL else 0
-        if belief.entropy < (1.0 - GAIN) * self.least:
-            self.least, self.gained = belief.entropy, time
+        if running and self._stays_below(assessment):
+            return Thought(time, assessment, left_min=self._left(assessment, None))
+        options = self.policy(assessment, self.bench, self.now)
+        choice = options[0] if options else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
+        left = self._left(assessment, max((c.rate for c in options), default=0.0))
+        self.dull = self.dull + 1 if max((c.nats for c in options), default=0.0) < DULL else 0
+        if assessment.entropy < (1.0 - GAIN) * self.least:
+            self.least, self.gained = assessment.entropy, time
         stale = time - self.gained > MINUTE * self.bench.patience_min
         if stale or self.dull >= LOOKS or elapsed >= self.bench.budget_min:
             stop = UNDECIDED if stale or self.dull >= LOOKS else "the time is over"
-        return Thought(time, belief, choice, left, stop)
+        return Thought(time, assessment, choice, left, stop)
 
-    def _named(self, belief: Belief) -> str:
-        cause, p = belief.odds[0]
+    def _named(self, assessment: Assessment) -> str:
+        cause, p = assessment.odds[0]
         if p < SURE or cause.startswith("heat@"):
             return ""
         return "nothing is missing" if cause == NOTHING else f"{cause} is missing"
 
-    def _allowed(self, belief: Belief) -> bool:
+    def _stays_below(self, assessment: Assessment) -> bool:
         """Does what runs stay below every limit until the next look?"""
-        return bool(choices(belief, self.bench, self.now, [self.now])) or self.now == self.bench.safe
+        return bool(choices(assessment, self.bench, self.now, [self.now])) or self.now == self.bench.safe
 
-    def _left(self, belief: Belief, rate: float | None) -> float:
+    def _left(self, assessment: Assessment, rate: float | None) -> float:
         """Minutes to the answer, as far as information per minute goes on."""
         self.rate = self.rate if rate is None else rate
-        need = max(belief.entropy - LEFT_NATS, 0.0)
+        need = max(assessment.entropy - LEFT_NATS, 0.0)
         return need / self.rate if self.rate > 0.0 else math.inf
 
     def apply(self, thought: Thought) -> list[dict[str, float]]:
         """Goes on as thought. Returns set points to send."""
         stop = {"stop": thought.stop} if thought.stop else {}
-        odds = [list(o) for o in thought.belief.odds[:5]]
-        over = list(thought.belief.over)
+        odds = [list(o) for o in thought.assessment.odds[:5]]
+        over = list(thought.assessment.over)
         self.store.note(
             {
                 "event": "odds",

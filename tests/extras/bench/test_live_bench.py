@@ -83,12 +83,12 @@ def test_set_points_get_no_hotter_than_the_limits(case):
     plant = Plant(drawn("servo", 7, "nothing"))
     driven(case, plant, 2.0)
     steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
-    belief = steering.think(case).belief
+    assessment = steering.think(case).assessment
     cool = tuple(replace(x, most_C=45.0) for x in steering.bench.limits)
-    allowed = choices(belief, replace(steering.bench, limits=cool), steering.now)
-    assert allowed
-    assert all(T <= 45.0 for c in allowed for T in c.hottest.values())
-    assert max(c.set_point["current_A"] for c in allowed) < max(steering.bench.knobs[0].levels)
+    options = choices(assessment, replace(steering.bench, limits=cool), steering.now)
+    assert options
+    assert all(T <= 45.0 for c in options for T in c.hottest.values())
+    assert max(c.set_point["current_A"] for c in options) < max(steering.bench.knobs[0].levels)
 
 
 def test_one_cooling_is_changed_at_a_time(tmp_path):

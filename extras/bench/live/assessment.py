@@ -9,14 +9,14 @@ import numpy as np
 
 from thermoscope.plugin import Channel, Folder, Posterior, Test, explanations, hidden_effects, infer, probabilities
 
-STUCK_S, MOVED_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
+STUCK_S, MOTION_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
 EQUAL = 5  # last readings of a channel that may be those of a dead sensor
 FEWEST = 15  # rows before anything is asked of a diagnosis
 NOTHING = "nothing"
 
 
 @dataclass(frozen=True)
-class Belief:
+class Assessment:
     """odds : by leading cause, most probable first;  over : sensors that have stopped;  unseen : what cannot show yet
 
     test : the rows as they count;  posterior : all that the planner goes on from
@@ -35,7 +35,7 @@ class Belief:
         return float(-np.sum(p * np.log(np.maximum(p, 1e-300))))
 
 
-def believe(folder: Folder, name: str, quick: bool = True) -> Belief:
+def assess(folder: Folder, name: str, quick: bool = True) -> Assessment:
     """Of all tests of a case, the rows of test `name` among them."""
     case = folder.case
     live = next(t for t in case.tests if t.name == name)
@@ -44,7 +44,7 @@ def believe(folder: Folder, name: str, quick: bool = True) -> Belief:
     posterior = infer(case.training(), folder.settings.kinds, quick=quick)
     rows = [(e.cause, float(e.probability)) for e in explanations(posterior) if e.cause != "others"]
     hidden = tuple(h.effect for h in hidden_effects(posterior.evidence))
-    return Belief(tuple(sorted(rows, key=lambda r: -r[1])), over, hidden, live, posterior)
+    return Assessment(tuple(sorted(rows, key=lambda r: -r[1])), over, hidden, live, posterior)
 
 
 def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
@@ -61,12 +61,12 @@ def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
             first = int(tail[0])
             c = replace(c, y=np.where(np.arange(c.y.size) <= first, c.y, np.nan))
             others = [o for o in test.channels if o.name != c.name]
-            if test.time[-1] - test.time[first] >= STUCK_S and _moved(others, first) > MOVED_K:
+            if test.time[-1] - test.time[first] >= STUCK_S and _motion(others, first) > MOTION_K:
                 over.append(c.name)
         channels.append(c)
     return replace(test, channels=tuple(channels)), tuple(over)
 
 
-def _moved(channels: Sequence[Channel], first: int) -> float:
+def _motion(channels: Sequence[Channel], first: int) -> float:
     late = [c.y[first:][np.isfinite(c.y[first:])] for c in channels]
     return max((float(np.ptp(y)) for y in late if y.size), default=0.0)
