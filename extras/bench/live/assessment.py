@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from thermoscope.plugin import Channel, Folder, Posterior, Test, explanations, hidden_effects, infer, probabilities
+from thermoscope.plugin import (
+    Array,
+    Channel,
+    Folder,
+    Posterior,
+    Test,
+    explanations,
+    hidden_effects,
+    infer,
+    probabilities,
+)
 
 STUCK_S, MOTION_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
+MOST_ROWS = 3000  # that odds are worked out from: three hours of a row every four seconds
 EQUAL = 5  # last readings of a channel that may be those of a dead sensor
 FEWEST = 15  # rows before anything is asked of a diagnosis
 NOTHING = "nothing"
@@ -40,6 +52,7 @@ def assess(folder: Folder, name: str, quick: bool = True) -> Assessment:
     case = folder.case
     live = next(t for t in case.tests if t.name == name)
     live, over = without_stuck(live)
+    live = thinned(live)
     case = replace(case, tests=tuple(live if t.name == name else t for t in case.tests))
     posterior = infer(case.training(), folder.settings.kinds, quick=quick)
     rows = [(e.cause, float(e.probability)) for e in explanations(posterior) if e.cause != "others"]
@@ -65,6 +78,28 @@ def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
                 over.append(c.name)
         channels.append(c)
     return replace(test, channels=tuple(channels)), tuple(over)
+
+
+def thinned(test: Test) -> Test:
+    """At most MOST_ROWS rows, means of so many at a time, and one channel for each place: the mean of its sensors."""
+    step = -(-test.time.size // MOST_ROWS)
+    at = np.arange(0, test.time.size, step)
+    count = np.diff(np.append(at, test.time.size))
+
+    def mean(u: Array | float) -> Array:
+        return np.asarray(np.add.reduceat(np.broadcast_to(np.asarray(u, float), test.time.shape), at) / count)
+
+    groups: dict[str, list[Channel]] = {}
+    for c in test.channels:
+        groups.setdefault(c.place, []).append(c)
+    with catch_warnings():
+        simplefilter("ignore", RuntimeWarning)  # rows in which no sensor of a place was read
+        y = {p: np.nanmean([c.y for c in some], axis=0) if len(some) > 1 else some[0].y for p, some in groups.items()}
+    channels = tuple(replace(some[0], y=mean(y[p]) if step > 1 else y[p]) for p, some in groups.items())
+    if step == 1:
+        return replace(test, channels=channels)
+    inputs, boundaries = ({n: mean(u) for n, u in each.items()} for each in (test.inputs, test.boundaries))
+    return replace(test, time=mean(test.time), inputs=inputs, boundaries=boundaries, channels=channels, recorded=None)
 
 
 def _motion(channels: Sequence[Channel], first: int) -> float:

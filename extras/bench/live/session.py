@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 
 from extras.bench.live.settings import Bench
@@ -35,8 +36,9 @@ class Session:
             threading.Thread(target=self._hear, daemon=True).start()
 
     def _hear(self) -> None:
-        for line in sys.stdin:
-            self.typed.put(line.strip())
+        with suppress(OSError, ValueError):  # nobody is there to type
+            for line in sys.stdin:
+                self.typed.put(line.strip())
 
     @property
     def bench(self) -> Bench:
@@ -68,7 +70,9 @@ class Session:
             try:
                 line = self.source.line(WAKE_S)
             except queue.Empty:
-                if time.monotonic() - heard > self.bench.silence_s:
+                if time.monotonic() - heard > self.bench.silence_s and self.source.send is None:
+                    over = True  # a file that grows no more
+                elif time.monotonic() - heard > self.bench.silence_s:
                     raise BenchError(
                         f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on"
                     ) from None

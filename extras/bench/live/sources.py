@@ -102,8 +102,13 @@ def _tcp(where: str, host: str, port: int) -> Source:
     link.settimeout(None)
     stream: IO[str] = link.makefile("r", encoding="utf-8", newline="\n")
     source.send = lambda line: link.sendall(f"{line}\n".encode())
-    source.start(lambda: iter(lambda: stream.readline(BYTES), ""))
+    source.start(lambda: _until_closed(stream))
     return source
+
+
+def _until_closed(stream: IO[str]) -> Iterator[str]:
+    yield from iter(lambda: stream.readline(BYTES), "")
+    raise ConnectionResetError("closed by the other side")
 
 
 def _mqtt(where: str, host: str, port: int, topic: str) -> Source:

@@ -17,7 +17,8 @@ from thermoscope.plugin import load_case
 
 SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
-DULL, LOOKS = 0.02, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
+DULL, LOOKS = 0.005, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
+KEPT = 0.5  # of what a set point promised, below which it counts so much less the next time
 GAIN = 0.05  # of what was not known, that the readings have to take off while patience lasts
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
@@ -43,6 +44,7 @@ class Thought:
 class Steering:
     """now : the set point;  sent : how far towards it the bench was told;  due : when the next one is chosen (s)
 
+    promise : of the last one: its name, entropy before, nats;  broken : set point -> how often it told less
     since : when `now` was asked for;  obeyed : that the meters show it, or a person said so
     """
 
@@ -62,6 +64,8 @@ class Steering:
     dull: int = 0
     least: float = math.inf
     gained: float = -math.inf
+    promise: tuple[str, float, float] | None = None
+    broken: dict[str, int] = field(default_factory=dict)
     replays: bool = True
     rate: float = math.nan
 
@@ -171,8 +175,12 @@ class Steering:
         running = waits or time < self.due
         if running and self._stays_below(assessment):
             return Thought(time, assessment, left_min=self._left(assessment, None))
+        if self.promise and self.promise[1] - assessment.entropy < KEPT * self.promise[2]:
+            self.broken[self.promise[0]] = self.broken.get(self.promise[0], 0) + 1
         options = self.policy(assessment, self.bench, self.now)
+        options = sorted(options, key=lambda c: -c.rate * KEPT ** self.broken.get(str(c.set_point), 0))
         choice = options[0] if options else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
+        self.promise = str(choice.set_point), assessment.entropy, choice.nats
         left = self._left(assessment, max((c.rate for c in options), default=0.0))
         self.dull = self.dull + 1 if max((c.nats for c in options), default=0.0) < DULL else 0
         if assessment.entropy < (1.0 - GAIN) * self.least:

@@ -14,7 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from command_line import answered
 
+from extras.bench.live.assessment import MOST_ROWS, thinned
 from extras.bench.live.planning import Rival, choices, information
 from extras.bench.live.session import Session
 from extras.bench.live.settings import read_bench
@@ -24,7 +26,7 @@ from extras.bench.live.store import BenchError, Store
 from simulated.bench.kinds import KINDS, write_case
 from simulated.bench.plant import Plant, drawn
 from thermoscope import InputError
-from thermoscope.plugin import load_case
+from thermoscope.plugin import Channel, Test, load_case
 
 ROW = {"time_s": 5.0, "current_A": 0.0, "speed_rpm": 0.0, "T_ambient": 20.0, "T_plate": 20.0}
 ROW |= {"T_winding": 20.0, "T_core": 20.0, "T_housing": 20.0}
@@ -187,6 +189,19 @@ def test_set_points_change_no_faster_than_they_may(steering):
     assert after["speed_rpm"] <= 1.6 * rate["speed_rpm"]
 
 
+def test_fast_rows_and_equal_places_are_averaged():
+    time, y = np.arange(8000) * 0.1, np.arange(8000.0)
+    one = Channel("a", "core", None, y, 0.5)
+    test = Test(
+        "live", "calibrate", time, {"current_A": y}, {"ambient": 20.0}, (one, replace(one, name="b", y=y + 2.0))
+    )
+    small = thinned(test)
+    assert small.time.size <= MOST_ROWS
+    (channel,) = small.channels
+    assert np.allclose(channel.y, np.interp(small.time, time, y) + 1.0)  # the mean of a straight line is at mid-block
+    assert np.allclose(small.inputs["current_A"], np.interp(small.time, time, y))
+
+
 def test_rows_come_as_cells_and_as_objects():
     parser = Parser("x", [])
     assert parser.row("time_s,T\n") is None
@@ -210,9 +225,28 @@ def test_a_line_that_breaks_is_said(case, steering):
 
         threading.Thread(target=serve, daemon=True).start()
         session = Session(steering, source_of(f"tcp://127.0.0.1:{port}"), case, True, lambda line: None, False)
-        assert session.run() == "the rows are at their end"
+        with pytest.raises(BenchError, match="is gone: closed by the other side"):
+            session.run()
     with pytest.raises(InputError, match="no bench answers"):
         source_of(f"tcp://127.0.0.1:{port}")
+
+
+def test_a_recording_that_grows_no_more_ends_without_an_answer(case, tmp_path):
+    rows = tmp_path / "rows.csv"
+    plant = Plant(drawn("servo", 7, "nothing"))
+    lines = [row for _ in range(30) if (row := plant.row())]
+    rows.write_text("\n".join([",".join(lines[0]), *(",".join(map(str, r.values())) for r in lines), ""]))
+    file = case / "bench.toml"
+    file.write_text(f"silence_s = 1\n{file.read_text()}")
+    answer = answered("bench", "live", case, "--follow", rows, "--out", tmp_path, "--json", "-")
+    document = answer.document
+    assert answer.code == 1
+    assert document["stop"] == "the rows are at their end"
+    assert document["odds"][0]["cause"] == "nothing"
+    assert (tmp_path / "live-odds.png").exists()
+    refused = answered("bench", "live", case, "--follow", rows, "--drive")
+    assert refused.code == 2
+    assert "set points cannot go to a file" in refused.err
 
 
 @pytest.mark.skipif(not shutil.which("mosquitto", path="/usr/sbin:/usr/bin"), reason="no broker here")
