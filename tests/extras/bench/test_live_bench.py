@@ -264,7 +264,7 @@ def test_rows_and_set_points_go_by_a_broker_and_it_may_be_gone(case, steering):
             async with aiomqtt.Client("127.0.0.1", port) as client:
                 await client.subscribe("bench/set")
                 await client.publish("bench/rows", json.dumps(ROW))
-                assert json.loads(await asyncio.to_thread(source.line, 5.0)) == ROW
+                assert json.loads(await asyncio.to_thread(source.line, 30.0)) == ROW
                 await asyncio.to_thread(source.set, HOT)
                 async for message in client.messages:
                     return json.loads(message.payload)
