@@ -7,6 +7,7 @@ import math
 from geom.description.geometry import Geometry
 from geom.families.channels import too_near
 from geom.families.fit import Fit, mm
+from geom.families.radial_flux.hairpin import check_bars
 from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
@@ -37,7 +38,9 @@ def _check_stator(fit: Fit, g: Geometry, at: Layout) -> None:
     slot = 1.8 * at.slot0 * math.sin(max(at.half_angle(at.slot0), 0.0))
     fit.need(s.opening < slot, "stator.opening", "narrower than the slot")
     fit.need(s.wedge <= s.tip, "stator.wedge", f"at most the tooth tip, {s.tip * mm:.4g} mm")
-    if g.winding.kind != "distributed":
+    if g.winding.kind == "hairpin":
+        check_bars(fit, g)
+    if g.winding.kind == "concentrated":
         fit.below(0.5 * widest, "stator.opening", ", to leave end windings on the teeth")
 
 
