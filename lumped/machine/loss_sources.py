@@ -71,7 +71,9 @@ def _declared(machine: Machine) -> list[Loss]:
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
-    tables = {name: Table(data, f"{where}.{name.partition(IN)[0]}]") for name, data in by_part(machine, section).items()}
+    tables = {
+        name: Table(data, f"{where}.{name.partition(IN)[0]}]") for name, data in by_part(machine, section).items()
+    }
     laws = loss_laws(tables)
     out = [_read(name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()]
     for table in tables.values():

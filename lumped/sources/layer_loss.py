@@ -23,11 +23,11 @@ def dowell(height: Array | float, layer: int) -> Array:
     """AC over DC resistance of a layer of bars in a slot, 1 at its bottom (Dowell 1966, Proc. IEE 113, 1387).
 
     height : of a bar, over the skin depth and times the root of its share of the slot's width
-    F = x [(sinh 2x + sin 2x)/(cosh 2x - cos 2x) + 2 m (m - 1) (sinh x - sin x)/(cosh x + cos x)]; its mean over n layers
-    is Dowell's x [... + 2 (n^2 - 1)/3 ...].
+    F = x [(sinh 2x + sin 2x)/(cosh 2x - cos 2x) + 2 m (m - 1) (sinh x - sin x)/(cosh x + cos x)]; the mean over n
+    layers is Dowell's x [... + 2 (n^2 - 1)/3 ...].
 
     >>> dowell(np.array([0.01, 1.0]), 2).round(3).tolist()
-    [1.0, 1.728]
+    [1.0, 1.726]
     """
     whole = np.asarray(height, float)
     x = np.minimum(whole, THICK)  # beyond, both quotients are 1 to all digits
@@ -38,7 +38,7 @@ def dowell(height: Array | float, layer: int) -> Array:
 
 @dataclass(frozen=True)
 class LayerLoss(Law):
-    """What alternating current adds to the copper loss of a layer: P_copper (k - 1) (W), k a function of f / resistivity.
+    """What alternating current adds to the copper loss of a layer: P_copper (k - 1) (W), k of f / resistivity.
 
     In bars of one temperature the quasi-static field knows frequency and resistivity by their quotient alone.
     temperature : what is added over direct current's, with its resistivity;  top : |input| up to which it is known
@@ -70,10 +70,10 @@ def by_dowell(
 
 def from_map(copper: CopperLoss, speed: str, at: Sequence[float], factors: Sequence[float]) -> LayerLoss:
     """at : speeds, rising from 0 or more;  factors : AC over DC resistance there, at the copper's reference"""
-    speeds = np.geomspace(at[-1] * 1e-3, at[-1], SIZES)
-    known = speeds[1:] >= at[0]
-    speeds = np.unique([speeds[0], *speeds[1:][known], *(v for v in at if v > speeds[0])])
-    return LayerLoss(copper, _added(copper, speed, speeds, np.interp(speeds, at, factors)), at[-1])
+    slow = at[-1] * 1e-3  # slower is at rest
+    speeds = np.union1d(np.geomspace(slow, at[-1], SIZES), [v for v in at if v > slow])
+    known = np.interp([0.0, *speeds[1:]], at, factors)
+    return LayerLoss(copper, _added(copper, speed, speeds, known), at[-1])
 
 
 def _added(copper: CopperLoss, speed: str, at: Array, factor: Array) -> StreamTable:

@@ -76,8 +76,8 @@ def hairpin(g: Geometry, at: Layout, angles: list[float], wires: list[Profile], 
     w, section = g.winding, g.winding.bar_width * g.winding.bar_height
     out = []
     for name, cell in zip(bars(g).layers, cells, strict=True):
-        filling, prisms = (section / cell.area, w.impregnation), extrude(shapes.turned(cell, angles), at.core0, at.core1)
-        out.append(Part(name, "hairpin", prisms, filling, role=Role.WINDING))
+        prisms = extrude(shapes.turned(cell, angles), at.core0, at.core1)
+        out.append(Part(name, "hairpin", prisms, (section / cell.area, w.impregnation), role=Role.WINDING))
     ring = shapes.ring(at.wire0, at.wire1)
     # Wire of a layer from the stack to the top of its end turn, and how much of it runs along the axis
     slant = [math.hypot(w.end, (at.wire1 - (k + 0.5) * layer_height(g)) * w.pitch / 2) for k in range(w.layers)]
@@ -88,6 +88,7 @@ def hairpin(g: Geometry, at: Layout, angles: list[float], wires: list[Profile], 
         ("left", (at.coil0, at.core0), (at.ring0, at.coil0)),
         ("right", (at.core1, at.coil1), (at.coil1, at.ring1)),
     ):
-        prisms, filling = (*extrude(wires, *straight), (ring, *turns)), (fill, w.end_impregnation, along)
-        out.append(Part(f"winding.{side}", "end-winding", prisms, filling, role=Role.WINDING))
+        prisms = (*extrude(wires, *straight), (ring, *turns))
+        loose = (fill, w.end_impregnation, along)
+        out.append(Part(f"winding.{side}", "end-winding", prisms, loose, role=Role.WINDING))
     return out
