@@ -108,6 +108,7 @@ from lumped.sources.loss_laws import (
     EddyLoss as EddyLoss,
     IronLoss as IronLoss,
     PowerLoss as PowerLoss,
+    declared_name as declared_name,
 )
 from lumped.transfer.laws import (
     CLOCK as CLOCK,

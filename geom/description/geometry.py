@@ -67,11 +67,14 @@ class SeriesWound:
 class Bars:
     """Bars of a hairpin winding, one per slot and layer, and the slot around them (m).
 
-    layers : parts, from the bottom of the slot to its opening;  width, height, enamel : of a bar without its enamel
+    layers : parts, from the bottom of the slot to its opening;  ends, liner : parts around them
+    width, height, enamel : of a bar without its enamel
     pitch : from layer to layer;  room, slot : width of each layer between the liners, and between the teeth
     """
 
     layers: tuple[str, ...]
+    ends: tuple[str, str]
+    liner: str
     width: float
     height: float
     enamel: float

@@ -9,7 +9,7 @@ from geom.description.machine import Machine
 from geom.description.materials import material
 from lumped.sources.loss_laws import IN
 
-JOINED = 5e4  # W/m2/K: a bar and its own end turn are one piece
+ONE_PIECE = 5e4  # W/m2/K: a bar and its own end turn are one piece
 
 
 def insulation(machine: Machine) -> dict[str, float]:
@@ -29,10 +29,10 @@ def insulation(machine: Machine) -> dict[str, float]:
         top, side = (1.0 / (bars.enamel / enamel + gap / resin) for gap in (above, beside))
         ends = (k == 0) + (k == last)  # faces to the liner at the slot's bottom and opening
         whole = 2 * bars.pitch + ends * room
-        out[_pair(layer, "slot.liner")] = (2 * bars.height * side + ends * bars.width * top) / whole
+        out[_pair(layer, bars.liner)] = (2 * bars.height * side + ends * bars.width * top) / whole
         if k < last:
             out[_pair(layer, bars.layers[k + 1])] = bars.width / ((room + bars.room[k + 1]) / 2) * top / 2
-        out |= {_pair(layer, f"winding.{end}"): JOINED for end in ("left", "right")}
+        out |= {_pair(layer, end): ONE_PIECE for end in bars.ends}
     return out
 
 
@@ -41,14 +41,14 @@ def _pair(a: str, b: str) -> str:
 
 
 def by_part(machine: Machine, losses: Mapping[str, Any]) -> dict[str, Any]:
-    """[losses] with copper of the whole winding taken apart: every part heats and has resistance as it is warm itself.
+    """[losses] with copper of the whole winding part by part: each heats and has resistance as it is warm itself.
 
     A mean place over all layers says which parts; each has resistance by its copper. AC factors by layer go to theirs.
     """
     out: dict[str, Any] = {}
     for name, table in losses.items():
         parts = _parts(machine, table) if isinstance(table, Mapping) and table.get("kind") == "copper" else []
-        out |= {f"{name}{IN}{p}": entry for p, entry in _apart(machine, table, parts)} if parts else {name: table}
+        out |= {f"{name}{IN}{p}": entry for p, entry in _entries(machine, table, parts)} if parts else {name: table}
     return out
 
 
@@ -61,7 +61,7 @@ def _parts(machine: Machine, table: Mapping[str, Any]) -> list[str]:
     return list(parts) if bars is not None and set(bars.layers) <= {str(p) for p in parts} else []
 
 
-def _apart(machine: Machine, table: Mapping[str, Any], parts: list[str]) -> list[tuple[str, dict[str, Any]]]:
+def _entries(machine: Machine, table: Mapping[str, Any], parts: list[str]) -> list[tuple[str, dict[str, Any]]]:
     bars = machine.features.bars
     assert bars is not None
     copper = {part: machine.part(part).volume * (machine.part(part).filling or (1.0,))[0] for part in parts}

@@ -19,7 +19,7 @@ from lumped.machine.settings import Losses, read
 from lumped.machine.shapes import conducts, gap_fluid
 from lumped.model.network import Network, Place, Row, Source
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.loss_laws import EDDY, IN, PowerLoss
+from lumped.sources.loss_laws import EDDY, PowerLoss, declared_name
 from lumped.transfer.laws import InputPower, Law, Linear
 
 Shares = Mapping[str, float]
@@ -71,9 +71,7 @@ def _declared(machine: Machine) -> list[Loss]:
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
-    tables = {
-        name: Table(data, f"{where}.{name.partition(IN)[0]}]") for name, data in by_part(machine, section).items()
-    }
+    tables = {name: Table(data, f"{where}.{declared_name(name)}]") for name, data in by_part(machine, section).items()}
     laws = loss_laws(tables)
     out = [_read(name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()]
     for table in tables.values():

@@ -72,8 +72,8 @@ def from_map(copper: CopperLoss, speed: str, at: Sequence[float], factors: Seque
     """at : speeds, rising from 0 or more;  factors : AC over DC resistance there, at the copper's reference"""
     slow = at[-1] * 1e-3  # slower is at rest
     speeds = np.union1d(np.geomspace(slow, at[-1], SIZES), [v for v in at if v > slow])
-    known = np.interp([0.0, *speeds[1:]], at, factors)
-    return LayerLoss(copper, _added(copper, speed, speeds, known), at[-1])
+    factor = np.interp([0.0, *speeds[1:]], at, factors)
+    return LayerLoss(copper, _added(copper, speed, speeds, factor), at[-1])
 
 
 def _added(copper: CopperLoss, speed: str, at: Array, factor: Array) -> StreamTable:

@@ -52,6 +52,8 @@ def bars(g: Geometry) -> Bars:
     middle = [at.wire1 - (k + 0.5) * high for k in range(w.layers)]
     return Bars(
         tuple(f"winding.layer-{k + 1}" for k in range(w.layers)),
+        ("winding.left", "winding.right"),
+        "slot.liner",
         w.bar_width,
         w.bar_height,
         w.enamel,
