@@ -110,6 +110,15 @@ HAIRPIN_FAULTS = {
 }
 
 
+@pytest.mark.parametrize("shape", ["flat", "v"])
+def test_a_magnet_nearly_as_wide_as_the_rotor_is_one_message(shape):
+    """172 mm of rotor, a bridge of 2 mm either side: found by machines beyond the bounds, as a fault of arithmetic."""
+    width = {"flat": 170.0, "v": 85.7}[shape]
+    rotor = {"rotor.poles": 2, "rotor.magnet_shape": shape, "rotor.magnet_width_mm": width, "rotor.v_deg": 0.0}
+    with pytest.raises(InputError, match=r"magnet_width_mm: .* to lie inside the rotor"):
+        build(families()["pmsm"], {**FEW["pmsm"], **rotor})
+
+
 @pytest.mark.parametrize("fault", HAIRPIN_FAULTS)
 def test_hairpins_that_do_not_fit_are_one_message(fault):
     values, key, words = HAIRPIN_FAULTS[fault]

@@ -90,6 +90,8 @@ def check_magnets(g: Geometry, at: Layout) -> None:
     fit, r, pitch = Fit(g), g.rotor, 2 * at.rotor * math.sin(math.pi / g.rotor.poles)
     span = r.magnet_width * (1 if r.magnet_shape == "flat" else 2 * math.cos(r.v))
     fit.need(span < pitch, "rotor.magnet_width", "less than the pole pitch")
+    rise = r.magnet_width / 2 if r.magnet_shape == "flat" else r.bridge / 2 + r.magnet_width * math.cos(r.v)
+    fit.need(rise < at.rotor - r.bridge, "rotor.magnet_width", "less, to lie inside the rotor")
     magnets = shapely.polygons([[(x, y) for x, y, _ in magnet.outer] for magnet in shapes_of_magnets(g, at)])
     farthest = (shapely.get_coordinates(magnets) ** 2).sum(axis=1).max()
     limit = max(0.998 * at.rotor, at.rotor - 0.9 * r.bridge)
