@@ -19,9 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from extras.bench.measuring.drift import Drift
+    from extras.bench.steady_law.law import SteadyLaw
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
+SERIES = (BLUE, VERMILION, "#009e73", "#cc79a7", "#e69f00", "#56b4e9", LIGHT.ink)  # Okabe and Ito
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
 
@@ -82,6 +84,34 @@ def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
         rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
         ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)
     axes[0].legend(fontsize=8, frameon=False, loc="lower right")
+    return paper.save(figure, png)
+
+
+@paper.styled
+def cooling_law(law: SteadyLaw, *, png: str | Path | None = None) -> Figure:
+    """Conductance to the coolant over the input with most levels: a panel per inlet, a line per level of the others."""
+    tests = law.tests
+    across = int(np.argmax([tests.levels(i).size for i in range(tests.inputs.shape[1])]))
+    (name, unit), top = tests.columns.inputs[across], tests.scales.highest[across]
+    units = [u or n for i, (n, u) in enumerate(tests.columns.inputs) if i != across]
+    groups = np.column_stack([np.round(tests.coolant), np.delete(tests.inputs, across, axis=1)])
+    x = np.linspace(tests.scales.lowest[across], 1.5 * top, 61)
+    inlets = np.unique(groups[:, 0])[:3]
+    words = f"{law.verdict}: {len(law.numbers)} numbers", f"{name} ({unit})", "W/K to the coolant"
+    figure, axes = paper.panels(len(inlets), 3, (3.8, 3.2), *words)
+    for ax, inlet in zip(axes, inlets, strict=True):
+        for colour, group in zip(SERIES, np.unique(groups[groups[:, 0] == inlet], axis=0), strict=False):
+            rows = (groups == group).all(axis=1)
+            G, half = law.curve(np.insert(np.tile(group[1:], (x.size, 1)), across, x, axis=1), inlet)
+            label = ", ".join(f"{v:g} {u}" for v, u in zip(group[1:], units, strict=True))
+            ax.fill_between(x, G - half, G + half, color=colour, alpha=0.2, lw=0)
+            ax.plot(x[x <= top], G[x <= top], color=colour, label=label)
+            ax.plot(x[x >= top], G[x >= top], "--", color=colour)
+            measured = law.to_coolant[rows] / (tests.mean - tests.coolant)[rows]
+            ax.plot(tests.inputs[rows, across], measured, "o", ms=4, color=colour)
+        ax.set(title=f"coolant {inlet:g} degC", ylim=(0.0, None))
+    if units:
+        axes[0].legend(fontsize=8, frameon=False)
     return paper.save(figure, png)
 
 
