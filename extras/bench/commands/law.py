@@ -66,7 +66,7 @@ def law_files(law: SteadyLaw, predicted: Predicted | None, out: Path) -> list[Pa
     from extras.bench.figure import cooling_law
 
     paths = [out / "law.png"]
-    cooling_law(law, png=paths[0])
+    cooling_law(law, predicted and predicted[0], png=paths[0])
     if predicted is not None:
         tests, p = predicted
         columns = law.tests.columns

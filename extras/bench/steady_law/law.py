@@ -100,11 +100,10 @@ class SteadyLaw:
             square += weight * (np.einsum("np,pq,nq->n", J, f.covariance, J) * G**2 + (np.exp(log_G) - G) ** 2)
         return G, self.factor * np.sqrt(square)
 
-    @property
-    def to_coolant(self) -> Array:
-        """(n,) heat of each test (W), less what goes to ambient by the law."""
-        G0 = conductances(self.best.form, self.best.x, self.tests)[2]
-        return np.asarray(self.tests.heat - G0 * (self.tests.mean - self.tests.ambient))
+    def to_coolant(self, tests: SteadyTests) -> Array:
+        """(n,) heat of tests (W), less what goes to ambient by the law."""
+        G0 = conductances(self.best.form, self.best.x, tests)[2]
+        return np.asarray(tests.heat - G0 * (tests.mean - tests.ambient))
 
     @cached_property
     def numbers(self) -> dict[Label, dict[str, Any]]:
@@ -120,7 +119,7 @@ class SteadyLaw:
         kind, term, power = (*label, 0, 0)[:3]
         of = f" of G{int(term) + 1}" if len(form.terms) > 1 and (kind != "v" or form.fluid > 1) else ""
         i, how = form.limit or (0, "")
-        viscosity = "exponent of 1 / viscosity" if columns.fluid else f"ln of a factor per {STEP_K:g} K of coolant"
+        viscosity = "exponent of 1 / viscosity" if columns.fluid else f"factor per {STEP_K:g} K of coolant"
         name, unit = {
             "G": (f"G{of[-1:]}{self._at(int(term))}", "W/K"),
             "a": (f"exponent of {columns.inputs[int(power)][0]}{of}", "1"),
@@ -134,7 +133,7 @@ class SteadyLaw:
             if kind == "at":
                 return edge(form, v, self.tests)[0] * float(self.tests.scales.highest[i])
             log = v + (self.tests.scales.log_G if unit == "W/K" else 0.0)
-            return float(np.exp(log)) if kind in ("G", "m", "G0") else v
+            return v if kind == "a" or (kind == "v" and columns.fluid) else float(np.exp(log))
 
         return {"name": name, "value": value(v), "low": value(v - h), "high": value(v + h), "unit": unit}
 
@@ -149,8 +148,8 @@ class SteadyLaw:
         """As one writes it down."""
         form, scales, inputs = self.best.form, self.tests.scales, self.tests.columns.inputs
         value = {label: n["value"] for label, n in self.numbers.items()}
-        warmer = f"e^((T_in - {scales.inlet:.3g})/{STEP_K:g})"
-        thinner = f"(nu({scales.inlet:.3g} degC)/nu)" if self.tests.columns.fluid else warmer
+        warmer = f"{{:.4g}}^((T_in - {scales.inlet:.3g})/{STEP_K:g})"
+        fluid = f"(nu({scales.inlet:.3g} degC)/nu)^{{:.3g}}" if self.tests.columns.fluid else warmer
         parts = []
         for t, term in enumerate(form.terms):
             text = f"{value['G', t]:.4g}"
@@ -160,10 +159,9 @@ class SteadyLaw:
                     base = f"min({base}, {value['at',]:.4g})"
                 elif form.limit == (i, "from"):
                     base = f"max({base} - {value['at',]:.4g}, 0)"
-                text += f" ({base}/{scales.highest[i]:g})" + (
-                    f"^{value['a', t, i]:.3g}" if ("a", t, i) in value else ""
-                )
-            parts.append(text + (f" {thinner}^{value['v', min(t, form.fluid - 1)]:.3g}" if form.fluid else ""))
+                power = f"^{value['a', t, i]:.3g}" if ("a", t, i) in value else ""
+                text += f" ({base}/{scales.highest[i]:g}){power}"
+            parts.append(" ".join([text, *([fluid.format(value["v", min(t, form.fluid - 1)])] if form.fluid else [])]))
         m = value.get(("m",))
         G = " + ".join(parts) if m is None else f"({' + '.join(f'[{p}]^{m:.3g}' for p in parts)})^(1/{m:.3g})"
         ambient = f" + {value['G0',]:.3g} (T - T_ambient)" if form.ambient else ""
@@ -200,7 +198,7 @@ class SteadyLaw:
     def doubts(self) -> list[str]:
         """What cannot be as the table says."""
         tests = self.tests
-        hotter = int((tests.coolant + self.to_coolant / tests.mcp > tests.mean).sum())
+        hotter = int((tests.coolant + self.to_coolant(tests) / tests.mcp > tests.mean).sum())
         words = "a coolant of this flow would leave hotter than the mean reading"
         why = "some of the heat goes elsewhere, or the flow is larger"
         return [f"In {hotter} of {len(tests.heat)} tests {words}: {why}."] if hotter else []

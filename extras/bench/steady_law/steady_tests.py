@@ -16,6 +16,7 @@ FLUIDS: dict[str, Callable[[float], Fluid]] = {"oil": oil, "water": water}
 FLOW_UNITS = {"l/min": L_MIN, "l/s": 60.0 * L_MIN, "m3/h": 1.0 / 3600.0, "m3/s": 1.0}
 FEWEST = 8  # tests
 STEP_K = 10.0  # of a coolant without a name
+LEAST_RISE = 0.05  # of the usual one: a test with less scatters as one with so much
 TINY = 1e-30  # of an input at rest: its logarithm is finite
 
 
@@ -71,7 +72,7 @@ class SteadyTests:
 
     def scatter(self, T: Array) -> Array:
         """(n,) sd of a test about the law, over that at the usual rise: its square grows with the rise."""
-        return np.asarray(np.sqrt(np.maximum(T - self.coolant, 0.0) / self.scales.rise))
+        return np.asarray(np.sqrt(np.maximum((T - self.coolant) / self.scales.rise, LEAST_RISE)))
 
     def only(self, rows: Ints) -> SteadyTests:
         """Some of the tests, on the scales of all of them."""
@@ -128,11 +129,11 @@ def steady_tests(
             raise InputError(f"'{name}' is negative or 0", where, right)
     if scales is None:
         rise = readings.mean(axis=1) - coolant
-        if heat.size < FEWEST or (rise <= 0.0).any():
-            cold = np.flatnonzero(rise <= 0.0)
+        cold = np.flatnonzero((rise <= 0.0) & ((ambient >= coolant) | (rise.mean() <= 0.0)))
+        if heat.size < FEWEST or cold.size:
             words = f"row {cold[0] + 1} is colder than its coolant" if cold.size else f"has {heat.size} tests"
             raise InputError(words, where, f"{FEWEST} steady tests or more, each warmer than its coolant")
-        log_G = float(np.log(np.median(heat / rise)))
+        log_G = float(np.log(heat.mean() / rise.mean()))
         scales = Scales(inputs.min(axis=0), inputs.max(axis=0), log_G, float(rise.mean()), float(coolant.mean()))
     thinner, mcp = (coolant - scales.inlet) / STEP_K, np.full(heat.size, np.inf)
     if columns.fluid:
