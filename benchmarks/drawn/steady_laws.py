@@ -1,6 +1,6 @@
 """Does `bench law` find the law that a table of steady tests was drawn from, and none where there is none?
 
-    python benchmarks/drawn/steady_laws.py [--tables 100] [--json FILE]
+    python benchmarks/drawn/steady_laws.py [--tables 100] [--few] [--json FILE]
 
 Six layers at two ends are nodes of a network: each is heated, washed by a share of the film, tied to its neighbours.
 The film is drawn: flow^0.5 and speed^1.2; the same with flow that counts only up to a value, beyond which the space is
@@ -22,7 +22,9 @@ from extras.bench.steady_law.law import SteadyLaw, find_law
 from extras.bench.steady_law.steady_tests import Columns, SteadyTests, steady_tests
 
 KINDS = ("powers", "flooding", "scatter", "constant")
-FLOWS, SPEEDS, INLETS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 2500.0, 5000.0, 7500.0, 10000.0, 12500.0), (40.0, 75.0)
+Plan = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]  # flows (l/min), speeds (rpm), inlets (degC)
+MANY: Plan = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 2500.0, 5000.0, 7500.0, 10000.0, 12500.0), (40.0, 75.0)
+FEW: Plan = (1.0, 2.0, 3.0, 4.0, 6.0), (0.0, 4000.0, 8000.0, 12000.0), (40.0,)
 EXPONENTS = (0.5, 1.2)  # of flow and speed
 LAYERS, AMBIENT_C, READ_K, SET = 6, 25.0, 0.1, 0.01
 COLUMNS = Columns("loss", "oil", (("flow", "l/min"), ("speed", "rpm")), "T_*", AMBIENT_C)
@@ -42,10 +44,10 @@ def film(rng: np.random.Generator, kind: str, inputs: np.ndarray, oil: np.ndarra
     return (jet * flow ** EXPONENTS[0] + thrown * speed ** EXPONENTS[1]) * thin, limit
 
 
-def table(seed: int, kind: str) -> tuple[SteadyTests, float]:
+def table(seed: int, kind: str, levels: Plan = MANY) -> tuple[SteadyTests, float]:
     """All tests of a machine, the left-out ones too, and its limit of flow."""
     rng = np.random.default_rng(seed)
-    plan = np.array(list(product(FLOWS, SPEEDS, INLETS)))
+    plan = np.array(list(product(*levels)))
     true = plan * (1.0 + SET * rng.standard_normal(plan.shape))
     G, limit = film(rng, kind, true[:, :2], true[:, 2])
     G0 = rng.uniform(0.0, 8.0)
@@ -66,10 +68,10 @@ def table(seed: int, kind: str) -> tuple[SteadyTests, float]:
     return steady_tests(COLUMNS, NAMES, plan[:, :2], heat, true[:, 2], ambient, np.round(read, 1)), limit
 
 
-def judged(seed: int, kind: str) -> dict[str, Any]:
+def judged(seed: int, kind: str, levels: Plan = MANY) -> dict[str, Any]:
     """What was found of a table, and how it predicts the tests with the highest flow or speed."""
-    tests, limit = table(seed, kind)
-    highest = (tests.inputs >= [FLOWS[-1], SPEEDS[-1]]).any(axis=1)
+    tests, limit = table(seed, kind, levels)
+    highest = (tests.inputs >= [levels[0][-1], levels[1][-1]]).any(axis=1)
     law, rest = find_law(tests.only(np.flatnonzero(~highest))), tests.only(np.flatnonzero(highest))
     return {"seed": seed, "sentence": law.sentence, **law.predict(rest).agreement(rest), **outcome(law, kind, limit)}
 
@@ -92,13 +94,14 @@ def outcome(law: SteadyLaw, kind: str, limit: float) -> dict[str, Any]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tables", type=int, default=100, help="drawn of each kind")
+    parser.add_argument("--few", action="store_true", help="12 tests at one inlet, not 50 at two")
     parser.add_argument("--json", type=Path, help="where every outcome goes")
     options = parser.parse_args()
     columns = "drawn | tables | right | beyond: rms (K) | largest (K) | in the 95 % band"
     print(f"| {columns} |\n|{'---|' * (columns.count('|') + 1)}")
     every: dict[str, list[dict[str, Any]]] = {}
     for kind in KINDS:
-        rows = every[kind] = [judged(seed, kind) for seed in range(options.tables)]
+        rows = every[kind] = [judged(seed, kind, FEW if options.few else MANY) for seed in range(options.tables)]
         rms = [r["rms_K"] for r in rows]
         inside = 100.0 * np.mean([r["inside"] for r in rows])
         right = sum(r["right"] for r in rows)
