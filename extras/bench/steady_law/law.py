@@ -173,7 +173,7 @@ class SteadyLaw:
         form, inputs = self.best.form, self.tests.columns.inputs
         value = {label: n["value"] for label, n in self.numbers.items()}
         if self.verdict == "no law":
-            scatter = f"about {value['G', 0]:.3g} W/K, from which tests scatter by {self.best.sigma_K:.2g} K"
+            scatter = f"about {np.exp(self.tests.scales.log_G):.3g} W/K, from which tests scatter by {self.best.sigma_K:.2g} K"
             return f"No law: the readings do not say that the cooling follows {' or '.join(self.follows)}: {scatter}."
         words = []
         for t, term in enumerate(form.terms):
