@@ -131,7 +131,7 @@ from lumped.transfer.laws import (
     TemperatureLaw as TemperatureLaw,
     WithTemperature as WithTemperature,
 )
-from lumped.transfer.properties import air as air
+from lumped.transfer.properties import Fluid as Fluid, air as air, oil as oil, water as water
 from lumped.transfer.ranges import RangeWarning as RangeWarning, within_silence as within_silence
 from lumped.transfer.reversal import Direction as Direction, OneWay as OneWay
 from lumped.transfer.streamed import Streamed as Streamed

@@ -45,6 +45,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/effects/losses/copper_feedback.py": "sources by their own name, loss:NAME",
     "validation/effects/streams/fan_stop.py": "places of this effect, FLOW:TEST:50",
     "extras/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
+    "extras/bench/commands/law.py": "COLUMN=UNIT of an option",
     "extras/bench/reduction/pm_network.py": "nodes that this file names itself",
     "extras/bench/reduction/transfer.py": "parameters of losses, as the networks of machines name them",
     "viz/figures/sankey.py": "streams that a machine's network names itself, fan:CELL",
