@@ -118,6 +118,7 @@ def odds_over_time(events: Sequence[Row], *, png: str | Path | None = None) -> F
         ax.set_xlim(0.0, end)
     lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
     lower.legend(fontsize=8, frameon=False, loc="center left")
+    return paper.save(figure, png)
 
 
 @paper.styled
