@@ -110,7 +110,7 @@ def run(kind: str, seed: int, method: str) -> dict:
 def table(rows: Sequence[dict]) -> str:
     """What is published."""
     out = [
-        "| method | plants | names | right | median minutes to a name | of right ones | limits crossed | CPU (s) |",
+        "| method | plants | answers | right | median time (min) | of right ones (min) | limits crossed | CPU (s) |",
         "|---|---|---|---|---|---|---|---|",
     ]
     words = {"steered": "steers itself", "fixed": "fixed plan of three hours", "random": "random set points"}
