@@ -19,7 +19,7 @@ SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
 DULL, LOOKS = 0.005, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
 LEAST_SHARE = 0.1  # of the time so far, that a set point lasts: what minutes did not tell, minutes will not
-KEPT = 0.5  # of what a set point promised, below which it counts so much less the next time
+CREDIT = 0.5  # of what a set point promised, below which it counts so much less the next time
 GAIN = 0.05  # of what was not known, that the readings have to take off while patience lasts
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
@@ -176,11 +176,11 @@ class Steering:
         running = waits or time < self.due
         if running and self._stays_below(assessment):
             return Thought(time, assessment, left_min=self._left(assessment, None))
-        if self.promise and self.promise[1] - assessment.entropy < KEPT * self.promise[2]:
+        if self.promise and self.promise[1] - assessment.entropy < CREDIT * self.promise[2]:
             self.broken[self.promise[0]] = self.broken.get(self.promise[0], 0) + 1
         options = self.policy(assessment, self.bench, self.now)
         options = [c for c in options if c.minutes >= LEAST_SHARE * elapsed] or options
-        options = sorted(options, key=lambda c: -c.rate * KEPT ** self.broken.get(str(c.set_point), 0))
+        options = sorted(options, key=lambda c: -c.rate * CREDIT ** self.broken.get(str(c.set_point), 0))
         choice = options[0] if options else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
         self.promise = str(choice.set_point), assessment.entropy, choice.nats
         left = self._left(assessment, max((c.rate for c in options), default=0.0))

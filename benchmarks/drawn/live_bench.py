@@ -1,6 +1,6 @@
 """How soon does a bench that steers itself know, beside a fixed plan of three hours and random set points?
 
-    python benchmarks/live_bench.py --plants 60 --out out/live-bench.jsonl --page docs/how-to/live-bench.md
+    python benchmarks/drawn/live_bench.py --plants 60 --out out/live-bench.jsonl --page docs/how-to/live-bench.md
 
 Drawn plants of `simulated.bench` in simulated time. Every run is a line of OUT; started again, it goes on from there.
 """
@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from extras.bench.live.assessment import Assessment  # noqa: E402
