@@ -98,6 +98,7 @@ from lumped.numerics.terms import (
 )
 from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS as KEY_UNITS
 from lumped.schemas.reader import Table as TomlTable, suggestion as suggestion
+from lumped.sources.layer_loss import LayerLoss as LayerLoss
 from lumped.sources.loss_map import MapLoss as MapLoss
 from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
 from lumped.sources.loss_laws import (
@@ -107,6 +108,7 @@ from lumped.sources.loss_laws import (
     EddyLoss as EddyLoss,
     IronLoss as IronLoss,
     PowerLoss as PowerLoss,
+    declared_name as declared_name,
 )
 from lumped.transfer.laws import (
     CLOCK as CLOCK,

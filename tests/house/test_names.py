@@ -43,7 +43,6 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/effects/conduction/contact.py": "links by their own name, contact:A|B",
     "validation/effects/streams/air_leak.py": "links by their own name, stream:NAME",
     "validation/effects/losses/copper_feedback.py": "sources by their own name, loss:NAME",
-    "validation/effects/losses/factor.py": "sources by their own name, loss:NAME",
     "validation/effects/streams/fan_stop.py": "places of this effect, FLOW:TEST:50",
     "extras/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
     "extras/bench/commands/law.py": "COLUMN=UNIT of an option",
