@@ -49,7 +49,7 @@ class Session:
         with ThreadPoolExecutor(1) as pool:
             try:
                 return self._run(pool)
-            except (InputError, OSError, KeyboardInterrupt) as fault:
+            except BaseException as fault:  # whatever it is, the bench comes first
                 self._safe()
                 self.steering.store.note({"event": "fault", "time_s": self.steering.time, "what": str(fault)})
                 if isinstance(fault, OSError):

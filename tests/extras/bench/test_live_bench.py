@@ -180,6 +180,18 @@ def test_a_plant_that_stops_answering(case, steering):
     assert source.sent
 
 
+def test_whatever_breaks_leaves_the_bench_safe(case, steering, monkeypatch):
+    source = Scripted([json.dumps({**ROW, "time_s": 5.0 * i}) for i in range(1, 30)])
+
+    def broken(path):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(steering, "think", broken)
+    with pytest.raises(ZeroDivisionError):
+        Session(steering, source, case, True, lambda line: None, False).run()
+    assert json.loads(source.sent[-1]) == {"set": {"current_A": 0.0, "speed_rpm": 0.0}}
+
+
 def test_set_points_change_no_faster_than_they_may(steering):
     steering.row(ROW)
     steering._set(HOT, 3.0)
