@@ -49,11 +49,12 @@ SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANN
         "mean",
     )
 )
-INSTRUMENT, MACHINE, SPARE, RUNS = (
-    _words(VOCABULARY["words"][name]) for name in ("instrument", "machine", "spare", "runs")
+INSTRUMENT, MACHINE, SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (
+    _words(VOCABULARY["words"][name])
+    for name in ("instrument", "machine", "spare", "runs", "supply", "goes_in", "comes_out")
 )
 PHRASES = {
-    re.compile(rf"(?<![^\W\d_])(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
+    re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
     for phrase in phrases.split(",")
 }
@@ -72,7 +73,7 @@ def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
     out: list[str] = []
     for phrase, meaning in PHRASES.items():
-        name = phrase.sub(meaning, name)
+        name = phrase.sub(f" {meaning} ", name)
     for word in WORD.findall(name):
         low = word.lower()
         if len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss"):
@@ -130,6 +131,8 @@ def roles_of(name: str) -> list[Role]:
         ]
         if at:
             hits[role] = min(at)
+    if [*hits] == [Role.IRON] and OUTER & {*words} and {*"uvw"} & {*words}:  # Stator U1
+        return [Role.WINDING]
     if not hits and OUTSIDE.search(name):
         return [Role.AMBIENT]
     return sorted(hits, key=lambda role: hits[role])

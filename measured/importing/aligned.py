@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.errors import InputError
+from measured.headers.words import RUNS, tokens
 from measured.importing.clock import Clock
 from measured.importing.guess import Guess
-from measured.importing.source import Source
+from measured.importing.source import Source, signature
 from measured.recordings.alignment import column_onset
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
@@ -46,6 +47,10 @@ def shift(first: Recording, other: Recording) -> tuple[float, str]:
         shift_s = other.clock.start - first.clock.start
         _overlapping(first, other, shift_s)
         return shift_s, "both clocks show dates"
+    near, shift_s = 2 * max(first.step_s, other.step_s), other.clock.at_s - first.clock.at_s
+    runs = any(RUNS & {*tokens(name)} for name in signature(first.source) & signature(other.source))
+    if abs(shift_s) <= near and (runs or first.clock.at_s > 10 * near):  # of one board, or of rows that tell the runs
+        return shift_s, "both clocks count alike"
     (a, by), (b, of) = onset(first), onset(other)
     shift_s = a - b
     _overlapping(first, other, shift_s)
