@@ -31,28 +31,11 @@ def plain(word: str) -> str:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, SPREAD, MEAN = (
-    _words(VOCABULARY["words"][name])
-    for name in (
-        "setpoint",
-        "read",
-        "modelled",
-        "inlet",
-        "nothing",
-        "difference",
-        "clock",
-        "loss",
-        "outer",
-        "channels",
-        "extreme",
-        "spread",
-        "mean",
-    )
-)
-INSTRUMENT, MACHINE, SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (
-    _words(VOCABULARY["words"][name])
-    for name in ("instrument", "machine", "spare", "runs", "supply", "goes_in", "comes_out")
-)
+WORDS = {name: _words(text) for name, text in VOCABULARY["words"].items()}
+SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet", "nothing"))
+DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
+EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
+SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()

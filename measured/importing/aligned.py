@@ -11,8 +11,10 @@ from geom.errors import InputError
 from measured.headers.words import RUNS, tokens
 from measured.importing.clock import Clock
 from measured.importing.guess import Guess
+from measured.importing.long_table import HOLD
 from measured.importing.source import Source, signature
 from measured.recordings.alignment import column_onset
+from measured.recordings.sheet import MAX_GAP_S
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
 LEAST = 0.5  # of a recording, that has to be left where a column has gaps
@@ -39,6 +41,12 @@ class Recording:
     @property
     def step_s(self) -> float:
         return float(np.nanmedian(np.diff(self.clock.seconds)))
+
+    @property
+    def gap_s(self) -> float:
+        """The longest step between rows that is no gap: any, of a log of what changes."""
+        logs = any(HOLD in note for note in self.source.notes)
+        return max(MAX_GAP_S, float(np.nanmax(np.diff(self.clock.seconds)))) if logs else MAX_GAP_S
 
 
 def shift(first: Recording, other: Recording) -> tuple[float, str]:
@@ -92,6 +100,7 @@ def longest_part(
     for column in ("", *columns):
         at = t[rows & np.isfinite(first.source.numbers(column))] if column else t[rows]
         usual = float(np.median(np.diff(at))) if at.size > 1 else 0.0
+        at = np.concatenate([t[rows][:1], at, t[rows][-1:]])  # it may begin late
         gaps += [
             (float(at[k]), float(at[k + 1]), column) for k in np.flatnonzero(np.diff(at) > max(limit_s, 2 * usual))
         ]

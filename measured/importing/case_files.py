@@ -26,7 +26,6 @@ from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, toke
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
-from measured.importing.long_table import HOLD
 from measured.importing.source import Source, over_room, read_source, read_sources, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
@@ -208,9 +207,8 @@ def _sheet(draft: Draft, names: Mapping[str, str]) -> Iterator[str]:
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:
             yield f"{name} = {value:g}"
-    gap_s = float(np.nanmax(np.diff(first.clock.seconds)))
-    if gap_s > MAX_GAP_S and any(HOLD in note for note in first.source.notes):
-        yield f"max_gap_s = {gap_s:g}   # rows are written where something changes"
+    if first.gap_s > MAX_GAP_S:
+        yield f"max_gap_s = {first.gap_s:g}   # rows are written where something changes"
     yield from _constants("inputs", draft.constants)
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:

@@ -77,7 +77,6 @@ THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
-OF_WHOLE = "names no part: the winding?"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
@@ -335,7 +334,7 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
         return base.without("no place of the model fits its name")
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
-    whole = OF_WHOLE if is_whole(label) else ""
+    whole = "names no part: the winding?" if is_whole(label) else ""
     room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)

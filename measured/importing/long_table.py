@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.roles import Role
-from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit
+from measured.headers.cells import EMPTY, is_date, is_reading, is_unit, number, split_unit
 from measured.headers.layout import MISSING
 from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
@@ -69,12 +69,15 @@ def side_by_side(
         instants = _in_order(dict.fromkeys(clocks), series.values())
         notes.append(f"{Path(where).name}: {what}; all but temperatures of parts {HOLD} of their signal")
         for signal, readings in series.items():
-            roles = roles_of(signal)
-            if roles[:1] not in BOUNDARIES and (roles or "temperature" in quantities_of(signal)):
+            roles, quantities = roles_of(signal), quantities_of(signal)
+            if roles[:1] not in BOUNDARIES and ("temperature" in quantities or (roles and not quantities)):
                 continue
             last = None
             for instant in instants:
-                last = readings.setdefault(instant, last)
+                reading = readings.get(instant)  # a word in its place is none
+                readings[instant] = last = (
+                    reading if is_reading(reading) and _text(reading).lower() not in EMPTY else last
+                )
     common = {names[j]: [instant[i] for instant in instants] for i, j in enumerate(times)}
     return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
 

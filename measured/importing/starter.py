@@ -124,8 +124,7 @@ def _follows(term: FirstTerm) -> list[str]:
 
 
 def of_machine(columns: Columns) -> Columns:
-    """Without other devices beside a machine, and with the coldest column as the room where it hardly warms and nothing
-    else is the room."""
+    """Without other devices, and with the coldest column as the room where it hardly warms and no other is the room."""
     named = [(s, g, place_of(g, s.labels[g.column])) for s, g in columns]
     parts = [(s, g) for s, g, place in named if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
@@ -135,7 +134,7 @@ def of_machine(columns: Columns) -> Columns:
     source, room = min(parts, key=lambda one: float(np.nanmean(in_memory(*one))))
     if roles_of(source.labels[room.column]) or rise(source, room) > STILL * max(rise(*one) for one in parts):
         return columns
-    return [(s, replace(g, place="ambient") if g is room else g) for s, g in columns]
+    return [(s, replace(g, place="ambient") if g.column == room.column else g) for s, g in columns]
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:

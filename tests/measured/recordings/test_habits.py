@@ -120,11 +120,19 @@ def test_a_long_table_by_day_and_month_has_its_units_and_a_remark_at_its_end(tmp
 def test_logs_of_what_changes_have_no_gaps(tmp_path):
     """Ten minutes without a row: nothing changed."""
     lines = ["time,tag,value", *(f"2024-04-02 18:{m:02d}:00,T_winding,{20 + m}" for m in (0, 2, 4, 14, 16, 26, 28, 30))]
-    lines += [f"2024-04-02 18:{m:02d}:30,I_motor,{m}" for m in (0, 15, 29)]
+    lines += [
+        f"2024-04-02 18:{m:02d}:30,I_stator,{value}" for m, value in ((0, 0), (15, 9), (17, "I/O Timeout"), (29, 2))
+    ]
     (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
     document = written(tmp_path, tmp_path / "a.csv")
     assert document["tests"][0]["duration_s"] == pytest.approx(1800.0)
     assert "max_gap_s = 600" in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_a_test_begins_where_its_inputs_do(tmp_path):
+    late = ["" if t < 300 else f"{i:.1f}" for t, i in zip(T, WARM["I"])]
+    (test,) = written(tmp_path, file(tmp_path, "t [s],winding [°C],room [°C],I [A]", "t", "W", "A", late))["tests"]
+    assert test["duration_s"] == pytest.approx(5 * (N - 1) - 300)
 
 
 def test_runs_of_two_recorders_are_told_by_their_column(tmp_path):

@@ -25,12 +25,10 @@ from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
-from measured.importing.long_table import HOLD
 from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, of_machine, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.invalid_readings import coded
-from measured.recordings.sheet import MAX_GAP_S
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
@@ -218,7 +216,7 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
     for column in wishes.places or {}:
         if column not in columns:
             raise InputError(f"no column '{column}'", "--place", suggestion(column, sorted(columns)))
-    records, unused = [], list[tuple[Source, InputError]]()
+    records, unused, kinds = [], list[str](), [signature(source) for source, _ in read]
     for source, clock in read:
         guessed_columns = guesses(source, clock.columns, model.target)
         for column, place in (wishes.places or {}).items():
@@ -226,12 +224,11 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
         try:
             records.append(Recording(source, clock, dialogue.answered(source, guessed_columns)))
         except InputError as fault:  # a recorder of something else, beside others
-            unused.append((source, fault))
-    if faults := [f for s, f in unused if signature(s) in [signature(r.source) for r in records] or not records]:
-        raise faults[0]
+            if kinds.count(signature(source)) > 1 or (not records and source is read[-1][0]):
+                raise
+            unused.append(f"{source.file.name} is left out: {fault.what}")
     first, *others = drafts_of(records, dialogue, wishes.window_s)
-    notes = (f"{s.file.name} is left out: {f.what}" for s, f in unused)
-    return [replace(first, notes=(*first.notes, *notes)), *others]
+    return [replace(first, notes=(*first.notes, *unused)), *others]
 
 
 def drafts_of(
@@ -242,8 +239,7 @@ def drafts_of(
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
         needed = [g.column for g in first.guesses if g.feeds or g.place in dialogue.target.boundaries]
-        limit_s = np.inf if any(HOLD in note for note in first.source.notes) else MAX_GAP_S
-        whole, cut = longest_part(first, limit_s, needed) if window_s == (0.0, None) else (window_s, ())
+        whole, cut = longest_part(first, first.gap_s, needed) if window_s == (0.0, None) else (window_s, ())
         part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]
