@@ -128,8 +128,8 @@ def with_loss(source: Source) -> Source:
     """With what goes in less what comes out as a loss, and a note, where no loss and no current was recorded."""
     units, words = source.units, {c: {*tokens(label)} for c, label in source.labels.items() if source.is_numeric(c)}
     ends = [c for side in (GOES_IN, COMES_OUT) for c in words if unit_of(units[c]) in ("W", "kW") and words[c] & side]
-    known = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
-    if known or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
+    heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
+    if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
         return source
     name = "loss {} - {}".format(*ends)
     note = f"{source.file.name}: '{name}' is of all between them; what each part loses is not recorded"

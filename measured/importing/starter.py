@@ -125,11 +125,11 @@ def _follows(term: FirstTerm) -> list[str]:
 
 def of_machine(columns: Columns) -> Columns:
     """Without other devices, and with the coldest column as the room where it hardly warms and no other is the room."""
-    named = [(s, g, place_of(g, s.labels[g.column])) for s, g in columns]
-    parts = [(s, g) for s, g, place in named if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
+    every = [(s, g, place_of(g, s.labels[g.column])) for s, g in columns]
+    parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
-    if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in named):
+    if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
         return columns
     source, room = min(parts, key=lambda one: float(np.nanmean(in_memory(*one))))
     if roles_of(source.labels[room.column]) or rise(source, room) > STILL * max(rise(*one) for one in parts):
@@ -180,6 +180,8 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
             if any(doubt in g.doubt for doubt in LOST):
                 key = g.doubt if g.doubt == OF_INSTRUMENT else g.column
                 out.setdefault(key, f"'{g.column}' is left out: {g.doubt}")
+        if others := [g for _, g in hot_left if g.doubt.endswith("gives coolant already")]:
+            out.setdefault("outlet", f"'{others[0].column}' stays in the file as a check, and feeds nothing")
         rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
         if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
             how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"

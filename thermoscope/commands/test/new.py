@@ -190,14 +190,14 @@ def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str,
         for source, clock in read
         for g in guesses(source, clock.columns, Target())
     ]
-    first = starter(used := of_machine(columns), test_name(read[0][0].file, []), read[0][1].end_s)
+    first = starter(machine := of_machine(columns), test_name(read[0][0].file, []), read[0][1].end_s)
     network = read_network(tomllib.loads(first.text()), "network.toml")
 
     def put(folder: Path) -> str:
         write_whole(folder / "network.toml", first.text())
         return 'network = "network.toml"'
 
-    places = {s.labels[g.column]: place for s, g in used if (place := place_of(g, s.labels[g.column]))}
+    places = {s.labels[g.column]: place for s, g in machine if (place := place_of(g, s.labels[g.column]))}
     return Model(network, replace(target_of(network), places_by_header=places), put, first)
 
 

@@ -129,6 +129,12 @@ def test_logs_of_what_changes_have_no_gaps(tmp_path):
     assert "max_gap_s = 600" in (tmp_path / "made/tests/a.toml").read_text()
 
 
+def test_an_outlet_beside_an_inlet_is_a_check_and_the_first_line_says_so(tmp_path):
+    header = "t [s],winding [°C],T_cool_in [°C],T_cool_out [°C],room [°C],I [A]"
+    document = written(tmp_path, file(tmp_path, header, "t", "W", "A", "H", "A", "I"))
+    assert document["warnings"] == ["'T_cool_out [°C]' stays in the file as a check, and feeds nothing"]
+
+
 def test_a_test_begins_where_its_inputs_do(tmp_path):
     late = ["" if t < 300 else f"{i:.1f}" for t, i in zip(T, WARM["I"])]
     (test,) = written(tmp_path, file(tmp_path, "t [s],winding [°C],room [°C],I [A]", "t", "W", "A", late))["tests"]
