@@ -69,7 +69,7 @@ TAKEN = {
 # Below, and in tests/geom, tests/extras/rating, tests/thermoscope/commands (build, optimise).
 MACHINE_COMMANDS = {"build", "import", "crosscheck", "screen", "machines", "optimise", "compare-designs"}
 # Of recordings that are not shipped, of what went before; tests/fleet, tests/thermoscope/commands (plan).
-NO_FILE = {"new", "quantities", "protocol", "answer", "remove", "undo", "serve", "plan", "fleet", "watch"}
+NO_FILE = {"new", "quantities", "protocol", "law", "answer", "remove", "undo", "serve", "plan", "fleet", "watch"}
 
 
 # What a case has not: one message, which says so.

@@ -173,8 +173,9 @@ class SteadyLaw:
         form, inputs = self.best.form, self.tests.columns.inputs
         value = {label: n["value"] for label, n in self.numbers.items()}
         if self.verdict == "no law":
-            scatter = f"about {np.exp(self.tests.scales.log_G):.3g} W/K, from which tests scatter by {self.best.sigma_K:.2g} K"
-            return f"No law: the readings do not say that the cooling follows {' or '.join(self.follows)}: {scatter}."
+            usual, sigma = np.exp(self.tests.scales.log_G), self.best.sigma_K
+            unclear = f"No law: the readings do not say that the cooling follows {' or '.join(self.follows)}"
+            return f"{unclear}: about {usual:.3g} W/K, from which tests scatter by {sigma:.2g} K."
         words = []
         for t, term in enumerate(form.terms):
             words.append(f"{value['G', t]:.3g} W/K{self._at(t)}")
