@@ -28,7 +28,7 @@ from validation.effects.time_window import Event, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, timed_event
 from validation.inference.evidence import Evidence, Progress
-from validation.inference.hypotheses import NOTHING, condition_prior, law_prior
+from validation.inference.hypotheses import NOTHING, condition_prior, law_prior, repeats_price, stands_apart
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, fit_score
 from validation.inference.stretches import ALIKE, Interval, distinct, hat_scores, stretches, worth
@@ -216,7 +216,9 @@ def explanations(
     far, price = end_reach(scan), 0.5 / (len(bases) * len(evidence.tests))
     rows = tangent_worth(evidence, bases, s.event.name, 1.0, values)
     like = max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]  # type: ignore[attr-defined]
-    occurrence = timed_event(evidence, like, predicted_repeats(evidence, like, s.event, values), far, values)
+    timed = timed_event(evidence, like, s.event, far, values)
+    few = predicted_repeats(evidence, like, timed.event, values)
+    occurrence = timed if few == timed.event else timed_event(evidence, like, few, far, values)
     every = best(timed_worth(evidence, bases, occurrence, price, values), EACH)
     few = every[: FEW if len(occurrence.event.every) <= SPANS else 0]
     out = []
@@ -237,7 +239,9 @@ def timed_worth(
     evidence: Evidence, bases: Sequence[Effect], occurrence: TimedEvent, price: float, values: Values
 ) -> list[Promising]:
     """All that an event may have been.  price : share of what and in which test"""
-    share = price * float(np.exp(max(occurrence.log_share, -600.0)))  # a share of zero has no logarithm
+    apart = stands_apart(evidence.tests, occurrence.event)  # then its repeats are paid for in the evidence
+    log_share = occurrence.log_share + (0.0 if apart else occurrence.repeats)
+    share = price * float(np.exp(max(log_share, -600.0)))  # a share of zero has no logarithm
     return tangent_worth(evidence, bases, occurrence.event.name, share, values)
 
 
@@ -254,6 +258,8 @@ def tangent_worth(
     parts = effect_columns(fit, evidence.tests, effects, values)
     scores = fit_score(fit, parts, np.array([q.sign for q in parameters], int))
     bayes = scores.log_bayes(np.array([q.prior_sd for q in parameters]))
+    if occurrence := event(condition):
+        bayes -= repeats_price(evidence.tests, occurrence)
     return [
         Promising(e, prior, float(b) + prior - NOTHING.log_prior)
         for e, b, visible in zip(effects, bayes, scores.visible, strict=True)

@@ -13,20 +13,25 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
+from scipy.stats import rankdata
 
 from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from measured.doubt import PRIOR, RARE, SHARPNESS, temper
 from validation.effects.base import Effect
 from validation.effects.registry import extended
+from validation.effects.time_window import Event, share
 from validation.inference.columns import Linearised
 
 if TYPE_CHECKING:
+    from measured.case import Test
     from validation.calibration.calibrate import Fit
 
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
+RARE_TIME = 0.1  # of its tests that an event lasts at most: what is there for longer is how the machine is
+FOLLOWS = 3.0  # standard deviations of where an input stands by chance, beyond which an event follows it
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 
@@ -243,3 +248,29 @@ def stretch_count(n: int, usual: float | None) -> float:
     """How many stretches there are among n instants; repeats of one that is as long as `usual` (in instants) last about
     as long, and begin anywhere."""
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
+
+
+def repeat_price(test: Test, usual_s: float) -> float:
+    """What it costs (nats) to say when in a test a repeat was that lasts about so long (s)."""
+    return float(np.log(stretch_count(test.time.size, usual_s / float(np.median(np.diff(test.time))))))
+
+
+def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
+    """What it costs (nats) to say when every stretch of an event but one was; 0 where it does not stand apart.
+
+    It is a part of the evidence, as what the size of an effect costs: what repeats explain is tempered, and so is this.
+    """
+    every = [t for t in tests for _ in occurrence.spans.get(t.name, ())]
+    usual = float(np.mean([b - a for a, b in occurrence.every]))
+    return sum(repeat_price(t, usual) for t in every[1:]) if stands_apart(tests, occurrence) else 0.0
+
+
+def stands_apart(tests: Sequence[Test], occurrence: Event) -> bool:
+    """Is an event rare, and at no level of an input but by chance?  Else what repeats is a law of the machine."""
+    levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
+    for t in here:
+        for name, u in t.inputs.items():
+            rank = rankdata(u) / u.size
+            levels.setdefault(name, []).extend(rank[share(t.time, [s]) > 0].mean() for s in occurrence.spans[t.name])
+    rare = sum(b - a for a, b in occurrence.every) < RARE_TIME * sum(float(np.ptp(t.time)) for t in here)
+    return rare and all(abs(np.mean(x) - 0.5) < FOLLOWS / np.sqrt(12.0 * len(x)) for x in levels.values())
