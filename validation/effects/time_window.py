@@ -68,6 +68,14 @@ class Event:
         every = sum(y - x for e in (self, other) for x, y in e.every)
         return both / max(every - both, 1e-12)
 
+    def repeats_at(self, other: Event) -> Event:
+        """Those of its stretches that some of another event's meet."""
+        meets = {
+            t: [(a, b) for a, b in s if any(a < d and c < b for c, d in other.spans.get(t, ()))]
+            for t, s in self.spans.items()
+        }
+        return Event.of({t: pairs for t, pairs in meets.items() if pairs})
+
     def document(self) -> dict:
         spans = [{"test": t, "begin_s": a, "end_s": b} for t, pairs in self.spans.items() for a, b in pairs]
         return {"event": self.name, "words": self.words, "spans": spans}

@@ -31,7 +31,7 @@ Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
 RARE_TIME = 0.1  # of its tests that an event lasts at most: what is there for longer is how the machine is
-FOLLOWS = 3.0  # standard deviations of where an input stands by chance, beyond which an event follows it
+FOLLOWS = 2.5  # deviations from an input's usual level, which eight repeats have by chance once in a hundred events
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 
@@ -270,7 +270,8 @@ def stands_apart(tests: Sequence[Test], occurrence: Event) -> bool:
     levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
     for t in here:
         for name, u in t.inputs.items():
-            rank = rankdata(u) / u.size
-            levels.setdefault(name, []).extend(rank[share(t.time, [s]) > 0].mean() for s in occurrence.spans[t.name])
+            rank = rankdata(u) - 0.5 * (u.size + 1)
+            mean = [rank[share(t.time, [s]) > 0].mean() for s in occurrence.spans[t.name]]
+            levels.setdefault(name, []).extend(np.array(mean) / max(rank.std(), 1e-9))
     rare = sum(b - a for a, b in occurrence.every) < RARE_TIME * sum(float(np.ptp(t.time)) for t in here)
-    return rare and all(abs(np.mean(x) - 0.5) < FOLLOWS / np.sqrt(12.0 * len(x)) for x in levels.values())
+    return rare and all(abs(np.mean(x)) < FOLLOWS / np.sqrt(len(x)) for x in levels.values())
