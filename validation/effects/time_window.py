@@ -70,10 +70,8 @@ class Event:
 
     def repeats_at(self, other: Event) -> Event:
         """Those of its stretches that some of another event's meet."""
-        meets = {
-            t: [(a, b) for a, b in s if any(a < d and c < b for c, d in other.spans.get(t, ()))]
-            for t, s in self.spans.items()
-        }
+        both = {t: self.spans[t] for t in self.spans if t in other.spans}
+        meets = {t: [(a, b) for a, b in s if any(a < d and c < b for c, d in other.spans[t])] for t, s in both.items()}
         return Event.of({t: pairs for t, pairs in meets.items() if pairs})
 
     def document(self) -> dict:

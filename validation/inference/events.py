@@ -43,7 +43,7 @@ from validation.inference.hypotheses import (
     stretch_count,
 )
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
-from validation.noise import Noise, first_noise
+from validation.noise import Noise
 
 Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
@@ -288,9 +288,8 @@ def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) 
     network, now = with_condition(fit.network, effect.condition, event.name), During.of(effect.base, event.name)
     values = {**parameter_values(fit.network, {}), **fit.values}
     values[now.name] = values[effect.name]
-    spans = {t.name: event.spans.get(t.name, ()) for t in evidence.tests}
-    more = {t.name: further_spans(network, t, values, now, fit.noise) or [] for t in evidence.tests}
-    return Event.of({t: [*s, *more[t]] for t, s in spans.items() if s or more[t]})
+    more = {t.name: further_spans(network, t, values, now, fit.noise) for t in evidence.tests}
+    return Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:
@@ -425,14 +424,9 @@ def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Spa
     return with_condition(network, effect.condition, f"{effect.condition}{AND}{here}") if spans else network
 
 
-def further_spans(
-    network: Network, test: Test, values: Values, effect: During, noise: Noise | None = None
-) -> list[Span] | None:
+def further_spans(network: Network, test: Test, values: Values, effect: During, noise: Noise) -> list[Span]:
     """When else an effect held in a test, law and size as they are, one stretch after the other, as long as each gains
-    more than the price of saying when; None where what is found only makes another stretch longer.
-
-    noise : of the readings, by default what it is before any calibration
-    """
+    more than the price of saying when; none where one only makes another longer."""
     assert effect.event is not None
     lengths, step = [end - begin for begin, end in effect.event.every], sample_step(test)
     usual, spans = float(np.median(lengths)), list(effect.event.spans.get(test.name, ()))
@@ -444,12 +438,12 @@ def further_spans(
                 parts = segments(with_spans(network, effect, test, every), [near], values)
             except NoSolution:
                 return float("inf")
-            return 0.5 * sum(float(np.sum((noise or first_noise(parts)).whiten(s, s.r[:, None]) ** 2)) for s in parts)
+            return 0.5 * sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
 
         return of
 
     while True:
-        reach, first = _first_spans(network, test, values, effect, usual, spans, noise)
+        reach, first = _first_spans(network, test, values, effect, noise, usual, spans)
         if not first:
             return spans[found:]
         misfit = misfits(finer_blocks(test, first[0], reach))
@@ -465,7 +459,7 @@ def further_spans(
             return spans[found:]
         gap = LENGTHS * usual
         if any(best[0] < b + gap and a - gap < best[1] for a, b in spans):
-            return None
+            return []
         spans.append(best)
 
 
@@ -476,13 +470,7 @@ def _alike(span: Span, lengths: Sequence[float], slack: float) -> bool:
 
 
 def _first_spans(
-    network: Network,
-    test: Test,
-    values: Values,
-    effect: During,
-    usual: float,
-    others: Sequence[Span],
-    noise: Noise | None,
+    network: Network, test: Test, values: Values, effect: During, noise: Noise, usual: float, others: Sequence[Span]
 ) -> tuple[float, list[Span]]:
     """Stretches that tangents about the others promise most of, and how far (s) their ends may be off."""
     begin, end = float(test.time[0]), float(test.time[-1])
@@ -492,7 +480,7 @@ def _first_spans(
     steps = [During.of(effect.base, Event.of({test.name: [(float(t), end + 1.0)]}).name) for t in knots[:-1]]
     larger = extended(now, steps)
     parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(steps) :])
-    noise, u, V = noise or first_noise(parts), np.zeros(count + 1), np.zeros((count + 1, count + 1))
+    u, V = np.zeros(count + 1), np.zeros((count + 1, count + 1))
     for s in parts:
         X = values[effect.name] * noise.whiten(s, s.J)
         u[:-1] += X.T @ noise.whiten(s, s.r[:, None])[:, 0]

@@ -42,16 +42,7 @@ from validation.effects.base import Effect
 from validation.effects.during import During
 from validation.effects.registry import catalogue, extended
 from validation.inference.columns import Linearised, effect_columns, exchange_columns, finite_change, split_columns
-from validation.inference.hypotheses import (
-    NOTHING,
-    Cause,
-    Hypothesis,
-    Together,
-    Weighed,
-    catalogue_priors,
-    repeats_price,
-    weights,
-)
+from validation.inference.hypotheses import NOTHING, Cause, Hypothesis, Together, Weighed, catalogue_priors, weights
 from validation.inference.score import (
     Gram,
     Score,
@@ -153,8 +144,7 @@ class Evidence:
     @cached_property
     def repeats(self) -> Array:
         """(K,) what it costs (nats) to say when each cause was again."""
-        events = [e.event if isinstance(e, During) else None for e in self.effects]
-        return np.array([repeats_price(self.tests, x) if x else 0.0 for x in events])
+        return np.array([c.repeats(self.tests) for c in self.causes])
 
     @property
     def p(self) -> int:
@@ -435,8 +425,7 @@ def pairs(evidence: Evidence, ones: Sequence[Weighed]) -> list[Weighed]:
     a, b = few[i], few[j]
     every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
     log_prior = np.log(PRIOR["two"].share * prior[a] * prior[b] / every)
-    # what a large amplitude gains beyond its tangent
-    more = np.maximum(alone + e.repeats - e.score.log_bayes(e.scale), 0.0)
+    more = np.maximum(alone + e.repeats - e.score.log_bayes(e.scale), 0.0)  # beyond its tangent, at a large amplitude
     bayes = pair_evidence(e, a, b) + np.maximum(more[a], more[b])
     likely = np.sort(np.argsort(-(log_prior + bayes), kind="stable")[:PAIRS])
     return [Weighed((int(a[n]), int(b[n])), "", float(log_prior[n]), float(bayes[n])) for n in likely]

@@ -19,6 +19,7 @@ from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from measured.doubt import PRIOR, RARE, SHARPNESS, temper
 from validation.effects.base import Effect
+from validation.effects.during import During
 from validation.effects.registry import extended
 from validation.effects.time_window import Event, share
 from validation.inference.columns import Linearised
@@ -87,6 +88,10 @@ class Cause:
 
     def columns(self, run: Linearised) -> Sequence[Array]:
         return run.tangents[self.name]
+
+    def repeats(self, tests: Sequence[Test]) -> float:
+        """What it costs (nats) to say when it was again."""
+        return repeats_price(tests, self.effect.event) if isinstance(self.effect, During) and self.effect.event else 0.0
 
     def extend(self, network: Network) -> Network:
         return extended(network, [self.effect])

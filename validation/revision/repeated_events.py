@@ -16,6 +16,7 @@ from validation.comparison.compare import physical, test_error
 from validation.effects.during import During
 from validation.effects.time_window import Event, share
 from validation.inference.events import further_spans, with_spans
+from validation.noise import START, Noise
 from validation.parameters.unknowns import effects_of, standing
 
 LESS = 0.7  # of the error outside the stretch: what the event must bring it to, to be the explanation
@@ -56,7 +57,8 @@ def _in_test(case: Case, test: Test) -> Iterator[RepeatedEvent]:
     network, now = standing(case), physical(case)
     for effect in effects_of(case):
         if isinstance(effect, During) and effect.name in case.model.values and _can_repeat(effect, test):
-            spans = further_spans(network, test, {**case.model.values, **now}, effect)
+            noise = Noise({c.name: START for c in test.channels})
+            spans = further_spans(network, test, {**case.model.values, **now}, effect, noise)
             if spans:
                 event, inside = Event.of({test.name: spans}), share(test.time, spans) > 0.0
                 rest = tuple(replace(c, y=np.where(inside, np.nan, c.y)) for c in test.channels)
