@@ -289,7 +289,8 @@ def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) 
     values = {**parameter_values(fit.network, {}), **fit.values}
     values[now.name] = values[effect.name]
     more = {t.name: further_spans(network, t, values, now, fit.noise) for t in evidence.tests}
-    return Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
+    larger = Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
+    return larger if stands_apart(evidence.tests, larger) else event
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:

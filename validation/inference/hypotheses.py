@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
-RARE_TIME = 0.1  # of its tests that an event lasts at most: what is there for longer is how the machine is
+RARE_TIME = 0.05  # of its tests that an event lasts at most: a few minutes of an hour; more is how the machine is
 FOLLOWS = 2.5  # deviations from an input's usual level, which eight repeats have by chance once in a hundred events
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
@@ -271,12 +271,16 @@ def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
 
 
 def stands_apart(tests: Sequence[Test], occurrence: Event) -> bool:
-    """Is an event rare, and at no level of an input but by chance?  Else what repeats is a law of the machine."""
+    """Is an event rare, its repeats about as long, and at no level of an input but by chance?  Else what repeats is a
+    law of the machine."""
     levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
+    lengths, slack = [b - a for a, b in occurrence.every], 2.0 * max(float(np.median(np.diff(t.time))) for t in here)
+    alike = (1.0 - LENGTHS) * (max(lengths) - slack) <= (1.0 + LENGTHS) * (min(lengths) + slack)
+    if not alike or sum(lengths) > RARE_TIME * sum(float(np.ptp(t.time)) for t in here):
+        return False
     for t in here:
         for name, u in t.inputs.items():
             rank = rankdata(u) - 0.5 * (u.size + 1)
             mean = [rank[share(t.time, [s]) > 0].mean() for s in occurrence.spans[t.name]]
             levels.setdefault(name, []).extend(np.array(mean) / max(rank.std(), 1e-9))
-    rare = sum(b - a for a, b in occurrence.every) < RARE_TIME * sum(float(np.ptp(t.time)) for t in here)
-    return rare and all(abs(np.mean(x)) < FOLLOWS / np.sqrt(len(x)) for x in levels.values())
+    return all(abs(np.mean(x)) < FOLLOWS / np.sqrt(len(x)) for x in levels.values())

@@ -85,9 +85,9 @@ def test_repeats_stand_apart_where_they_are_rare_and_at_no_level_of_an_input():
     def repeats(first, length, every=1000.0):
         return Event.of({"day": [(first + every * k, first + every * k + length) for k in range(8)]})
 
-    assert stands_apart([test], repeats(250.0, 60.0, 950.0)), "at the load now, and without it then"
-    assert not stands_apart([test], repeats(600.0, 60.0)), "whenever the load is on"
-    assert not stands_apart([test], repeats(100.0, 60.0)), "whenever it is off"
+    assert stands_apart([test], repeats(250.0, 40.0, 950.0)), "at the load now, and without it then"
+    assert not stands_apart([test], repeats(600.0, 40.0)), "whenever the load is on"
+    assert not stands_apart([test], repeats(100.0, 40.0)), "whenever it is off"
     assert not stands_apart([test], repeats(250.0, 300.0, 950.0)), "a third of the day"
 
 
