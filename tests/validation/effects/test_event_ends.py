@@ -72,15 +72,8 @@ def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():
 
 def test_repeats_stand_apart_where_they_are_rare_and_at_no_level_of_an_input():
     time = np.arange(0.0, 8000.0, 10.0)
-    test = Test(
-        "day",
-        "calibrate",
-        time,
-        {"load": (time % 1000.0 >= 500.0).astype(float)},
-        {"ambient": 20.0 + 0.0 * time},
-        (),
-        20.0,
-    )
+    load = (time % 1000.0 >= 500.0).astype(float)
+    test = Test("day", "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
 
     def repeats(first, length, every=1000.0):
         return Event.of({"day": [(first + every * k, first + every * k + length) for k in range(8)]})
@@ -89,15 +82,16 @@ def test_repeats_stand_apart_where_they_are_rare_and_at_no_level_of_an_input():
     assert not stands_apart([test], repeats(600.0, 40.0)), "whenever the load is on"
     assert not stands_apart([test], repeats(100.0, 40.0)), "whenever it is off"
     assert not stands_apart([test], repeats(250.0, 300.0, 950.0)), "a third of the day"
+    assert not stands_apart([test], Event.of({"day": [(300.0, 320.0), (5000.0, 5200.0)]})), "ten times as long"
 
 
 def test_when_repeats_were_is_a_part_of_the_evidence():
-    """Two more stretches of 100 s, 300 samples, 20 s each: anywhere, and as long as half to half as long again."""
-    spans = [(1000.0, 1100.0), (2400.0, 2500.0), (4000.0, 4100.0)]
+    """Two more stretches of 80 s among 300 samples of 20 s: anywhere, and as long as half to half as long again."""
+    spans = [(1000.0, 1080.0), (2400.0, 2480.0), (4000.0, 4080.0)]
     case = bench((("noon", tuple(spans)),), 5.0)
     lids = [effect(f"convection.constant@body in {Event.of({'noon': x}).name}") for x in (spans, spans[:1])]
     e = scored(case, lids, calibrated_case(case))
-    price = 2.0 * np.log(300 * 2.5)
+    price = 2.0 * np.log(300 * 2.0)
     assert repeats_price(case.tests, lids[0].event) == pytest.approx(price)
     free, both = replace(e), (np.array([0]), np.array([1]))
     free.__dict__["repeats"] = np.zeros(2)
@@ -108,7 +102,7 @@ def test_when_repeats_were_is_a_part_of_the_evidence():
 
 @pytest.mark.parametrize("size", [5.0, 40.0])
 def test_what_repeats_beside_a_known_event_is_found_to_the_sample(size):
-    spans = [(1000.0, 1200.0), (2400.0, 2560.0), (4000.0, 4220.0)]
+    spans = [(1000.0, 1100.0), (2400.0, 2480.0), (4000.0, 4100.0)]
     case = bench((("noon", tuple(spans)),), size)
     two = effect(f"convection.constant@body in {Event.of({'noon': spans[:2]}).name}")
     e = scored(case, [two], calibrated_case(case))
