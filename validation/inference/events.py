@@ -37,9 +37,9 @@ from validation.inference.hypotheses import (
     LENGTHS,
     REPORTED,
     Weighed,
+    is_rare,
     probabilities,
     repeat_price,
-    stands_apart,
     stretch_count,
 )
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
@@ -206,8 +206,7 @@ def predicted_repeats(evidence: Evidence, base: Effect, event: Event, values: Va
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
     scores = fit_score(evidence.fit, effect_columns(evidence.fit, evidence.tests, effects, values))
     stays, usual = list(range(len(every))), float(np.median([b - a for a, b in event.every]))
-    tests = {t.name: t for t in evidence.tests}
-    price = [repeat_price(tests[t], usual) for t, _ in every]
+    price = [repeat_price(test, usual) for t, _ in every for test in evidence.tests if test.name == t]
     while len(stays) > 1 and min(gain := [repeat_gain(scores, i, stays) - price[i] for i in stays]) <= 0.0:
         stays.remove(stays[int(np.argmin(gain))])
     spans: dict[str, list[Span]] = {}
@@ -282,15 +281,15 @@ def moved_events(evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Map
 
 def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) -> Event:
     """The event with further repeats in all tests, which a scan of windows longer than they are did not see; as it is
-    where it does not stand apart."""
-    if not stands_apart(evidence.tests, event):
+    where it is not rare."""
+    if not is_rare(evidence.tests, event):
         return event
     network, now = with_condition(fit.network, effect.condition, event.name), During.of(effect.base, event.name)
     values = {**parameter_values(fit.network, {}), **fit.values}
     values[now.name] = values[effect.name]
     more = {t.name: further_spans(network, t, values, now, fit.noise) for t in evidence.tests}
     larger = Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
-    return larger if stands_apart(evidence.tests, larger) else event
+    return larger if is_rare(evidence.tests, larger) else event
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:
@@ -431,7 +430,7 @@ def further_spans(network: Network, test: Test, values: Values, effect: During, 
     assert effect.event is not None
     lengths, step = [end - begin for begin, end in effect.event.every], sample_step(test)
     usual, spans = float(np.median(lengths)), list(effect.event.spans.get(test.name, ()))
-    price, found = repeat_price(test, usual), len(spans)
+    price, first_new = repeat_price(test, usual), len(spans)
 
     def misfits(near: Test) -> Callable[[Sequence[Span]], float]:
         def of(every: Sequence[Span]) -> float:
@@ -446,7 +445,7 @@ def further_spans(network: Network, test: Test, values: Values, effect: During, 
     while True:
         reach, first = _first_spans(network, test, values, effect, noise, usual, spans)
         if not first:
-            return spans[found:]
+            return spans[first_new:]
         misfit = misfits(finer_blocks(test, first[0], reach))
         best = min(first, key=lambda span: misfit([*spans, span]))
 
@@ -457,9 +456,8 @@ def further_spans(network: Network, test: Test, values: Values, effect: During, 
         best = closest_span(test, best, reach, closer)
         misfit = misfits(finer_blocks(test, best, step))
         if not misfit(spans) - misfit([*spans, best]) > price:
-            return spans[found:]
-        gap = LENGTHS * usual
-        if any(best[0] < b + gap and a - gap < best[1] for a, b in spans):
+            return spans[first_new:]
+        if any(best[0] < b + LENGTHS * usual and a - LENGTHS * usual < best[1] for a, b in spans):
             return []
         spans.append(best)
 

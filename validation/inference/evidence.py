@@ -509,8 +509,8 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     v = amplitude_covariance(fit, p, wide)
     if np.all(np.abs(a) < ABSENT * h.scale):  # what moved is the calibration, which may go on without them as well
         gain = min(gain, 0.0)
-    gain -= float(np.sum(evidence.repeats[free]))
-    return gain + float(logsumexp([_log_prior_mass(a, v, f * h.scale, h.sign) for f in SIZES]) - np.log(len(SIZES)))
+    mass = logsumexp([_log_prior_mass(a, v, f * h.scale, h.sign) for f in SIZES]) - np.log(len(SIZES))
+    return gain + float(mass - np.sum(evidence.repeats[free]))
 
 
 def amplitude_covariance(fit: Fit, p: int, wide: Array) -> Array:

@@ -261,18 +261,17 @@ def repeat_price(test: Test, usual_s: float) -> float:
 
 
 def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
-    """What it costs (nats) to say when every stretch of an event but one was; 0 where it does not stand apart.
+    """What it costs (nats) to say when every stretch of an event but one was; 0 where it is not rare.
 
     It is a part of the evidence, as what the size of an effect costs: what repeats explain is tempered, and so is this.
     """
-    every = [t for t in tests for _ in occurrence.spans.get(t.name, ())]
+    every = [t for t in tests for _ in occurrence.spans.get(t.name, ())][1:]
     usual = float(np.mean([b - a for a, b in occurrence.every]))
-    return sum(repeat_price(t, usual) for t in every[1:]) if stands_apart(tests, occurrence) else 0.0
+    return sum(repeat_price(t, usual) for t in every) if is_rare(tests, occurrence) else 0.0
 
 
-def stands_apart(tests: Sequence[Test], occurrence: Event) -> bool:
-    """Is an event rare, its repeats about as long, and at no level of an input but by chance?  Else what repeats is a
-    law of the machine."""
+def is_rare(tests: Sequence[Test], occurrence: Event) -> bool:
+    """Is an event short, its repeats alike, and at no level of an input but by chance?  Else it is a law."""
     levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
     lengths, slack = [b - a for a, b in occurrence.every], 2.0 * max(float(np.median(np.diff(t.time))) for t in here)
     alike = (1.0 - LENGTHS) * (max(lengths) - slack) <= (1.0 + LENGTHS) * (min(lengths) + slack)

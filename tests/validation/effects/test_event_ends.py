@@ -13,7 +13,7 @@ from validation.effects.time_window import Event
 from validation.inference.decide import is_same_event
 from validation.inference.events import closer_look, further_repeats, refit_ends, timed_event
 from validation.inference.evidence import calibrated_case, pair_evidence, scored, single_evidence
-from validation.inference.hypotheses import Weighed, repeats_price, stands_apart
+from validation.inference.hypotheses import Weighed, is_rare, repeats_price
 from validation.inference.refit import laplace
 
 DAY, STEP_S = 10800.0, 10.0
@@ -70,7 +70,7 @@ def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():
     assert events[0].log_share == pytest.approx(events[1].log_share, abs=1e-3)
 
 
-def test_repeats_stand_apart_where_they_are_rare_and_at_no_level_of_an_input():
+def test_an_event_is_rare_where_it_is_short_and_at_no_level_of_an_input():
     time = np.arange(0.0, 8000.0, 10.0)
     load = (time % 1000.0 >= 500.0).astype(float)
     test = Test("day", "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
@@ -78,11 +78,11 @@ def test_repeats_stand_apart_where_they_are_rare_and_at_no_level_of_an_input():
     def repeats(first, length, every=1000.0):
         return Event.of({"day": [(first + every * k, first + every * k + length) for k in range(8)]})
 
-    assert stands_apart([test], repeats(250.0, 40.0, 950.0)), "at the load now, and without it then"
-    assert not stands_apart([test], repeats(600.0, 40.0)), "whenever the load is on"
-    assert not stands_apart([test], repeats(100.0, 40.0)), "whenever it is off"
-    assert not stands_apart([test], repeats(250.0, 300.0, 950.0)), "a third of the day"
-    assert not stands_apart([test], Event.of({"day": [(300.0, 320.0), (5000.0, 5200.0)]})), "ten times as long"
+    assert is_rare([test], repeats(250.0, 40.0, 950.0)), "at the load now, and without it then"
+    assert not is_rare([test], repeats(600.0, 40.0)), "whenever the load is on"
+    assert not is_rare([test], repeats(100.0, 40.0)), "whenever it is off"
+    assert not is_rare([test], repeats(250.0, 300.0, 950.0)), "a third of the day"
+    assert not is_rare([test], Event.of({"day": [(300.0, 320.0), (5000.0, 5200.0)]})), "ten times as long"
 
 
 def test_when_repeats_were_is_a_part_of_the_evidence():
