@@ -1,7 +1,7 @@
 """Random machines of every family: within the documented bounds all build, beyond them all are built or told how.
 
     python benchmarks/families.py [--machines 1000] [--prisms 1000] [--partitions 60] [--beyond 2000] [--family NAME]
-        [--json FILE]
+        [--winding hairpin] [--json FILE]
 
 Every machine passes the family's rules or not. Of the first `--prisms`, every prism's section is a valid polygon, so
 that the prism is closed, and every part's volume as it is meshed, 144 chords per turn, is its exact one within 1 %. Of
@@ -57,6 +57,13 @@ class Drawn:
     @property
     def right(self) -> bool:
         return not self.fault and bool(self.error <= WITHIN)
+
+
+def wound(family: Family, kind: str) -> Family | None:
+    """The family with windings of one kind."""
+    one = [p for p in family.parameters if p.key == "winding.kind" and kind in p.choices]
+    others = tuple(replace(p, choices=(kind,)) if p in one else p for p in family.parameters)
+    return replace(family, parameters=others) if one else None
 
 
 def machine_of(family: Family, seed: int) -> Machine:
@@ -210,11 +217,15 @@ def main() -> None:
     parser.add_argument("--partitions", type=int, default=60)
     parser.add_argument("--beyond", type=int, default=2000)
     parser.add_argument("--family", choices=list(families()))
+    parser.add_argument("--winding", help="of all machines; families without such a winding are left out")
     parser.add_argument("--json", metavar="FILE")
     args = parser.parse_args()
     found = []
-    for name, family in families().items():
-        if args.family in (None, name):
+    drawn = {
+        name: family if args.winding is None else wound(family, args.winding) for name, family in families().items()
+    }
+    for name, family in drawn.items():
+        if args.family in (None, name) and family is not None:
             found += rows(family, args.machines, args.prisms, args.partitions, args.beyond)
             for line in found[-20:]:
                 print(f"{line['case']:12} {line['measure']:44} {line['ours']:10.4g}", flush=True)

@@ -43,7 +43,7 @@ from lumped.integration.steady import steady
 from lumped.machine.air import Ways, gap_film, stirred
 from lumped.machine.bases import on_every_base
 from lumped.machine.films import Surroundings, face_films, surroundings
-from lumped.machine.jackets import FLOW, LIQUIDS, channel_of, jacket_film, liquid, onto_outlet
+from lumped.machine.jackets import FLOW, LIQUIDS, channel_of, jacket_film, onto_outlet
 from lumped.machine.motor import rated_inputs
 from lumped.machine.outer import Outer, cowl_of, outer_films, outer_of
 from lumped.machine.shapes import extent, fins_of
@@ -62,7 +62,7 @@ ALLOWED = 0.02
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
 COIL = {**CHANNEL, "length_m": 3.0, "coil_diameter_mm": 250}
 COOLANTS = (
-    {"name": "water"},
+    {"name": "water", "pressure_bar": 3.0},
     {"name": "ethylene glycol", "mass_percent": 50},
     {"name": "propylene glycol", "volume_percent": 40},
     {"name": "oil"},
@@ -168,7 +168,7 @@ def told(law: Streamed) -> bool:
             warnings.simplefilter("always")
             law.factor({law.reads[0]: np.array([times * law.top])})
         words.append([str(w.message) for w in caught])
-    return not words[0] and any("outside 0 to" in word for word in words[1])
+    return not words[0] and any(f" to {law.top:.4g}" in word for word in words[1])
 
 
 def declared_points(surface: str, count: int, rng: np.random.Generator) -> Iterator[Pair]:
@@ -309,10 +309,11 @@ def gap_point(around: Surroundings, rng: np.random.Generator) -> Pair:
 
 def jacket_point(around: Surroundings, jacket: str, rng: np.random.Generator) -> Pair | None:
     assert around.cooling is not None
-    cooling, T = replace(around.cooling, coolant=str(rng.choice(LIQUIDS))), rng.uniform(-40.0, 130.0)
+    cooling = replace(around.cooling, coolant=str(rng.choice(list(LIQUIDS))), pressure_bar=3.0)
+    T = rng.uniform(-40.0, 130.0)
     flow, wet = rng.uniform(0.0, 4.0) * cooling.flow_l_min, rng.uniform(1e-4, 1e-2)
     try:
-        fluid = liquid(cooling.coolant, T)
+        fluid = cooling.at(T)
     except InputError:
         return None
     h = channel_of(around.machine, jacket).film(cooling.share(jacket) * flow, fluid)[0]

@@ -98,6 +98,7 @@ from lumped.numerics.terms import (
 )
 from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS as KEY_UNITS
 from lumped.schemas.reader import Table as TomlTable, suggestion as suggestion
+from lumped.sources.layer_loss import LayerLoss as LayerLoss
 from lumped.sources.loss_map import MapLoss as MapLoss
 from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
 from lumped.sources.loss_laws import (
@@ -107,6 +108,7 @@ from lumped.sources.loss_laws import (
     EddyLoss as EddyLoss,
     IronLoss as IronLoss,
     PowerLoss as PowerLoss,
+    declared_name as declared_name,
 )
 from lumped.transfer.laws import (
     CLOCK as CLOCK,
@@ -129,7 +131,7 @@ from lumped.transfer.laws import (
     TemperatureLaw as TemperatureLaw,
     WithTemperature as WithTemperature,
 )
-from lumped.transfer.properties import air as air
+from lumped.transfer.properties import Fluid as Fluid, air as air, oil as oil, water as water
 from lumped.transfer.ranges import RangeWarning as RangeWarning, within_silence as within_silence
 from lumped.transfer.reversal import Direction as Direction, OneWay as OneWay
 from lumped.transfer.streamed import Streamed as Streamed

@@ -9,6 +9,7 @@ sensitivity   Morris and Sobol over the same factors
 two_paths     any network as R_ext and R_w
 pm_network    a permanent-magnet machine by hand formulas;  screening: table I on it
 heat_run      the rise by IEC 60034-1 against the limit of its class
+steady_law    one law from a table of steady tests
 curves        all of eq. 8, eq. 9, the rule and the repeats for a case
 carry         the calibrated model on other machines
 """

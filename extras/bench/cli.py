@@ -94,6 +94,32 @@ def curves(
 
 
 @commands.command()
+def law(
+    tests: Annotated[Path, typer.Argument(metavar="TESTS.csv", help="A row for each steady test.")],
+    heat: Annotated[str, typer.Option(metavar="COLUMN", help="The heat, in W.")],
+    coolant: Annotated[str, typer.Option(metavar="COLUMN", help="The coolant's inlet, in degC.")],
+    follows: Annotated[list[str], typer.Option(metavar="COLUMN[=UNIT]", help="What may set the cooling: 1 to 3.")],
+    temperatures: Annotated[str, typer.Option(metavar="PATTERN", help="Columns in degC, e.g. 'T_*'.")],
+    ambient: Annotated[str | None, typer.Option(metavar="COLUMN|DEGC", help="Where heat may go too.")] = None,
+    fluid: Annotated[str, typer.Option(help="oil or water: counts with its viscosity, and warms.")] = "",
+    predict: Annotated[Path | None, typer.Option(metavar="FILE.csv", help="Tests of the same columns.")] = None,
+    out: Out = None,
+    json: Json = None,
+) -> int:
+    """One law of at most seven numbers from a table of steady tests, and what it predicts. Exit code 1 without one."""
+    from extras.bench.commands.law import law_document, law_files, law_request, law_summary
+    from thermoscope.plugin import give, notes, progress
+
+    columns = law_request(heat, coolant, follows, temperatures, ambient, fluid)
+    with progress() as tell:
+        result, document, predicted = law_document(tests, columns, predict, tell)
+    give(document, json, lambda: law_summary(document))
+    if out is not None:
+        notes(f"written: {path}" for path in law_files(result, predicted, out))
+    return 0 if document["verdict"] == "law" else 1
+
+
+@commands.command()
 def bases(case: Case, json: Json = None) -> int:
     """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
     from extras.bench.commands.bases import bases_summary

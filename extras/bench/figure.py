@@ -19,9 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from extras.bench.measuring.drift import Drift
+    from extras.bench.steady_law.law import SteadyLaw
+    from extras.bench.steady_law.steady_tests import SteadyTests
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
+SERIES = (BLUE, VERMILION, "#009e73", "#cc79a7", "#e69f00", "#56b4e9", LIGHT.ink)  # Okabe and Ito
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
 
@@ -82,6 +85,46 @@ def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
         rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
         ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)
     axes[0].legend(fontsize=8, frameon=False, loc="lower right")
+    return paper.save(figure, png)
+
+
+@paper.styled
+def cooling_law(law: SteadyLaw, further: SteadyTests | None = None, *, png: str | Path | None = None) -> Figure:
+    """Conductance to the coolant over the input with most levels: a panel per inlet, a line per level of the others.
+
+    further : tests that the law was not made from, as rings
+    """
+    tests, columns = law.tests, law.tests.columns.inputs
+    across = int(np.argmax([tests.levels(i).size for i in range(len(columns))]))
+    (name, unit), top = columns[across], tests.scales.highest[across]
+    units = [u or n for i, (n, u) in enumerate(columns) if i != across]
+    every = [tests, *([further] if further is not None and further.names else [])]
+    groups = [np.column_stack([np.round(t.coolant), np.delete(t.inputs, across, axis=1)]) for t in every]
+    x = np.linspace(tests.scales.lowest[across], 1.5 * top, 61)
+    inlets = np.unique(groups[0][:, 0])[:3]
+    words = (
+        f"A law of {len(law.numbers)} numbers; dashed, rings: not among its tests",
+        f"{name} ({unit})",
+        "W/K to the coolant",
+    )
+    figure, axes = paper.panels(len(inlets), 3, (3.8, 3.2), *words)
+    for ax, inlet in zip(axes, inlets, strict=True):
+        lines = np.unique(np.vstack(groups)[np.concatenate(groups)[:, 0] == inlet], axis=0)
+        for colour, group in zip(SERIES, lines, strict=False):
+            G, half = law.curve(np.insert(np.tile(group[1:], (x.size, 1)), across, x, axis=1), inlet)
+            inside = (x <= top) & (groups[0] == group).all(axis=1).any()
+            ax.fill_between(x, G - half, G + half, color=colour, alpha=0.25, lw=0)
+            ax.plot(
+                x, G, "--", color=colour, label=", ".join(f"{v:g} {u}" for v, u in zip(group[1:], units, strict=True))
+            )
+            ax.plot(x[inside], G[inside], color=colour)
+            for t, of, face in zip(every, groups, (colour, "none"), strict=False):
+                rows = (of == group).all(axis=1)
+                measured = (law.to_coolant(t) / (t.mean - t.coolant))[rows]
+                ax.plot(t.inputs[rows, across], measured, "o", ms=4, color=colour, mfc=face)
+        ax.set(title=f"coolant {inlet:g} degC", ylim=(0.0, None))
+    if units:
+        axes[0].legend(fontsize=8, frameon=False)
     return paper.save(figure, png)
 
 

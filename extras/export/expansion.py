@@ -20,6 +20,7 @@ from thermoscope.plugin import (
     InputPower,
     IronLoss,
     Law,
+    LayerLoss,
     MapLoss,
     MeasuredLoss,
     OneWay,
@@ -88,6 +89,7 @@ EXACT: dict[type[Law], Callable[[Any], Sum | None]] = {
         Product(law.factor_ * law.resistance, (Powered(name, 1.0, 2.0),)) for name in law.currents
     ),
     EddyLoss: _eddy,
+    LayerLoss: lambda law: expanded(law.copper),
     IronLoss: _iron,
     BrushLoss: _brush,
     MapLoss: _map,

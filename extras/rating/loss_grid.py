@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import EDDY, RPM, Array, Ints, Linear, MapLoss, Source
+from thermoscope.plugin import EDDY, RPM, Array, CopperLoss, Ints, Linear, MapLoss, Source, declared_name
 from thermoscope.plugin import KEY_UNITS as UNITS
 
 BALANCED = 0.02  # of the input power: what losses and powers may disagree by
@@ -127,7 +127,7 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
             alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind) and not x.name.endswith(EDDY)]
             # Of one slice with the network's own temperature law, else linear between first and last slice
-            watts = grid.watts[name] / len(alike)
+            watts = grid.watts[name] * _share(s, alike)
             law = s.law.temperature
             first, T = watts[0], float(grid.temperatures[0])
             if grid.temperatures.size > 1:
@@ -141,6 +141,15 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
     gone = {s.name for s in network.sources} - {s.name for s in sources}
     parameters = tuple(replace(p, targets=tuple(t for t in p.targets if t[0] not in gone)) for p in network.parameters)
     return replace(network, sources=tuple(sources), parameters=parameters)
+
+
+def _share(s: Source, alike: list[Source]) -> float:
+    """Of a column's watts: as much for each loss; of a copper loss in parts by their resistance."""
+    parts = [x.law for x in alike if declared_name(x.name) == declared_name(s.name)]
+    losses = len({declared_name(x.name) for x in alike})
+    if len(parts) == 1 or not isinstance(s.law, CopperLoss):
+        return 1.0 / losses / len(parts)
+    return s.law.resistance / sum(x.resistance for x in parts if isinstance(x, CopperLoss)) / losses
 
 
 def _bare(s: Source) -> str:

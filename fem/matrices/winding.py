@@ -72,9 +72,14 @@ def bundle(
 
 @cache
 def homogenised(winding: Mixture) -> Conductivity:
-    """Conductivity of a winding, wires along z: up to 65 % of conductor by the formula, above by its unit cell."""
+    """Conductivity of a winding, wires along z: up to 65 % of conductor by the formula, above by its unit cell.
+
+    Of a layer of single bars that of its copper, every way.
+    """
     fill, k, between = winding.fill, winding.k_conductor, winding.k_between
-    if winding.shape == "flat" and fill > FORMULA_UP_TO:
+    if winding.shape == "bar":
+        across = along = fill * k + (1 - fill) * between
+    elif winding.shape == "flat" and fill > FORMULA_UP_TO:
         across, along = flat_cell(fill, k, between), fill * k + (1 - fill) * between
     else:
         straight = bundle(fill, k, between)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import pickle
 import signal
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, TypeVar
 
@@ -20,6 +22,7 @@ def in_two_processes(work: Callable[[A], B], items: Sequence[A], unknowns: int) 
 
     unknowns : of the largest matrix that is factorised;  work : does not depend on what it was called with before
     """
+    _return_memory()
     if len(items) < 2 or unknowns < LEAST or not _room(BYTES * unknowns):
         return [work(item) for item in items]
     turns, numbers = os.pipe()  # a byte is the number of an item: whoever is free reads the next
@@ -44,6 +47,12 @@ def in_two_processes(work: Callable[[A], B], items: Sequence[A], unknowns: int) 
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
     return [results[k] if k in results else work(item) for k, item in enumerate(items)]
+
+
+def _return_memory() -> None:
+    """Give back to the system what was freed: glibc keeps it, 2.1 of 2.7 GB after 300,000 unknowns."""
+    with suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _share(work: Callable[[A], B], items: Sequence[A], turns: int, parent: int) -> dict[int, B]:

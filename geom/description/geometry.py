@@ -64,6 +64,26 @@ class SeriesWound:
 
 
 @dataclass(frozen=True)
+class Bars:
+    """Bars of a hairpin winding, one per slot and layer, and the slot around them (m).
+
+    layers : parts, from the bottom of the slot to its opening;  ends, liner : parts around them
+    width, height, enamel : of a bar without its enamel
+    pitch : from layer to layer;  room, slot : width of each layer between the liners, and between the teeth
+    """
+
+    layers: tuple[str, ...]
+    ends: tuple[str, str]
+    liner: str
+    width: float
+    height: float
+    enamel: float
+    pitch: float
+    room: tuple[float, ...]
+    slot: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Features:
     """What formulas ask of a machine and its solids do not say; an imported one has none of it.
 
@@ -80,6 +100,7 @@ class Features:
     fan_space: str = ""
     ducts: Mapping[str, Duct] = field(default_factory=dict)
     series: SeriesWound | None = None
+    bars: Bars | None = None
 
 
 NO_FEATURES = Features()

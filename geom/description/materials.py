@@ -19,7 +19,8 @@ TABLE = Path(__file__).parent / "materials.toml"
 class Mixture:
     """Wires in resin: share of conductor in the cross-section, conductivities (W/m/K) of it and of what is between.
 
-    along : share of wire length along the axis;  shape : of the wires, "round" or "flat"
+    along : share of wire length along the axis;  shape : of the wires, "round" or "flat", or "bar": a single one, what
+    insulates it being a contact
     """
 
     fill: float
@@ -73,15 +74,17 @@ def material(name: str) -> Material:
     return material_table()[name]
 
 
-def filled(name: str, fill: float, impregnation: float) -> Material:
+def filled(name: str, fill: float, impregnation: float, along: float | None = None) -> Material:
     """A winding material at another fill and impregnation; a material that is no mixture stays as it is.
 
     fill : share of conductor in the cross-section; impregnation : share of the rest that resin fills, air the remainder
+    along : share of wire length along the axis, None for the material's
     """
     values = _table()[name]
     if "mixture" not in values:
         return material(name)
-    return _read(name, {**values, "mixture": {**values["mixture"], "fill": fill, "impregnation": impregnation}})
+    changed = {"fill": fill, "impregnation": impregnation, **({} if along is None else {"along": along})}
+    return _read(name, {**values, "mixture": {**values["mixture"], **changed}})
 
 
 @cache
@@ -130,6 +133,7 @@ def _mixed(
     # Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound
     k_between = k_resin if impregnation >= 1.0 else winding_conductivity(impregnation, k_resin, K_AIR)[0]
     across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
+    across = lengthwise if shape == "bar" else across
     copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
     return {
         "k_plane": across,

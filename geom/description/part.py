@@ -70,7 +70,8 @@ class Part:
 
     name, material : names as in the mesh and in materials.toml
     prisms : (profile, z0 (m), z1 (m)); prisms of one part touch but do not overlap
-    filling : of a winding, share of conductor in its cross-section and share of the rest filled with resin
+    filling : of a winding, share of conductor in its cross-section, share of the rest filled with resin, and where it
+        is not the material's the share of wire length along the axis
     cad_shape : what CAD files show instead of the prisms: round ports, helical channels
     role : what it is;  turns : whether it turns with the shaft, None as its role does
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
@@ -79,7 +80,7 @@ class Part:
     name: str
     material: str
     prisms: tuple[Prism, ...]
-    filling: tuple[float, float] | None = None
+    filling: tuple[float, ...] | None = None
     solid: bool = True
     cad_shape: CadShape | None = None
     role: Role | None = None

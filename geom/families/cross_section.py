@@ -87,6 +87,9 @@ def _check(g: Geometry, at: _Places) -> None:
         fit.below(0.98 * room, "rotor.end", ", the end space")
     if outlines["bars"]:
         fit.below(max(radii(outlines["bars"])) - 0.51 * g.shaft.diameter, "rotor.ring", ", to clear the shaft")
+    if outlines["wires"] and g.winding.kind == "hairpin":
+        right = "slots by [geometry.stator], without [[outlines.slots]] and [[outlines.wires]]"
+        raise InputError("bars of a hairpin winding are not drawn", "[[outlines.wires]]", right)
     refuse_cuts(outlines, ("slots", "notches"))
     _inside(outlines, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
     shaft = g.shaft.diameter / 2 if g.rotor.inside == "bored" else 0.0

@@ -43,7 +43,9 @@ def template(draft: Draft, name: str) -> None:
 
 def contacts(draft: Draft, slots_h: float | None = None, source: str = "") -> None:
     """Between all parts.  slots_h : of the slot's lining (W/m2/K) and where it is from, None where the file has none"""
-    if slots_h is not None:
+    if "winding" not in parts_of(draft):
+        pass  # layers of bars have contacts of their own insulation
+    elif slots_h is not None:
         draft.take("contacts", source, **{"stator.core|winding": {"h_W_m2K": slots_h}})
     else:
         draft.assume("contacts", "a slot liner of 0.3 mm", **{"stator.core|winding": {"h_W_m2K": LINER_H}})
@@ -68,7 +70,7 @@ def contacts(draft: Draft, slots_h: float | None = None, source: str = "") -> No
 def parts_of(draft: Draft) -> set[str]:
     """Names of the solids that the machine file will have, as far as contacts and losses name them."""
     sections = {e.section for e in draft.entries}
-    always = {"stator.core", "rotor.core", "shaft", "winding", "winding.left", "winding.right"}
+    always = {"stator.core", "rotor.core", "shaft", *windings(draft)}
     ends = {f"{part}.{end}" for part in ("bearing", "endcap") for end in ("left", "right")}
     some = {"magnets": "magnets", "bars": "rotor.cage", "coils": "winding.field"}
     housing = {"housing"} if draft.value("geometry.housing", "kind") != "none" else set()
@@ -106,8 +108,15 @@ def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, ir
         draft.assume(name, "order of magnitude", kind="bearing", at=f"bearing.{end}", P_W=5, of=speed)
 
 
+def windings(draft: Draft) -> list[str]:
+    """Parts of the stator's winding: what lies in the slots, as a whole or by layers, and both ends."""
+    layers = draft.value("geometry.winding", "layers")
+    slots = [f"winding.layer-{k + 1}" for k in range(layers)] if layers else ["winding"]
+    return [*slots, "winding.left", "winding.right"]
+
+
 def copper_sensor(draft: Draft) -> None:
-    mean = {"mean_of": ["winding", "winding.left", "winding.right"], "by": "copper"}
+    mean = {"mean_of": windings(draft), "by": "copper"}
     draft.assume("sensors", "what a resistance measurement sees", **{"winding.copper": mean})
 
 

@@ -195,21 +195,36 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
         draft.take("geometry.stator", key, **{ours: file.number(key)})
     draft.take("geometry.stator", "Slot_Number", slots=slots)
     words = "Slot_Type, Slot_Opening, Tooth_Width, Slot_Depth, Tooth_Tip_Depth, Tooth_Tip_Angle, Slot_Corner_Radius"
-    draft.draw("slots", words, slots, [slot.path])
-    draft.draw("wires", f"{words}: under the tooth tips, the liner counted in", slots, wire)
     room = sum(abs(loop_area(loop)) for loop in wire)
     count, each, kind = file.number("ConductorsPerSlot", 1, 1e5), _section(file), "round"
     if file.values.get("Armature_CoilStyle") == "1":
         kind = "hairpin"
-        draft.leave("Armature_CoilStyle", "hairpin", "an equivalent solid winding of the same copper: no layers here")
+        if (turn := _layers(draft, file, round(count))) is not None:
+            return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
+        right = "an equivalent solid winding of the same copper: so many bars are no layers of this slot"
+        draft.leave("Armature_CoilStyle", "hairpin", right)
+    draft.draw("slots", words, slots, [slot.path])
+    draft.draw("wires", f"{words}: under the tooth tips, the liner counted in", slots, wire)
     fill = count * each / room
     if not 0.005 <= fill <= 0.95:
         raise InputError(
             f"conductors take {100 * fill:.3g} % of a slot", file.where("ConductorsPerSlot"), "0.5 to 95 %"
         )
     words = f"ConductorsPerSlot, {kind}: {count:g} of {each * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
-    good = file.number("Imp_Goodness_[Active]", 0.0, 1.0, 1.0)
     draft.take("geometry.winding", words, fill=float(f"{fill:.9g}"))
+    _, end = _resin_and_ends(draft, file)
+    reach = radii((Outline(slots, wire),))
+    middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
+    turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
+    loose = slots * count * each * turn / (2 * math.pi * middle * (max(reach) - min(reach)) * (1 - 2 * INSET) * end)
+    why = "end turns are semicircles over MagThrow"
+    draft.assume("geometry.winding", why, end_fill=float(f"{min(max(loose, 0.005), 0.95):.6g}"))
+    return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
+
+
+def _resin_and_ends(draft: Draft, file: File) -> tuple[float, float]:
+    """Straight length outside the stack and that of the end turns, along the axis (m)."""
+    good = file.number("Imp_Goodness_[Active]", 0.0, 1.0, 1.0)
     draft.take("geometry.winding", "Imp_Goodness_[Active]", impregnation=good)
     draft.take(
         "geometry.winding", "Imp_Goodness_[EWdg]", end_impregnation=file.number("Imp_Goodness_[EWdg]", 0, 1, good)
@@ -218,13 +233,37 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     end = max(file.length("EWdg_Overhang_[F]", 30e-3) - straight, 2e-3)
     draft.take("geometry.winding", "Wdg_Extension_[F]", straight_mm=in_mm(max(straight, 0.5e-3)))
     draft.take("geometry.winding", "EWdg_Overhang_[F] less Wdg_Extension_[F]", end_mm=in_mm(end))
-    reach = radii((Outline(slots, wire),))
-    middle, span = (max(reach) + min(reach)) / 2, file.number("MagThrow", 1, 400, slots / file.count("Pole_Number"))
-    turn = math.pi / 4 * min(span * 2 * math.pi / slots, math.pi) * middle
-    loose = slots * count * each * turn / (2 * math.pi * middle * (max(reach) - min(reach)) * (1 - 2 * INSET) * end)
-    why = "end turns are semicircles over MagThrow"
-    draft.assume("geometry.winding", why, end_fill=float(f"{min(max(loose, 0.005), 0.95):.6g}"))
-    return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
+    return straight, end
+
+
+def _layers(draft: Draft, file: File, count: int) -> float | None:
+    """A hairpin winding of one bar per layer. Returns wire at one end (m); None where that does not fit the slot."""
+    tip, depth, bore = (file.number(key) for key in ("Tooth_Tip_Depth", "Slot_Depth", "Stator_Bore"))
+    width, height = file.number("Copper_Width"), file.number("Copper_Height")
+    enamel = file.number("Insulation_Thickness", usual=0.1) or 0.05
+    liner, slots = file.number("Liner_Thickness", usual=0.0) or 0.05, file.count("Slot_Number")
+    parallel = file.values.get("Slot_Type") == "Parallel_Slot"
+    key, ours = ("Slot_Width", "slot_width_mm") if parallel else ("Tooth_Width", "tooth_mm")
+    wall, inner = file.number(key), bore / 2 + tip + liner
+    room = (wall if parallel else 2 * inner * math.sin(math.pi / slots) - wall) - 2 * liner
+    if count > 20 or width + 2 * enamel > room or count * (height + 2 * enamel) > depth - tip - 2 * liner:
+        return None
+    draft.take("geometry.stator", "Slot_Type", slot_shape="parallel" if parallel else "tapered")
+    draft.take("geometry.stator", key, **{ours: wall})
+    sizes = {"Slot_Depth": "slot_depth_mm", "Tooth_Tip_Depth": "tip_mm", "Slot_Opening": "opening_mm"}
+    for key, ours in sizes.items():
+        draft.take("geometry.stator", key, **{ours: file.number(key)})
+    draft.take("geometry.stator", "Liner_Thickness, at least 0.05", liner_mm=liner)
+    draft.leave("Slot_Corner_Radius", file.number("Slot_Corner_Radius", usual=0.0), "slots of bars have sharp corners")
+    draft.take("geometry.winding", "Armature_CoilStyle", kind="hairpin")
+    draft.take("geometry.winding", "ConductorsPerSlot", layers=count)
+    draft.take("geometry.winding", "Copper_Width", bar_width_mm=width)
+    draft.take("geometry.winding", "Copper_Height", bar_height_mm=height)
+    draft.take("geometry.winding", "Insulation_Thickness, at least 0.05", enamel_mm=enamel)
+    span = file.number("MagThrow", 1, 400, slots / file.count("Pole_Number")) * 2 * math.pi / slots
+    draft.take("geometry.winding", "MagThrow", pitch_deg=round(math.degrees(min(span, math.pi)), 6))
+    straight, end = _resin_and_ends(draft, file)
+    return straight + math.hypot(end, span / 2 * METRES * (bore + depth + tip) / 2)
 
 
 def _section(file: File) -> float:

@@ -44,7 +44,7 @@ SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothin
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 3.9 GB, and with the choice some 4 min of a core
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
-MOST_BESIDE = 275_000  # of both meshes that are solved at once: of 292,000 they took 4.3 GB
+MOST_BESIDE = 275_000  # of both meshes that are solved at once: of 263,000 they take 3.4 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
 ROOM = 0.75  # of those: a first mesh of more leaves nothing to middles of edges and to what is refined
 BEGIN = 0.5  # of those: what such a first mesh keeps, with fewer elements across slots and bars
@@ -106,7 +106,8 @@ def chosen_mesh(
 def _key(machine: Machine, accuracy: float, first: Meshing, most: int) -> str:
     shapes = [(p.name, p.prisms, p.solid, machine.material_of(p.name)) for p in machine.parts]
     fluids = [(p.name, p.prisms) for p in machine.fluids]
-    rules = (first, accuracy, most, SHARE, CHEAP, SAFETY, STRAIGHT, NOTABLE, ROOM, BEGIN, IDLE, ALIKE, WAYS)
+    most_solved = (most, MOST_SOLVED, MOST_QUADRATIC)
+    rules = (first, accuracy, most_solved, SHARE, CHEAP, SAFETY, STRAIGHT, NOTABLE, ROOM, BEGIN, IDLE, ALIKE, WAYS)
     content = repr((shapes, fluids, sorted(machine.sections.items()), rules))
     return hashlib.sha256(content.encode()).hexdigest()[:20]
 

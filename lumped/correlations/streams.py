@@ -58,8 +58,9 @@ def streamed(
     times = 1.0 if liquid else 2.0
     totals = tuple(times * T for T in temperatures)
     table = StreamTable(of, usual, times * degC, totals, tuple(shift), tuple(number), tuple(each), stretch)
-    name = film(usual, fluid(degC))[1].name
-    return Streamed(value, table, tops[1], name, liquid)
+    with within_silence():
+        least, name = _end(film, fluid(degC), usual, LEAST, high=False), film(usual, fluid(degC))[1].name
+    return Streamed(value, table, tops[1], name, liquid, least if least > LEAST * usual else 0.0)
 
 
 def liquid_range(liquid: Callable[[float], Fluid]) -> tuple[float, float]:
@@ -93,19 +94,23 @@ def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -
 
 def _top(film: Moving, fluid: Fluid, usual: float) -> float:
     """The largest |input| inside the correlation's range, up to MOST times the usual one."""
-    low, high = 1.0, MOST
-    if not _out_of_range(film, fluid, high * usual):
-        return high * usual
-    while high / low > 1.01:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if _out_of_range(film, fluid, middle * usual) else (middle, high)
-    return low * usual
+    return _end(film, fluid, usual, MOST, high=True)
 
 
-def _out_of_range(film: Moving, fluid: Fluid, size: float) -> bool:
-    """Whether a number that grows with the input has left its range."""
-    info = film(size, fluid)[1]
-    return any(info.numbers[k] > info.limits[k][1] for k in info.outside)
+def _end(film: Moving, fluid: Fluid, usual: float, times: float, high: bool) -> float:
+    """The last |input| from the usual one to `times` that at which what grows with it is in the correlation's range."""
+
+    def outside(share: float) -> bool:
+        info = film(share * usual, fluid)[1]
+        return any((info.numbers[k] > info.limits[k][1]) is high for k in info.outside)
+
+    inside, gone = 1.0, times
+    if not outside(gone):
+        return gone * usual
+    while max(inside / gone, gone / inside) > 1.01:
+        middle = math.sqrt(inside * gone)
+        inside, gone = (inside, middle) if outside(middle) else (middle, gone)
+    return inside * usual
 
 
 def _limit(fluid: Callable[[float], Fluid], inside: float, step: float) -> float:

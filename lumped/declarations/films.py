@@ -107,14 +107,14 @@ def moving_surfaces() -> dict[str, Callable[[Table, Fluid], Film]]:
 
 
 def read_coolant(table: Table) -> Coolant:
-    """T (degC) -> Fluid of the table's key `coolant`: a name, or a glycol mixture with its share."""
+    """T (degC) -> Fluid of the table's key `coolant`: a name, or a table with a share of glycol or a pressure."""
     if isinstance(table.raw("coolant"), str):
         return coolant(table.word("coolant", None, NAMES))
     inner = Table(table.raw("coolant", {}), f"{table.where} coolant")
     name = inner.word("name", None, NAMES)
-    shares = {key: inner.number(key) for key in ("mass_percent", "volume_percent") if key in inner}
+    numbers = {key: inner.number(key) for key in ("mass_percent", "volume_percent", "pressure_bar") if key in inner}
     inner.close()
-    return coolant(name, **shares)
+    return coolant(name, **numbers)
 
 
 def over(table: Table) -> Streamed:

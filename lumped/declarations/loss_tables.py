@@ -11,6 +11,7 @@ from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.layer_loss import by_dowell, from_map
 from lumped.sources.loss_laws import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
@@ -42,8 +43,20 @@ def _copper(table: Table) -> Law:
     return CopperLoss(number(keys[0]), table.members("currents"), number("factor", 1.0), alpha, reference)
 
 
-def _eddy(table: Table, copper: CopperLoss) -> EddyLoss:
-    out = EddyLoss(copper, table.numbers("coefficients"), table.word("input"), table.number("at", 1.0))
+def _eddy(table: Table, copper: CopperLoss) -> Law:
+    """From a polynomial, from a map over speed, or of bars in a slot by Dowell."""
+    speed = table.word("input")
+    if "factors" in table:
+        at, factors = table.numbers("at_speed"), table.numbers("factors")
+        if len(at) != len(factors) or len(at) < 2 or at[0] < 0.0 or any(b <= a for a, b in pairwise(at)):
+            right = "at_speed rising from 0 or more, one factor per speed; of a hairpin winding a list per layer"
+            raise table.error("the AC factors are no table", right)
+        out: Law = from_map(copper, speed, at, factors)
+    elif "pole_pairs" in table:
+        bar = table.number("bar_height_mm") * 1e-3, table.number("porosity"), int(table.number("layer"))
+        out = by_dowell(copper, speed, table.number("pole_pairs"), *bar)
+    else:
+        out = EddyLoss(copper, table.numbers("coefficients"), speed, table.number("at", 1.0))
     table.close()
     return out
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from geom.arrays import Array
-from lumped.numerics.terms import CODE, COLD, FILM, HOT, LAST, POINT, STREAM, TABLE, Terms
+from lumped.numerics.terms import CODE, COLD, FILM, HOT, LAST, POINT, SOURCE, STREAM, TABLE, Terms
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K
 from lumped.transfer.ranges import out_of_range
 
@@ -40,7 +40,8 @@ class Reach:
     def _spans(self, e: int) -> Iterator[Span]:
         T, (first, last), cold = self.terms, self.terms.part[e, [POINT, LAST]], self.terms.part[e, COLD]
         code, count, alone = T.kind[e, CODE], int(T.par[e, 0]), T.begin[cold] == T.begin[cold + 1]
-        times, of = (1.0, "its coolant at {:.4g} degC") if alone else (0.5, "its film at {:.4g} degC")
+        fluid = "copper" if T.kind[e, SOURCE] else "coolant"
+        times, of = (1.0, f"its {fluid} at {{:.4g}} degC") if alone else (0.5, "its film at {:.4g} degC")
         beside = "{:.4g} K beside its air"
         if code == STREAM:
             yield Span(of, times, times * T.point[first, 0], times * T.point[first + count - 1, 0])

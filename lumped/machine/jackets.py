@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
@@ -25,14 +25,19 @@ from lumped.machine.shapes import radius
 from lumped.model.build import mean_row, stream
 from lumped.model.network import NOTHING, Link, Network, Place, Row
 from lumped.schemas.reader import Table
+from lumped.transfer.coolant import Coolant, coolant
 from lumped.transfer.laws import AtUsualTemperature, InputPower, Law
-from lumped.transfer.properties import Fluid, ethylene_glycol, propylene_glycol, water
+from lumped.transfer.properties import ATMOSPHERE_BAR, Fluid
 from lumped.transfer.reversal import OneWay
 from lumped.transfer.streamed import Streamed
 
 INLET, FLOW = "coolant", "flow_l_min"
 WARMER_K = 20.0  # than its inlet a coolant is usually, where it takes up the rated losses
-LIQUIDS = ("water", "glycol-50", "propylene-glycol-50")
+LIQUIDS: dict[str, tuple[str, float | None]] = {
+    "water": ("water", None),
+    "glycol-50": ("ethylene glycol", 50.0),
+    "propylene-glycol-50": ("propylene glycol", 50.0),
+}
 
 
 @dataclass(frozen=True)
@@ -46,13 +51,20 @@ class Cooling:
     flow_l_min: float
     usual_C: float
     feeds: Mapping[str, str]
+    pressure_bar: float = ATMOSPHERE_BAR
 
     def __hash__(self) -> int:
-        return hash((self.coolant, self.flow_l_min, self.usual_C, *self.feeds.items()))
+        return hash((self.coolant, self.flow_l_min, self.usual_C, self.pressure_bar, *self.feeds.items()))
 
     @property
     def liquid(self) -> Fluid:
-        return liquid(self.coolant, self.usual_C)
+        return self.at(self.usual_C)
+
+    @property
+    def at(self) -> Coolant:
+        """T (degC) -> its properties."""
+        name, mass_percent = LIQUIDS[self.coolant]
+        return coolant(name, mass_percent, pressure_bar=self.pressure_bar)
 
     def before(self, jacket: str) -> list[str]:
         """Where its coolant comes from, backwards as far as the inlet; a circle ends where it closes."""
@@ -67,14 +79,6 @@ class Cooling:
         return 1.0 / first if self.feeds[jacket] == INLET else self.share(self.feeds[jacket])
 
 
-@cache
-def liquid(name: str, T: float) -> Fluid:
-    """Properties at T (degC); mixtures by mass."""
-    if name == "water":
-        return water(T)
-    return ethylene_glycol(T, 0.5) if name == "glycol-50" else propylene_glycol(T, 0.5)
-
-
 def cooling_of(machine: Machine) -> Cooling | None:
     """[cooling], if the machine has jackets."""
     jackets = [part.name for part in machine.fluids if part.material != "air"]
@@ -85,14 +89,15 @@ def cooling_of(machine: Machine) -> Cooling | None:
     outlets = {port.word("outlet", f"{name}.outlet"): name for name, port in ports.items()}
     if "property_C" in t:
         raise t.error("key 'property_C' is gone", "leave it out: a coolant has the properties of its temperature")
-    coolant, usual = t.word("coolant", "glycol-50", LIQUIDS), t.number("inlet_C", 20.0) + WARMER_K
+    usual = t.number("inlet_C", 20.0) + WARMER_K
     cooling = Cooling(
-        coolant,
+        t.word("coolant", "glycol-50", LIQUIDS),
         t.number("flow_L_per_min"),
-        min(usual, liquid_range(partial(liquid, coolant))[1]),
+        usual,
         {name: outlets.get(port.word("inlet", f"{name}.inlet"), INLET) for name, port in ports.items()},
+        t.number("pressure_bar", ATMOSPHERE_BAR),
     )
-    t.number("pressure_bar", 1.0)
+    cooling = replace(cooling, usual_C=min(usual, liquid_range(cooling.at)[1]))
     for jacket in jackets:
         if INLET not in cooling.before(jacket):
             raise t.error(f"{jacket} is fed by itself", "an inlet that no jacket feeds")
@@ -159,8 +164,7 @@ def _film(channel: Channel, cooling: Cooling, share: float, stretch: float) -> S
         h, info = channel.film(share * flow, fluid)
         return h * restretched(h * stretch / max(flow, 1e-300), fluid.rho * fluid.cp / heat), info
 
-    of = partial(liquid, cooling.coolant)
-    return streamed(FLOW, cooling.flow_l_min, film, of, cooling.usual_C, liquid=True, stretch=stretch)
+    return streamed(FLOW, cooling.flow_l_min, film, cooling.at, cooling.usual_C, liquid=True, stretch=stretch)
 
 
 def _feeds(machine: Machine, cooling: Cooling) -> dict[str, str]:
@@ -185,7 +189,7 @@ def coolant_streams(machine: Machine, network: Network, cooling: Cooling) -> lis
 
 def _rate_law(machine: Machine, jacket: str, cooling: Cooling) -> Law:
     right = "a flow from inlet to outlet: what comes in at the outlet is not known"
-    warmer = warmed(partial(liquid, cooling.coolant), cooling.usual_C)
+    warmer = warmed(cooling.at, cooling.usual_C)
     rate = InputPower(_rate(jacket, cooling), ((FLOW, 1.0, 1.0),), warmer)
     return OneWay(rate, FLOW, f"{machine.name} [cooling]", right, cooling.flow_l_min)
 

@@ -14,11 +14,12 @@ import numpy as np
 from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.declarations.loss_tables import loss_laws
+from lumped.machine.hairpin import by_part
 from lumped.machine.settings import Losses, read
-from lumped.machine.shapes import gap_fluid, wound
+from lumped.machine.shapes import conducts, gap_fluid
 from lumped.model.network import Network, Place, Row, Source
 from lumped.schemas.reader import Table, suggestion
-from lumped.sources.loss_laws import EDDY, PowerLoss
+from lumped.sources.loss_laws import EDDY, PowerLoss, declared_name
 from lumped.transfer.laws import InputPower, Law, Linear
 
 Shares = Mapping[str, float]
@@ -49,7 +50,7 @@ def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) 
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     out: dict[str, float] = {}
     for _, _, parts, law, _ in _declared(machine):
-        watts = float(np.mean(law.factor(signals)))
+        watts = float(np.mean(law.size(signals)))
         for place, share in _spread(network, parts).items():
             out[place] = out.get(place, 0.0) + share * watts
     return out
@@ -70,7 +71,7 @@ def _declared(machine: Machine) -> list[Loss]:
     if not section:
         return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
-    tables = {name: Table(data, f"{where}.{name}]") for name, data in section.items()}
+    tables = {name: Table(data, f"{where}.{declared_name(name)}]") for name, data in by_part(machine, section).items()}
     laws = loss_laws(tables)
     out = [_read(name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()]
     for table in tables.values():
@@ -80,7 +81,7 @@ def _declared(machine: Machine) -> list[Loss]:
 
 def _everywhere(machine: Machine) -> Shares:
     """Windings by volume, or, where nothing is wound, all parts."""
-    heated = [part for part in machine.parts if wound(machine, part.name)] or list(machine.parts)
+    heated = [part for part in machine.parts if conducts(machine, part.name)] or list(machine.parts)
     total = sum(part.volume for part in heated)
     return {part.name: part.volume / total for part in heated}
 

@@ -30,6 +30,7 @@ from geom.description.part import Part
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
 from lumped.machine.films import Surroundings, face_films, nominal, surroundings
+from lumped.machine.hairpin import insulation
 from lumped.machine.jackets import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.machine.loss_sources import sources
 from lumped.machine.parameters import parameters
@@ -119,7 +120,9 @@ def nominal_coefficients(
     names = sorted(contacts)
     around, inputs = surroundings(machine, names), operating_point(machine)
     h = {face: nominal(face_films(*where, around), inputs) for face, where in faces.items()}
-    g = contact_coefficients(machine.sections.get("contacts", {}), names, f"{machine.name} [contacts]")
+    table = machine.sections.get("contacts", {})
+    layers = {name: h for name, h in insulation(machine).items() if name in names and name not in table}
+    g = contact_coefficients(table, names, f"{machine.name} [contacts]") | layers
     return h, g
 
 

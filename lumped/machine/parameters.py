@@ -9,7 +9,7 @@ from geom.errors import InputError
 from lumped.machine.path import stem
 from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
-from lumped.sources.loss_laws import EDDY
+from lumped.sources.loss_laws import declared_name
 
 SPREADS = (  # log-sd, kinds of losses
     (0.05, "copper"),
@@ -69,9 +69,9 @@ def _contacts(network: Network) -> list[Parameter]:
 
 def _losses(losses: Sequence[Source]) -> list[Parameter]:
     out = []
-    for source in (s for s in losses if not s.name.endswith(EDDY)):
-        name, spread = source.name.replace(":", ".", 1), LOSS_SPREAD[source.kind]
-        acts = tuple((s.name, 1.0) for s in losses if s.name.removesuffix(EDDY) == source.name)
+    for whole, kind in {declared_name(s.name): s.kind for s in losses}.items():
+        name, spread = whole.replace(":", ".", 1), LOSS_SPREAD[kind]
+        acts = tuple((s.name, 1.0) for s in losses if declared_name(s.name) == whole)
         words = "spread of published loss formulas"
         out.append(Parameter(name, acts, prior_sd=spread, low=0.1, high=10.0, source=words))
     return out

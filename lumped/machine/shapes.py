@@ -49,6 +49,12 @@ def wound(machine: Machine, part: str) -> bool:
     return bool(k_axial > DIRECTED * k_plane)
 
 
+def conducts(machine: Machine, part: str) -> bool:
+    """A winding: wires, or a layer of bars."""
+    bars = machine.features.bars
+    return wound(machine, part) or (bars is not None and part in bars.layers)
+
+
 def laminated(machine: Machine, part: str) -> bool:
     """Sheets across the axis: heat runs in them much more easily."""
     k_plane, k_axial = machine.conductivity(part)

@@ -25,20 +25,28 @@ def motor_zones(machine: Machine) -> dict[str, Zone]:
 
 
 def _slots(machine: Machine) -> dict[str, Zone]:
-    out: dict[str, Zone] = {}
+    bars = machine.features.bars
+    reach = [] if bars is None else [_reach(machine.part(layer)) for layer in bars.layers]
+    out = _teeth(machine, min(r[0] for r in reach), max(r[1] for r in reach)) if reach else {}
     for winding in machine.parts:
         if not wound(machine, winding.name) or not (
             len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
         ):
             continue
         low, high = _reach(winding)
-        out |= _split(winding.name, (low + high) / 2, "inner", "outer")
-        for core in machine.parts:
-            near, far = _reach(core)
-            if laminated(machine, core.name) and near < high and low < far:
-                teeth_outside = far - high < low - near
-                words = ("back", "teeth") if teeth_outside else ("teeth", "back")
-                out |= _split(core.name, low if teeth_outside else high, *words)
+        out |= _split(winding.name, (low + high) / 2, "inner", "outer") | _teeth(machine, low, high)
+    return out
+
+
+def _teeth(machine: Machine, low: float, high: float) -> dict[str, Zone]:
+    """Teeth and back of the core whose slots hold what lies between two radii (m)."""
+    out: dict[str, Zone] = {}
+    for core in machine.parts:
+        near, far = _reach(core)
+        if laminated(machine, core.name) and near < high and low < far:
+            teeth_outside = far - high < low - near
+            words = ("back", "teeth") if teeth_outside else ("teeth", "back")
+            out |= _split(core.name, low if teeth_outside else high, *words)
     return out
 
 

@@ -15,6 +15,12 @@ from lumped.transfer.laws import CONSTANT, Array, Conductivity, Inputs, Law, Lin
 
 Power = tuple[str, float, float]
 EDDY = ":eddy"  # after the name of a copper loss: its second source, what alternating current adds
+IN = ":in:"  # before the part that a source of a copper loss heats, where each has its own
+
+
+def declared_name(source: str) -> str:
+    """The name of the loss that a source is a piece of."""
+    return source.removesuffix(EDDY).partition(IN)[0]
 
 
 def product(inputs: Inputs, terms: tuple[Power, ...]) -> Array | float:

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from functools import partial
 
 from geom.errors import InputError
-from lumped.transfer.properties import Fluid, air, ethylene_glycol, mass_fraction_of, oil, propylene_glycol, water
+from lumped.transfer.properties import (
+    ATMOSPHERE_BAR,
+    Fluid,
+    air,
+    ethylene_glycol,
+    mass_fraction_of,
+    oil,
+    propylene_glycol,
+    water,
+)
 
 Coolant = Callable[[float], Fluid]
 
@@ -31,11 +40,20 @@ NAMES = (*PLAIN, *MIXED)
 
 
 def coolant(
-    name: str, mass_percent: float | None = None, volume_percent: float | None = None, altitude_m: float = 0.0
+    name: str,
+    mass_percent: float | None = None,
+    volume_percent: float | None = None,
+    altitude_m: float = 0.0,
+    pressure_bar: float = ATMOSPHERE_BAR,
 ) -> Coolant:
-    """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air only."""
+    """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air only.
+
+    pressure_bar : absolute; where water boils. Mixtures are known up to 100 degC, below where they boil.
+    """
     if name in MIXED:
         return glycol(MIXED[name], mass_percent, volume_percent)
     if mass_percent is not None or volume_percent is not None:
         raise InputError("a share was given", name, f"a share only for {' and '.join(MIXED)}")
+    if name == "water":
+        return partial(water, pressure_bar=pressure_bar)
     return partial(air, altitude_m=altitude_m) if name == "air" else PLAIN[name]

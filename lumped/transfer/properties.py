@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import ceil, floor
+
+import numpy as np
 
 from geom.constants import ZERO_C
 from geom.errors import InputError, MissingDependency
@@ -67,13 +69,41 @@ def _liquid(source, T: float) -> Fluid:
     return Fluid(rho, source.specific_heat(T), source.conductivity(T), source.viscosity(T), beta)
 
 
-def water(T: float) -> Fluid:
-    """Liquid water at T (degC) (SecondaryCoolantProps)."""
+ATMOSPHERE_BAR = 1.01325
+# Water at its vapour pressure: degC, bar, kg/m3, J/kg/K, W/m/K, Pa s (IAPWS-95; viscosity 2008, conductivity 2011)
+HOT_WATER = np.array(
+    [
+        (100.0, 1.0142, 958.35, 4215.7, 0.67721, 2.8158e-4),
+        (110.0, 1.4338, 950.95, 4228.3, 0.68035, 2.5461e-4),
+        (120.0, 1.9867, 943.11, 4243.5, 0.68224, 2.3203e-4),
+        (130.0, 2.7028, 934.83, 4261.5, 0.68295, 2.1294e-4),
+        (140.0, 3.6154, 926.13, 4282.6, 0.68253, 1.9664e-4),
+        (150.0, 4.7616, 917.01, 4307.1, 0.68102, 1.8261e-4),
+        (160.0, 6.1823, 907.45, 4335.4, 0.67873, 1.7043e-4),
+    ]
+)
+
+
+@lru_cache(4096)
+def water(T: float, pressure_bar: float = ATMOSPHERE_BAR) -> Fluid:
+    """Liquid water at T (degC), up to where it boils at an absolute pressure, at most 160 degC.
+
+    SecondaryCoolantProps up to 100 degC, beyond it IAPWS. That a liquid is under a higher pressure changes it by 0.1 %.
+    """
     from scp.water import Water
 
-    return _liquid(Water(), T)
+    cool, (degC, bar, *columns) = Water(), HOT_WATER.T
+    boils = float(np.interp(np.log(pressure_bar), np.log(bar), degC))
+    if not cool.t_max < T <= boils:
+        cool.t_max = boils if pressure_bar > bar[0] else cool.t_max
+        return _liquid(cool, T)
+    first, grow = _liquid(cool, cool.t_max), [float(np.interp(T, degC, column / column[0])) for column in columns]
+    rho, cp, k, mu = grow
+    beta = -float(np.interp(T, degC, np.gradient(np.log(HOT_WATER[:, 2]), degC)))
+    return Fluid(first.rho * rho, first.cp * cp, first.k * k, first.mu * mu, beta)
 
 
+@lru_cache(4096)
 def ethylene_glycol(T: float, mass_fraction: float) -> Fluid:
     """Water with ethylene glycol by MASS fraction (0 to 0.6) at T (degC) (SecondaryCoolantProps: Melinder 2010)."""
     from scp.ethylene_glycol import EthyleneGlycol
@@ -81,6 +111,7 @@ def ethylene_glycol(T: float, mass_fraction: float) -> Fluid:
     return _liquid(EthyleneGlycol(mass_fraction), T)
 
 
+@lru_cache(4096)
 def propylene_glycol(T: float, mass_fraction: float) -> Fluid:
     """Water with propylene glycol by MASS fraction (0 to 0.6) at T (degC) (SecondaryCoolantProps: Melinder 2010)."""
     from scp.propylene_glycol import PropyleneGlycol

@@ -16,6 +16,7 @@ class Streamed(Law):
 
     top : |input| up to which the correlation holds at the table's usual temperature;  what : the correlation
     liquid : whether the fluid's own temperature counts, else that of the film
+    least : |input| above rest from which the correlation holds
     """
 
     value: float
@@ -23,6 +24,7 @@ class Streamed(Law):
     top: float
     what: str
     liquid: bool = False
+    least: float = 0.0
 
     @property
     def temperature(self) -> StreamTable:  # type: ignore[override]
@@ -33,7 +35,10 @@ class Streamed(Law):
         return () if self.table.of is None else (self.table.of,)
 
     def factor(self, inputs: Inputs) -> float:
-        largest = float(np.max(self.table.size(inputs), initial=0.0))
-        if largest > self.top:
-            out_of_range(f"{self.what}: {self.table.of or 'flow'} = {largest:.4g} outside 0 to {self.top:.4g}")
+        size = np.atleast_1d(self.table.size(inputs))
+        slowest, fastest = np.min(size[size > 0.0], initial=self.top), np.max(size)
+        for extreme, outside in ((slowest, slowest < self.least), (fastest, fastest > self.top)):
+            if outside:
+                what = f"{self.what}: {self.table.of or 'flow'}"
+                out_of_range(f"{what} = {extreme:.4g} outside {self.least:.4g} to {self.top:.4g}")
         return self.value

@@ -59,10 +59,13 @@ def temperature_value(law: TemperatureLaw, hot: float, cold: float, size: float 
     return 1.0
 
 
-def loss_slope(law: TemperatureLaw, T: float) -> float:
-    """How a loss that counts as 1 changes per K at T (degC); 0 of a law that no loss has."""
+def loss_slope(law: TemperatureLaw, T: float, inputs: Inputs) -> float:
+    """How a loss that counts as 1 changes per K at T (degC) and an instant's inputs; 0 of a law that no loss has."""
     if isinstance(law, Linear):
         return law.alpha
     if isinstance(law, Conductivity):
         return -law.alpha * temperature_value(law, T, T) ** 2
+    if isinstance(law, StreamTable):
+        size = float(np.mean(law.size(inputs)))
+        return float(law.at(size, T + 0.5) - law.at(size, T - 0.5))
     return 0.0

@@ -73,6 +73,61 @@ def test_random_machines_fit_together(family, data):
     assert set(range(len(machine.parts))) <= set(cut.labels.ravel().tolist())
 
 
+@pytest.mark.parametrize("name", ["pmsm", "tefc", "cross-section"])
+@quick(max_examples=20)
+@given(data=st.data())
+def test_random_hairpin_machines_fit_together(name, data):
+    family = families()[name]
+    values = {**data.draw(geometry(family)), "winding.kind": "hairpin"}
+    machine, refusal = built_or_refused(family, values)
+    assert machine or ("random.toml [geometry." in refusal and "must be" in refusal)
+    assume(machine)
+    cut = filled(partition((*machine.parts, *machine.fluids), 40))
+    assert set(range(len(machine.parts))) <= set(cut.labels.ravel().tolist())
+    bars = machine.features.bars
+    for part in (machine.part(layer) for layer in bars.layers):
+        stack = part.span[1] - part.span[0]
+        copper = machine.geometry.stator.slots * bars.width * bars.height * stack
+        assert part.volume * part.filling[0] == pytest.approx(copper, rel=1e-9)
+    ends = [machine.part(f"winding.{end}") for end in ("left", "right")]
+    assert all(0.0 < part.filling[0] < 1.0 for part in ends)
+
+
+HAIRPIN_FAULTS = {
+    "a slot that cuts its neighbour": (
+        {"stator.slot_shape": "parallel", "stator.slot_width_mm": 65.0},
+        "slot_width_mm",
+        "to leave teeth",
+    ),
+    "bars wider than the slot": ({"winding.bar_width_mm": 60.0}, "bar_width_mm", "between the liners"),
+    "more layers than the slot holds": (
+        {"winding.layers": 9, "winding.bar_height_mm": 3.0},
+        "bar_height_mm",
+        "9 layers",
+    ),
+    "enamel thicker than the room": ({"winding.enamel_mm": 1.0}, "enamel_mm", "at most"),
+    "end turns that cut each other": ({"winding.end_mm": 2.0, "winding.pitch_deg": 170.0}, "end_mm", "cut each other"),
+}
+
+
+@pytest.mark.parametrize("shape", ["flat", "v"])
+def test_a_magnet_nearly_as_wide_as_the_rotor_is_one_message(shape):
+    """172 mm of rotor, a bridge of 2 mm either side: found by machines beyond the bounds, as a fault of arithmetic."""
+    width = {"flat": 170.0, "v": 85.7}[shape]
+    rotor = {"rotor.poles": 2, "rotor.magnet_shape": shape, "rotor.magnet_width_mm": width, "rotor.v_deg": 0.0}
+    with pytest.raises(InputError, match=r"magnet_width_mm: .* to lie inside the rotor"):
+        build(families()["pmsm"], {**FEW["pmsm"], **rotor})
+
+
+@pytest.mark.parametrize("fault", HAIRPIN_FAULTS)
+def test_hairpins_that_do_not_fit_are_one_message(fault):
+    values, key, words = HAIRPIN_FAULTS[fault]
+    with pytest.raises(InputError, match=words) as caught:
+        build(families()["pmsm"], {**FEW["pmsm"], "winding.kind": "hairpin", **values})
+    assert f"random.toml [geometry.{next(iter(values)).split('.')[0]}] {key}" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 @FAMILIES
 @quick(max_examples=2)
 @given(data=st.data())

@@ -99,7 +99,7 @@ def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, 
     )
     G = every.matrix(strength)[:, :n]
     for s, c in zip(network.sources, strength[len(network.links) :], strict=True):
-        if slope_1_K := loss_slope(s.law.temperature, s.probe.at(z)):
+        if slope_1_K := loss_slope(s.law.temperature, s.probe.at(z), at):
             slope = c * slope_1_K * s.weights
             np.subtract.at(G, (s.index[:, None], s.probe.index[None, :]), np.outer(slope, s.probe.weights))
     return G
@@ -111,9 +111,7 @@ def losses(
     """Heat (W) of the sources of some kinds at temperatures z."""
     m, at = multipliers(network, values), {n: np.array([float(u)]) for n, u in inputs.items()}
     sources = [s for s in network.sources if s.kind in kinds]
-    watts = [
-        float(np.mean(s.law.factor(at))) * temperature_value(s.law.temperature, s.probe.at(z), 0.0) for s in sources
-    ]
+    watts = [coefficient(s.law, at, s.probe.at(z), 0.0) for s in sources]
     return sum(m.get(s.name, 1.0) * w for s, w in zip(sources, watts, strict=True))
 
 

@@ -7,6 +7,7 @@ import math
 from geom.description.geometry import Geometry
 from geom.families.channels import too_near
 from geom.families.fit import Fit, mm
+from geom.families.radial_flux.hairpin import check_bars
 from geom.families.radial_flux.housing import nozzles
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.rotors import shapes_of_magnets
@@ -37,7 +38,9 @@ def _check_stator(fit: Fit, g: Geometry, at: Layout) -> None:
     slot = 1.8 * at.slot0 * math.sin(max(at.half_angle(at.slot0), 0.0))
     fit.need(s.opening < slot, "stator.opening", "narrower than the slot")
     fit.need(s.wedge <= s.tip, "stator.wedge", f"at most the tooth tip, {s.tip * mm:.4g} mm")
-    if g.winding.kind != "distributed":
+    if g.winding.kind == "hairpin":
+        check_bars(fit, g)
+    if g.winding.kind == "concentrated":
         fit.below(0.5 * widest, "stator.opening", ", to leave end windings on the teeth")
 
 
@@ -87,6 +90,8 @@ def check_magnets(g: Geometry, at: Layout) -> None:
     fit, r, pitch = Fit(g), g.rotor, 2 * at.rotor * math.sin(math.pi / g.rotor.poles)
     span = r.magnet_width * (1 if r.magnet_shape == "flat" else 2 * math.cos(r.v))
     fit.need(span < pitch, "rotor.magnet_width", "less than the pole pitch")
+    rise = r.magnet_width / 2 if r.magnet_shape == "flat" else r.bridge / 2 + r.magnet_width * math.cos(r.v)
+    fit.need(rise < at.rotor - r.bridge, "rotor.magnet_width", "less, to lie inside the rotor")
     magnets = shapely.polygons([[(x, y) for x, y, _ in magnet.outer] for magnet in shapes_of_magnets(g, at)])
     farthest = (shapely.get_coordinates(magnets) ** 2).sum(axis=1).max()
     limit = max(0.998 * at.rotor, at.rotor - 0.9 * r.bridge)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Measure, parameter_sets
+from geom.families.radial_flux import hairpin
 from geom.families.radial_flux.layout import Layout
 from geom.families.radial_flux.magnets import widest
 from geom.families.shaft_fan import fan_measures
@@ -33,13 +34,18 @@ content = Measure(
     "stack, end windings and end-caps together",
     lambda g: g.stator.stack_length + 2 * (g.winding.straight + g.winding.end + g.frame.cap),
 )
+bar_room = Measure("the slot's width inside the liner", hairpin.bar_room)
+layer = Measure("the slot's depth inside the liner over layers", hairpin.layer_height)
+enamel_room = Measure("what bars leave on either side, the smaller", hairpin.enamel_room)
+end_height = Measure("the bore, above where end turns of bars would cut each other", bore.span, hairpin.least_end)
 length = Measure("the length over the end-caps", lambda g: g.frame.length)
 turn = Measure("the stack's length over turns + 1", lambda g: g.stator.stack_length / (g.housing.turns + 1))
 
 
 def features(g: Geometry) -> Features:
     """What formulas ask beside the solids."""
-    return Features(air_gap=g.stator.air_gap)
+    bars = hairpin.bars(g) if g.winding.kind == "hairpin" else None
+    return Features(air_gap=g.stator.air_gap, bars=bars)
 
 
 def _even_pitch(g: Geometry) -> float:

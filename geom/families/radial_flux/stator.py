@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude
 from geom.description.profile import Loop, Profile
 from geom.description.roles import Role
+from geom.families.radial_flux.hairpin import hairpin, layer_height
 from geom.families.radial_flux.layout import Layout
 
 
@@ -20,8 +22,6 @@ def stator(g: Geometry, at: Layout) -> tuple[Part, ...]:
     wires = shapes.turned(wire, angles)
     liners = shapes.turned(Profile(lined, (wire.outer,)), angles)
     fillings = shapes.turned(Profile(whole, (lined,)), angles) if gap else []
-    ends, loose = _ends(g, at, angles), (w.end_fill, w.end_impregnation)
-    left, right = extrude(ends, at.ring0, at.coil0), extrude(ends, at.coil1, at.ring1)
     half = g.stator.opening / 2
     mouth, throat = math.asin(half / at.bore), math.asin(half / at.slot0)
     inner, outer = (at.half_angle(r) for r in (at.slot0, at.slot1))
@@ -38,10 +38,24 @@ def stator(g: Geometry, at: Layout) -> tuple[Part, ...]:
         *([Part("slot.gap", "gap-resin", extrude(fillings, at.core0, at.core1), role=Role.INSULATION)] if gap else []),
         Part("slot.liner", "slot-liner", extrude(liners, at.core0, at.core1), role=Role.INSULATION),
         *_wedges(g, at, angles),
-        Part("winding", "winding", extrude(wires, at.core0, at.core1), (w.fill, w.impregnation), role=Role.WINDING),
-        Part("winding.left", "end-winding", (*extrude(wires, at.coil0, at.core0), *left), loose, role=Role.WINDING),
-        Part("winding.right", "end-winding", (*extrude(wires, at.core1, at.coil1), *right), loose, role=Role.WINDING),
+        *(_layers if w.kind == "hairpin" else _bundles)(g, at, angles, wires),
     )
+
+
+def _layers(g: Geometry, at: Layout, angles: list[float], wires: list[Profile]) -> list[Part]:
+    edges = [at.wire1 - k * layer_height(g) for k in range(g.winding.layers + 1)]
+    return hairpin(g, at, angles, wires, [Profile(slot_loop(at, a, b, at.lining)) for b, a in pairwise(edges)])
+
+
+def _bundles(g: Geometry, at: Layout, angles: list[float], wires: list[Profile]) -> list[Part]:
+    w, ends, loose = g.winding, _ends(g, at, angles), (g.winding.end_fill, g.winding.end_impregnation)
+    left = (*extrude(wires, at.coil0, at.core0), *extrude(ends, at.ring0, at.coil0))
+    right = (*extrude(wires, at.core1, at.coil1), *extrude(ends, at.coil1, at.ring1))
+    return [
+        Part("winding", "winding", extrude(wires, at.core0, at.core1), (w.fill, w.impregnation), role=Role.WINDING),
+        Part("winding.left", "end-winding", left, loose, role=Role.WINDING),
+        Part("winding.right", "end-winding", right, loose, role=Role.WINDING),
+    ]
 
 
 def _ends(g: Geometry, at: Layout, angles: list[float]) -> list[Profile]:

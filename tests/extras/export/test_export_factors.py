@@ -18,6 +18,7 @@ from lumped.correlations.streams import streamed
 from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.layer_loss import by_dowell
 from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
@@ -41,6 +42,7 @@ EXACT = [
     COPPER,
     MAP,
     CopperLoss(0.01, ("id_A",)),
+    by_dowell(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), "speed_rpm", 4, 3e-3, 0.8, 5),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),
     IronLoss(3.0, 2.0, "speed_rpm", 1000.0, "id_A", 100.0, 1.7, excess=0.3, frequency_exponent=1.2),
     IronLoss(3.0, 2.0, "speed_rpm", 1000.0),

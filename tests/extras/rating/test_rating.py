@@ -23,6 +23,7 @@ from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Link, Row
+from lumped.sources.loss_laws import CopperLoss
 from lumped.transfer.laws import Fixed, InputPower, Linear
 from lumped.transfer.thin_air import density
 
@@ -183,6 +184,15 @@ def test_a_map_takes_the_place_of_the_losses():
     net = with_losses(body(), loss_grid(grid(T=(20.0, 120.0)), "map.csv"), "map.csv")
     at = steady(net, {"torque_Nm": 100.0, "speed_rpm": 1000.0}, {"air": AIR})["body"]
     assert_allclose(at - AIR, 200.0 / (G - 0.8), rtol=1e-6)  # G dT = 200 (1 + 0.004 dT)
+
+
+def test_a_map_heats_the_parts_of_one_loss_by_their_resistance():
+    net, parts = body(), (("bottom", 1.0), ("opening", 3.0))
+    laws = {name: CopperLoss(R * share, ("current_A",)) for name, share in parts}
+    pieces = [node_source(net, f"loss:copper:in:{name}", "copper", {"body": 1.0}, law) for name, law in laws.items()]
+    mapped = with_losses(replace(net, sources=tuple(pieces)), loss_grid(grid(), "map.csv"), "map.csv")
+    at = {"torque_Nm": np.array([100.0]), "speed_rpm": np.array([0.0])}
+    assert_allclose([float(s.law.factor(at)[0]) for s in mapped.sources], [50.0, 150.0])
 
 
 def without(columns, k):

@@ -50,7 +50,19 @@ def test_a_v_of_buried_magnets(tmp_path):
     assert "air.inside" in [fluid.name for fluid in machine.fluids]
 
 
-def test_a_hairpin_is_said_to_be_a_solid_winding(tmp_path):
+def test_a_hairpin_has_its_layers(tmp_path):
+    pins = "Armature_CoilStyle=1\nCopper_Width=3\nCopper_Height=1.5\n"
+    draft = draft_of(tmp_path, pins, ConductorsPerSlot=6)
+    machine = machine_from(draft.sections(), "pins")
+    layers = [part for part in machine.parts if ".layer-" in part.name]
+    assert len(layers) == 6
+    for part in layers:
+        assert part.volume * part.filling[0] == pytest.approx(12 * 4.5e-6 * 0.04, rel=1e-6)
+    assert machine.sections["sensors"]["winding.copper"]["mean_of"][:1] == ["winding.layer-1"]
+    assert not [pair for pair in machine.sections["contacts"] if "winding" in pair.split("|")]
+
+
+def test_bars_that_are_no_layers_are_a_solid_winding(tmp_path):
     pins = "Armature_CoilStyle=1\nCopper_Width=3\nCopper_Height=2.5\n"
     draft = draft_of(tmp_path, pins, ConductorsPerSlot=6)
     assert "equivalent solid" in {e.key: e.source for e in draft.entries}["Armature_CoilStyle"]

@@ -170,6 +170,20 @@ def test_fluids_at_20_degC():
     assert air(20.0, 2000.0).rho / air(20.0).rho == pytest.approx(0.785, abs=0.003)
 
 
+@pytest.mark.parametrize("degC", [100.0, 117.0, 133.0])
+def test_water_under_pressure_is_that_of_iapws(degC):
+    """CoolProp's IAPWS-95 at 3 bar; it boils at 133.5 degC."""
+    exact = pytest.importorskip("CoolProp.CoolProp").PropsSI
+    hot, names = water(degC, 3.0), ("D", "C", "L", "V", "isobaric_expansion_coefficient")
+    expected = [exact(name, "T", degC + 273.15, "P", 3e5, "Water") for name in names]
+    assert (hot.rho, hot.cp, hot.k, hot.mu) == pytest.approx(expected[:4], rel=5e-3)
+    assert hot.beta == pytest.approx(expected[4], rel=0.01)
+    with pytest.raises(InputError, match=r"T = 134 degC; 0 to 133\.5 degC"):
+        water(134.0, 3.0)
+    with pytest.raises(InputError, match=r"T = 101 degC; 0 to 100 degC"):
+        water(101.0)
+
+
 def test_half_by_volume_is_more_than_half_by_mass():
     assert mass_fraction_of(0.5) == pytest.approx(0.527, abs=0.001)
 

@@ -174,6 +174,16 @@ def test_a_coolant_that_freezes_and_a_flow_beyond_the_correlation_say_so():
         steady(net, {"flow_l_min": 1e5}, {"ambient": 20.0, "inlet": 60.0})
 
 
+def test_water_under_pressure_is_liquid_above_100_degC():
+    """At 3 bar up to 133 degC, by IAPWS; without a pressure what boils is said."""
+    hot = network(circuit(coolant={"name": "water", "pressure_bar": 3.0}))
+    rest = steady(hot, {}, {"ambient": 20.0, "inlet": 110.0})
+    mean = water(0.5 * (rest["water.outlet"] + 110.0), 3.0)
+    assert LOSS_W / (rest["water.outlet"] - 110.0) == pytest.approx(mean.rho * mean.cp * 8.0 / 6e4, rel=2e-3)
+    with pytest.warns(RangeWarning, match=r"its coolant at 1\d\d.* degC outside 0 to 100"):
+        steady(network(circuit(coolant="water")), {}, {"ambient": 20.0, "inlet": 110.0})
+
+
 @pytest.mark.parametrize("inlet", [-15.0, 5.0, 20.0, 60.0])
 def test_films_follow_the_coolant_s_temperature(inlet):
     """What holds at rest with films fixed at the mean temperature of the coolant holds with films that follow it.

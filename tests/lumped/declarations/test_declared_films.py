@@ -253,6 +253,16 @@ def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
         simulate(network, Record(np.arange(3.0), {"v": 5000.0}, {"ambient": 20.0}))
 
 
+@pytest.mark.parametrize(("rpm", "said"), [((0.0, 3000.0), []), ((0.0, 3000.0, 20.0), ["n = 20 outside 95.01 to"])])
+def test_slower_than_its_correlation_knows_is_said_but_not_rest(rpm, said):
+    """A shaft of 60 mm in air of 50 degC has a Reynolds number of 1e3 at 95 rpm."""
+    network = declared("rotating", {"surface": "shaft", "speed": "n", "diameter_mm": 60.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RangeWarning)
+        simulate(network, Record(np.arange(float(len(rpm))), {"n": np.array(rpm)}, {"ambient": 20.0}))
+    assert [words in str(w.message) for w, words in zip(caught, said, strict=True)] == [True] * len(said)
+
+
 @pytest.mark.parametrize(
     ("mechanism", "keys", "message"),
     [

@@ -16,6 +16,7 @@ from lumped.integration.simulate import Record
 from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
+from lumped.sources.layer_loss import LayerLoss, by_dowell, from_map
 from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.sources.loss_measured import MeasuredLoss
@@ -98,6 +99,8 @@ LAWS = [
     MapLoss((0.0, 4000.0), (0.0, 5.0), ((1.0, 2.0), (3.0, 5.0))),
     CopperLoss(0.02, ("current_A",)),
     EddyLoss(CopperLoss(0.02, ("current_A",)), (1.0, 0.0, 0.4), "speed_rpm", 2000.0),
+    by_dowell(CopperLoss(0.02, ("current_A",)), "speed_rpm", 4, 3e-3, 0.8, 5),
+    from_map(CopperLoss(0.02, ("current_A",)), "speed_rpm", (0.0, 1000.0, 3000.0), (1.0, 1.1, 1.9)),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.5),)),)),
     IronLoss(1.0, 0.5, "speed_rpm", 1000.0, "current_A", 10.0),
     BrushLoss(0.2, "current_A", 0.5, "speed_rpm", 1000.0),
@@ -192,6 +195,10 @@ LIMITS = {
     EddyLoss: [  # none at rest, the copper's once more where the resistance has doubled
         (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": 0.0}, 0.0),
         (EddyLoss(CopperLoss(0.02, ("I",)), (1.0, 0.0, 1.0), "n", 50.0), {"I": 10.0, "n": -50.0}, 2.0),
+    ],
+    LayerLoss: [  # the copper's: what alternating current adds is its law of temperature and speed
+        (by_dowell(CopperLoss(0.02, ("I",)), "n", 4, 3e-3, 0.8, 5), {"I": 10.0, "n": 0.0}, 2.0),
+        (from_map(CopperLoss(0.02, ("I",)), "n", (0.0, 50.0), (1.0, 2.0)), {"I": -10.0, "n": 50.0}, 2.0),
     ],
     PowerLoss: [(PowerLoss(((2.0, (("n", 10.0, 1.5),)), (1.0, ()))), {"n": 0.0}, 1.0)],
     IronLoss: [

@@ -14,7 +14,7 @@ from lumped.build.load_cases import rated_streams
 from lumped.build.pipeline import prepared
 from lumped.integration.steady import steady
 from lumped.machine.films import surroundings
-from lumped.machine.jackets import channel_of, cooling_of, liquid
+from lumped.machine.jackets import channel_of, cooling_of
 from lumped.machine.loss_sources import _declared, loss_watts
 from lumped.machine.motor import operating_point
 from lumped.machine.outer import cowl_of, outer_films, outer_of
@@ -24,6 +24,7 @@ from lumped.machine.settings import read_films
 from lumped.machine.shapes import fins_of
 from lumped.machine.zones import motor_zones
 from lumped.model.multipliers import multipliers
+from lumped.transfer.coolant import glycol
 from lumped.transfer.terms_value import coefficient, temperature_value
 
 FAMILIES = ("pmsm-m1", "ipmsm-48s8p-jacket", "tefc-industrial")
@@ -137,7 +138,7 @@ def test_coolant_warms_by_the_exact_exponential_along_walls_of_one_temperature(n
     """
     network, machine = networks["ipmsm-48s8p-jacket"], load_machine("ipmsm-48s8p-jacket")
     cells = [name for name in network.states if name.startswith("jacket@")]
-    wall, coolant, channel = 80.0, liquid("glycol-50", degC), channel_of(machine, "jacket")
+    wall, coolant, channel = 80.0, glycol("ethylene", 50.0)(degC), channel_of(machine, "jacket")
     for flow in (1.0, 5.0, 12.0):
         at, T, area = {"flow_l_min": np.array([flow])}, 20.0, 0.0
         rate = coolant.rho * coolant.cp * flow / 60000.0

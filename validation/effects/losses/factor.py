@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from lumped.model.network import Network
-from lumped.sources.loss_laws import EDDY
+from lumped.sources.loss_laws import declared_name
 from validation.effects.base import Effect, Scene, with_parameter
 
 
@@ -27,8 +27,8 @@ class LossFactor(Effect):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return [s.name for s in scene.network.sources if not s.origin and not s.name.endswith(EDDY)]
+        return list(dict.fromkeys(declared_name(s.name) for s in scene.network.sources if not s.origin))
 
     def extend(self, network: Network) -> Network:
-        parts = (s.name for s in network.sources if s.name.removesuffix(EDDY) == self.place)
+        parts = (s.name for s in network.sources if declared_name(s.name) == self.place)
         return with_parameter(network, self.parameter(*parts))

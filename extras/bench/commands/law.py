@@ -1,0 +1,78 @@
+"""thermoscope bench law TESTS.csv"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extras.bench.steady_law.law import Prediction, SteadyLaw, checks, find_law
+from extras.bench.steady_law.steady_tests import Columns, SteadyTests, read_tests
+from thermoscope import InputError
+from thermoscope.plugin import Progress, Summary, Table, as_number, csv_lines, percent, write_whole
+
+MOST_INPUTS = 3  # of a law: with more, forms outnumber the tests of any bench
+Predicted = tuple[SteadyTests, Prediction]
+
+
+def law_request(
+    heat: str, coolant: str, follows: Sequence[str], temperatures: str, ambient: str | None, fluid: str
+) -> Columns:
+    """Options as names of columns. InputError for names that come twice, or too many."""
+    pairs = [(name.strip(), unit.strip()) for name, _, unit in (word.partition("=") for word in follows)]
+    names = [heat, coolant, *(name for name, _ in pairs)]
+    if len(set(names)) < len(names):
+        twice = next(n for n in names if names.count(n) > 1)
+        raise InputError(f"'{twice}' is given twice", "--heat, --coolant, --follows", "a column for one thing")
+    if len(pairs) > MOST_INPUTS:
+        raise InputError(f"{len(pairs)} inputs", "--follows", f"at most {MOST_INPUTS}")
+    degC = None if ambient is None else as_number(ambient)
+    return Columns(heat, coolant, pairs, temperatures, ambient if degC is None else degC, fluid)
+
+
+def law_document(
+    file: Path, columns: Columns, predict: Path | None, tell: Progress
+) -> tuple[SteadyLaw, dict[str, Any], Predicted | None]:
+    """The law of a file with its checks, and what it predicts of another one."""
+    tell(f"reading {file}")
+    tests = read_tests(file, columns)
+    others = None if predict is None else read_tests(predict, columns, tests.scales)
+    law = find_law(tests, tell)
+    document = {"file": str(file), **law.document(), "checks": checks(law, tell)}
+    if others is None:
+        return law, document, None
+    prediction = law.predict(others)
+    if others.names:
+        document["predicted"] = {"left_out": str(predict), **prediction.agreement(others)}
+    return law, document, (others, prediction)
+
+
+def law_summary(document: Mapping[str, Any]) -> Summary:
+    """The law in words, its numbers, how well it agrees with its tests and with what was left out."""
+    columns = "number=name | *value | *95 % interval=interval | *unit"
+    numbers = Table.of("", document["numbers"], columns, interval=lambda n: f"{n['low']:.3g} to {n['high']:.3g}")
+    rows = [{"left_out": "nothing", **document["agreement"]}, *document["checks"]]
+    rows += [document["predicted"]] if "predicted" in document else []
+    columns = "left out=left_out | *tests | *rms (K)=rms_K | worst sensor (K)=worst_K | *in the band=inside | worst"
+    errors = Table.of("Tests and law, all sensors", rows, columns, inside=lambda r: percent(r["inside"]))
+    more = [document["formula"], numbers, errors, *document["doubts"]]
+    return Summary(document["sentence"], more, "--out DIR; --json FILE")
+
+
+def law_files(law: SteadyLaw, predicted: Predicted | None, out: Path) -> list[Path]:
+    """The picture, and the table of what was predicted."""
+    from extras.bench.figure import cooling_law
+
+    paths = [out / "law.png"]
+    cooling_law(law, predicted and predicted[0], png=paths[0])
+    if predicted is not None:
+        tests, p = predicted
+        columns = law.tests.columns
+        head = [*(name for name, _ in columns.inputs), columns.heat, columns.coolant, "mean_degC", *law.tests.names]
+        head += [f"{name}_95_K" for name in ("mean", *law.tests.names)]
+        table = np.column_stack([tests.inputs, tests.heat, tests.coolant, p.mean, p.readings, p.half, p.halves])
+        paths.append(out / "predicted.csv")
+        write_whole(paths[-1], csv_lines([head, *([f"{v:.6g}" for v in row] for row in table)]))
+    return paths

@@ -1,0 +1,1 @@
+"""From a table of steady tests to the law that their cooling follows."""
