@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
 from measured.headers.layout import MISSING
-from measured.headers.words import VOCABULARY
+from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is no decimal sign.
@@ -140,6 +140,7 @@ def is_unit(text: str) -> bool:
     return bool(unit_of(text)) or text.strip().strip("[](){}<>").replace(" ", "").lower() in OTHER
 
 
+TIMES = ("us", "ms", "s", "min", "h")  # that are also the ends of names: Wicklung US, I_sek, T_wdg_min
 BRACKETS = re.compile(r"\[([^\[\]]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
 INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N: 1, LBL: winding)
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is no bearing
@@ -172,6 +173,7 @@ def split_unit(header: str) -> tuple[str, str]:
         (last := TRAILING.match(header))
         and last[1]
         and _surely(last[2])
+        and not (unit_of(last[2]) in TIMES and not is_time(last[1]) and (roles_of(last[1]) or quantities_of(last[1])))
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):
         return last[1].strip(), unit_of(last[2])

@@ -11,7 +11,7 @@ from itertools import accumulate
 import numpy as np
 
 from geom.errors import InputError
-from measured.headers.cells import is_date, is_reading, is_unit, number, split_unit, unit_of
+from measured.headers.cells import TIMES, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
 from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
 
@@ -19,7 +19,6 @@ SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
 SHORT = 0.1  # of all rows of readings: settings of channels are few
-TIMES = {"s", "ms", "us", "min", "h"}
 TALLEST = 16  # rows of names, tags, kinds, units and settings over the readings
 UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位")  # of a column of units
 MOST, LONG = 100, 20  # signals and readings of a table that lies on its side
@@ -70,7 +69,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     names = _called(names, rows[:header])
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     groups = [""] * width
-    if above and any(above[-1][width // 2 :]):  # names of groups over those of columns
+    one = bool(above) and len({*filter(None, above[-1][1:])}) == 1 < sum(map(bool, above[-1][1:]))  # says nothing
+    if above and any(above[-1][width // 2 :]) and not one:  # names of groups over those of columns
         # Merged cells are of the group of the first of them.
         merged: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
         groups = list(merged)
@@ -83,7 +83,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         late = next((labels.index(c) - j for row in others for j, c in enumerate(row) if c and c in labels), 0)
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
-    unit_cells = _padded(rows[units] if units is not None else [], width)
+    labelled: Row = next((row for row in rows[:header] if row and row[0] == "Y_Unit_Label"), ())  # of LabVIEW
+    unit_cells = _padded(rows[units] if units is not None else labelled, width)
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
     if not is_unit(unit_cells[0]):
         unit_cells[0] = split_unit(unit_cells[0])[1]  # the row's own label, such as "Unit [s]"
@@ -214,7 +215,7 @@ def _kinds(row: Row, width: int) -> list[bool]:
 def _all_units(row: Row) -> bool:
     """A label may stand before them; units of times alone are those of the steps between rows."""
     cells = [str(c).strip() for c in row if c is not None and str(c).strip()]
-    steps = len(cells) > 2 and {unit_of(c) for c in cells[1:]} <= TIMES
+    steps = len(cells) > 2 and {unit_of(c) for c in cells[1:]} <= {*TIMES}
     return bool(cells) and not steps and sum(is_unit(c) for c in cells) >= 0.6 * len(cells)
 
 

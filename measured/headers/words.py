@@ -31,29 +31,13 @@ def plain(word: str) -> str:
 
 QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING, DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS, EXTREME, SPREAD, MEAN = (
-    _words(VOCABULARY["words"][name])
-    for name in (
-        "setpoint",
-        "read",
-        "modelled",
-        "inlet",
-        "nothing",
-        "difference",
-        "clock",
-        "loss",
-        "outer",
-        "channels",
-        "extreme",
-        "spread",
-        "mean",
-    )
-)
-INSTRUMENT, MACHINE, SPARE, RUNS = (
-    _words(VOCABULARY["words"][name]) for name in ("instrument", "machine", "spare", "runs")
-)
+WORDS = {name: _words(text) for name, text in VOCABULARY["words"].items()}
+SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet", "nothing"))
+DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
+EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
+SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 PHRASES = {
-    re.compile(rf"(?<![^\W\d_])(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
+    re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
     for phrase in phrases.split(",")
 }
@@ -72,7 +56,7 @@ def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
     out: list[str] = []
     for phrase, meaning in PHRASES.items():
-        name = phrase.sub(meaning, name)
+        name = phrase.sub(f" {meaning} ", name)
     for word in WORD.findall(name):
         low = word.lower()
         if len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss"):
@@ -130,6 +114,8 @@ def roles_of(name: str) -> list[Role]:
         ]
         if at:
             hits[role] = min(at)
+    if [*hits] == [Role.IRON] and OUTER & {*words} and {*"uvw"} & {*words}:  # Stator U1
+        return [Role.WINDING]
     if not hits and OUTSIDE.search(name):
         return [Role.AMBIENT]
     return sorted(hits, key=lambda role: hits[role])

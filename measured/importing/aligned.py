@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.errors import InputError
+from measured.headers.words import RUNS, tokens
 from measured.importing.clock import Clock
 from measured.importing.guess import Guess
-from measured.importing.source import Source
+from measured.importing.long_table import HOLD
+from measured.importing.source import Source, signature
 from measured.recordings.alignment import column_onset
+from measured.recordings.sheet import MAX_GAP_S
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
 LEAST = 0.5  # of a recording, that has to be left where a column has gaps
@@ -39,6 +42,12 @@ class Recording:
     def step_s(self) -> float:
         return float(np.nanmedian(np.diff(self.clock.seconds)))
 
+    @property
+    def gap_s(self) -> float:
+        """The longest step between rows that is no gap: any, of a log of what changes."""
+        logs = any(HOLD in note for note in self.source.notes)
+        return max(MAX_GAP_S, float(np.nanmax(np.diff(self.clock.seconds)))) if logs else MAX_GAP_S
+
 
 def shift(first: Recording, other: Recording) -> tuple[float, str]:
     """Seconds to add to the other's clock, and by what. InputError for clocks that never overlap or show no onset."""
@@ -46,6 +55,10 @@ def shift(first: Recording, other: Recording) -> tuple[float, str]:
         shift_s = other.clock.start - first.clock.start
         _overlapping(first, other, shift_s)
         return shift_s, "both clocks show dates"
+    near, shift_s = 2 * max(first.step_s, other.step_s), other.clock.at_s - first.clock.at_s
+    runs = any(RUNS & {*tokens(name)} for name in signature(first.source) & signature(other.source))
+    if abs(shift_s) <= near and (runs or first.clock.at_s > 10 * near):  # of one board, or of rows that tell the runs
+        return shift_s, "both clocks count alike"
     (a, by), (b, of) = onset(first), onset(other)
     shift_s = a - b
     _overlapping(first, other, shift_s)
@@ -87,6 +100,7 @@ def longest_part(
     for column in ("", *columns):
         at = t[rows & np.isfinite(first.source.numbers(column))] if column else t[rows]
         usual = float(np.median(np.diff(at))) if at.size > 1 else 0.0
+        at = np.concatenate([t[rows][:1], at, t[rows][-1:]])  # it may begin late
         gaps += [
             (float(at[k]), float(at[k + 1]), column) for k in np.flatnonzero(np.diff(at) > max(limit_s, 2 * usual))
         ]

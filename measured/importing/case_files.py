@@ -10,6 +10,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
@@ -20,6 +21,8 @@ from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
+from measured.headers.cells import unit_of
+from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, tokens
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
@@ -27,6 +30,7 @@ from measured.importing.source import Source, over_room, read_source, read_sourc
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
+from measured.recordings.sheet import MAX_GAP_S
 
 TIME = "time_s"
 ROLES = ("calibrate", "validate", "hold-out")
@@ -116,8 +120,22 @@ def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, C
 
     period_s : between rows, where it has no clock
     """
-    runs = [run for source in read_sources(file) for run in runs_of(over_room(source), period_s)]
+    runs = [run for source in read_sources(file) for run in runs_of(with_loss(over_room(source)), period_s)]
     return [with_clock(run, period_s) for run in runs]
+
+
+def with_loss(source: Source) -> Source:
+    """With what goes in less what comes out as a loss, and a note, where no loss and no current was recorded."""
+    units, words = source.units, {c: {*tokens(label)} for c, label in source.labels.items() if source.is_numeric(c)}
+    ends = [c for side in (GOES_IN, COMES_OUT) for c in words if unit_of(units[c]) in ("W", "kW") and words[c] & side]
+    heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
+    if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
+        return source
+    name = "loss {} - {}".format(*ends)
+    note = f"{source.file.name}: '{name}' is of all between them; what each part loses is not recorded"
+    cells = {**source.cells, name: source.numbers(ends[0]) - source.numbers(ends[1])}
+    labels, notes = {**source.labels, name: name}, (*source.notes, note)
+    return replace(source, cells=cells, labels=labels, units={**units, name: units[ends[0]]}, notes=notes, values={})
 
 
 def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:
@@ -189,6 +207,8 @@ def _sheet(draft: Draft, names: Mapping[str, str]) -> Iterator[str]:
     for name, value in zip(("from_s", "to_s"), draft.window_s, strict=True):
         if value:
             yield f"{name} = {value:g}"
+    if first.gap_s > MAX_GAP_S:
+        yield f"max_gap_s = {first.gap_s:g}   # rows are written where something changes"
     yield from _constants("inputs", draft.constants)
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:

@@ -67,7 +67,7 @@ class Clock:
     """seconds : (rows,) from the first row;  start : s since 1970, None where only a duration is known
 
     columns : those it was read from;  words : how;  doubt : what is not sure of it, "" for nothing
-    invented : nothing in the file says how far its rows are apart
+    invented : nothing in the file says how far its rows are apart;  at_s : what it shows in the first row
     """
 
     seconds: Array
@@ -76,6 +76,7 @@ class Clock:
     words: str
     doubt: str = ""
     invented: bool = False
+    at_s: float = 0.0
 
     @property
     def end_s(self) -> float:
@@ -144,12 +145,12 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
     A clock that turns over after a minute, an hour or a day is none that does.
     """
     clock = None if period_s is not None else _guessed_clock(source)
-    if clock is None:
-        runs = [c for c in source.cells if RUNS & {*tokens(source.labels[c])} and source.is_numeric(c)]
-        number = source.numbers(runs[0]) if runs else np.zeros(source.rows)
-        at = np.flatnonzero(np.diff(number)) + 1
-        anew = np.isfinite(number).all() and np.unique(number).size == at.size + 1
-    else:
+    runs = [c for c in source.cells if RUNS & {*tokens(source.labels[c])} and source.is_numeric(c)]
+    number = source.numbers(runs[0]) if runs else np.zeros(source.rows)
+    at = np.flatnonzero(np.diff(number)) + 1
+    anew = np.isfinite(number).all() and np.unique(number).size == at.size + 1
+    steps = np.diff(clock.seconds) if clock else np.empty(0)
+    if clock is not None and not (anew and at.size and bool((steps[at - 1] > 2 * np.nanmedian(steps)).all())):
         t = clock.seconds
         at = np.flatnonzero(np.diff(t) < 0) + 1
         usual = float(np.nanmedian(np.abs(np.diff(t)))) if t.size > 1 else 0.0
@@ -213,7 +214,7 @@ def checked(clock: Clock, source: Source) -> Clock:
     first = float(t[finite][0])
     start = None if clock.start is None else clock.start + first
     t, equal = _spread(t - first)
-    return Clock(t, start, clock.columns, clock.words, "; ".join([*doubts, *equal]))
+    return Clock(t, start, clock.columns, clock.words, "; ".join([*doubts, *equal]), at_s=first)
 
 
 def _spread(t: Array) -> tuple[Array, list[str]]:
@@ -585,7 +586,8 @@ def _scaled(source: Source, column: str) -> Clock:
     if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
         return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")
     if bool((finite == np.round(finite)).all()) and step >= MANY and step not in USUAL_STEPS_S:
-        unit = "us" if MANY_MS <= step < MANY_US else "ms"
+        odd = step > 6e4 and step / 1e3 not in USUAL_STEPS_S  # 100 s between rows: 0.1 s, rather
+        unit = "us" if (odd or step >= MANY_MS) and step < MANY_US else "ms"
         doubt = f"no unit of '{column}': {unit} are assumed"
         return Clock(values * TIME_UNITS[unit], None, (column,), f"numbers, taken as {unit}", doubt)
     doubt = f"no unit of '{column}': seconds are assumed, {step:g} s from row to row"

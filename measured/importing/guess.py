@@ -18,6 +18,7 @@ from measured.headers.words import (
     INLET,
     INSTRUMENT,
     LETTERED,
+    LOSS,
     MACHINE,
     MEAN,
     MODELLED,
@@ -29,6 +30,7 @@ from measured.headers.words import (
     SETPOINT,
     SPARE,
     SPREAD,
+    SUPPLY,
     axis_of,
     is_rise,
     is_setpoint,
@@ -72,12 +74,15 @@ FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in b
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
-OF_INSTRUMENT = "of the instrument itself, by its name"
+OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
+HARDLY = "hardly warms: taken as the room"
+SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
 NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
+LOUD = (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT, HARDLY, SEVERAL)  # of columns that are used
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
@@ -115,7 +120,17 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    return single(every if kelvin else _in_fahrenheit(source, every), target)
+    return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target))
+
+
+def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
+    """Of the first machine, and a doubt, where speeds differ by a number alone."""
+    stems = {g.column: (g.quantity, *filter(str.isalpha, tokens(source.labels[g.column]))) for g in every if g.feeds}
+    lost = stems.keys() - {stem: column for column, stem in reversed(stems.items())}.values()
+    if not any(stems[column][0] == "speed" for column in lost):
+        return every
+    every = [g.without(SEVERAL) if g.column in lost else g for g in every]
+    return [replace(g, doubt=SEVERAL) if g.quantity == "speed" and g.feeds else g for g in every]
 
 
 def _read(source: Source, every: list[Guess]) -> list[Guess]:
@@ -123,7 +138,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
-        g.without("an extreme beside the reading")
+        g.without("made of the reading beside it")
         if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
         else g
         for g in every
@@ -144,7 +159,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     }
     for i, g in enumerate(every):
         if g.column in instruments:
-            stays = len(instruments) == len(hot) or is_spoken(g.place, INSTRUMENT)
+            stays = (len(instruments) == len(hot) and not g.place) or is_spoken(g.place, INSTRUMENT)
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
 
@@ -319,8 +334,15 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
         return base.without("no place of the model fits its name")
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
-    doubt = f"or {other}" if other else NUMBERED if weak else base.doubt
+    whole = "names no part: the winding?" if is_whole(label) else ""
+    room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
+    doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
+
+
+def is_whole(label: str) -> bool:
+    """Does it name the machine, and no part of it?"""
+    return not roles_of(label) and is_spoken(label, MACHINE)
 
 
 def _fed(base: Guess, label: str, target: Target) -> Guess:
@@ -338,7 +360,10 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
     def order(g: Guess) -> tuple[bool, ...]:
         words = set(tokens(g.column))
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
-        return is_setpoint(g.column), not READ & words, inlet, bool(g.place) and g.place not in words, g.why != SUREST
+        mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
+        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
+        outer = bool(g.place) and g.place not in words
+        return is_setpoint(g.column), later, not READ & words, inlet, outer, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
@@ -350,16 +375,16 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif g.feeds and (g.feeds not in target.inputs or _of_part(g)) and not is_setpoint(g.column):
+        elif g.feeds and (g.feeds not in target.inputs or _of_part(g, owner[key])) and not is_setpoint(g.column):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]
 
 
-def _of_part(g: Guess) -> bool:
-    """Is it a power of one part, as of copper or iron, beside which others have theirs?"""
-    return g.quantity == "power" and bool(roles_of(g.column))
+def _of_part(g: Guess, owner: str) -> bool:
+    """Is it a power of one part, as of copper or iron, beside which others have theirs; or one beside a loss?"""
+    return g.quantity == "power" and bool(roles_of(g.column) or LOSS & {*tokens(owner)})
 
 
 def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:

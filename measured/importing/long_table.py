@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from datetime import datetime
@@ -9,12 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.roles import Role
-from measured.headers.cells import is_date, is_reading, number
-from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
+from measured.headers.cells import EMPTY, is_date, is_reading, is_unit, number, split_unit
+from measured.headers.layout import MISSING
+from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
 LEAST = 3  # readings of a signal, on average
+HOLD = "hold until the next reading"
 BOUNDARIES = ([Role.AMBIENT], [Role.COOLANT])
 
 
@@ -36,55 +40,73 @@ def side_by_side(
         for j, name in enumerate(names)
         if (is_time(name) or all(map(is_date, columns[j][:LEAST]))) and len(set(columns[j])) > 1
     ]
+    times += [j for j, name in enumerate(names) if times and j != key and set(tokens(name)) & RUNS]  # of several tests
+    full = [i for i, instant in enumerate(zip(*(columns[j] for j in times))) if any(map(_text, instant))]
+    columns = [[cells[i] for i in full] for cells in columns] if times else columns  # no remarks under the readings
     rest = [j for j in range(len(names)) if j != key and j not in times]
     if not times or not (values or len(rest) == 1):
         return {}, []
     value, unit = (values[0], "") if values else (rest[0], f" {names[rest[0]]}")
+    unit = f" [{text}]" if values and (text := split_unit(names[value])[1]) else unit
     series: dict[str, dict[Any, Any]] = {}
     clocks = list(zip(*(columns[j] for j in times), strict=True))
     signals = columns[key]
     for j in (j for j in rest if j != value and _is_key(columns[j])):  # what tells signals apart besides: a place
         if len(set(zip(clocks, signals))) < 0.9 * len(clocks):
             signals = [f"{signal} {word}" for signal, word in zip(signals, columns[j], strict=True)]
+    others = (list(map(_text, columns[j])) for j in rest if j != value)
+    texts = next((c for c in others if all(is_unit(u) and not is_reading(u) for u in c if u)), [])
+    units = {signal: f" [{text}]" for signal, text in zip(signals, texts) if text}
     for signal, instant, reading in zip(signals, clocks, columns[value], strict=True):
-        if signal is not None and str(signal).strip():
-            series.setdefault(f"{signal}{unit}", {})[instant] = reading
+        if _text(signal):
+            series.setdefault(f"{signal}{units.get(signal, unit)}", {})[instant] = reading
     instants: list[tuple[Any, ...]] = max((list(readings) for readings in series.values()), key=len)
     notes, lost = [], len(clocks) - sum(map(len, series.values()))
     if lost:
         notes.append(f"{Path(where).name}: {lost} readings share signal and time with another, and are left out")
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
-        instants = _in_order(dict.fromkeys(clocks))
-        notes.append(
-            f"{Path(where).name}: {what}; all but temperatures of parts hold until the next reading of their signal"
-        )
+        instants = _in_order(dict.fromkeys(clocks), series.values())
+        notes.append(f"{Path(where).name}: {what}; all but temperatures of parts {HOLD} of their signal")
         for signal, readings in series.items():
-            roles = roles_of(signal)
-            if roles[:1] not in BOUNDARIES and (roles or "temperature" in quantities_of(signal)):
+            roles, quantities = roles_of(signal), quantities_of(signal)
+            if roles[:1] not in BOUNDARIES and ("temperature" in quantities or (roles and not quantities)):
                 continue
             last = None
             for instant in instants:
-                last = readings.setdefault(instant, last)
+                reading = readings.get(instant)  # a word in its place is none
+                readings[instant] = last = (
+                    reading if is_reading(reading) and _text(reading).lower() not in EMPTY else last
+                )
     common = {names[j]: [instant[i] for instant in instants] for i, j in enumerate(times)}
     return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
 
 
-def _in_order(instants: Iterable[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
-    """Instants by their first cell, a number or a date as ISO has it; else as the file has them, which clocks refuse
-    where it runs back."""
+def _in_order(instants: Iterable[tuple[Any, ...]], series: Iterable[Iterable[Any]]) -> list[tuple[Any, ...]]:
+    """Instants by their first cell, a number or a date with its parts in the order in which no signal runs back; else
+    as the file has them, which clocks refuse where it runs back."""
     plain = {t: number(t[0]) for t in instants}
     try:
         plain |= {t: datetime.fromisoformat(str(t[0])).timestamp() for t, value in plain.items() if value != value}
     except ValueError:
+        parts = {t: [float(n) for n in re.findall(r"\d+", " ".join(map(str, t)))] for t in plain}
+        for year, month, day in ((2, 1, 0), (2, 0, 1)):
+            at = {t: (*(p[i] for i in (year, month, day)), *p[3:]) for t, p in parts.items() if len(p) > LEAST}
+            if len(at) == len(parts) and all(at[a] <= at[b] for one in series for a, b in itertools.pairwise(one)):
+                return sorted(at, key=lambda t: at[t])
         return list(plain)
     return sorted(plain, key=lambda t: plain[t])
+
+
+def _text(cell: Any) -> str:
+    text = "" if cell is None else str(cell).strip()
+    return "" if text in MISSING else text
 
 
 def _is_key(cells: Sequence[Any]) -> bool:
     """Names of signals, that come again and again?"""
     if any(map(is_reading, cells[:LEAST])):
         return False
-    counts = Counter(str(c).strip() for c in cells if c is not None and str(c).strip())
+    counts = Counter(filter(None, map(_text, cells)))
     repeated = sum(counts.values()) >= LEAST * len(counts)
     return 1 < len(counts) <= MOST and repeated and not any(map(is_reading, counts))

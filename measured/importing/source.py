@@ -26,7 +26,7 @@ from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
 from measured.recordings.data_table import DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
-from measured.recordings.units import QUANTITIES
+from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
@@ -36,6 +36,7 @@ BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
 SCALED = re.compile(
     r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
 )  # x0.1 °C, 1/10 °C, 10 mA
+TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a register of whole numbers
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
@@ -224,7 +225,17 @@ def _source(
             notes = [*notes, f"{file.name}: '{n}' is read in units of {factor:g} {scaled[3]}"]
     stems = Counter(label for label, unit in split.values() if unit)
     split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
-    unit_texts = {n: units.get(n, "") or split[n][1] or _in_cells(cells[n]) for n in cells}
+    for n in cells:
+        if (tenfold := TENFOLD.fullmatch(n)) and not units.get(n) and not (as_numbers(cells[n]) % 1 > 0).any():
+            cells[n], split[n] = as_numbers(cells[n]) / float(tenfold[2]), split_unit(tenfold[1])
+            notes = [*notes, f"{file.name}: '{n}' is read in units of {1 / float(tenfold[2]):g}"]
+    texts = {n: _in_cells(cells[n]) for n in cells}
+    for n in (n for n in cells if len(texts[n]) > 1):  # 999 W and 1.2 kW
+        if quantity := next((q for q, one in QUANTITIES.items() if texts[n].keys() <= one.units.keys()), ""):
+            scale = {c: converted(np.array(number(c)), quantity, unit) for unit, of in texts[n].items() for c in of}
+            cells[n], texts[n] = [scale.get(c, c) for c in cells[n]], {MEMORY_UNIT[quantity]: []}
+            notes = [*notes, f"{file.name}: units change within '{n}': it is read in {MEMORY_UNIT[quantity]}"]
+    unit_texts = {n: units.get(n, "") or split[n][1] or next(iter(texts[n]), "") for n in cells}
     for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
         is_unit_column = header.lower().startswith(UNIT_NAMES)
         beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
@@ -260,12 +271,15 @@ def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bo
     return (stems[label] > 1 and last in "ABCUVW") or (bool(quantities) and not fits) or bool(ONE_OF.search(label))
 
 
-def _in_cells(cells: Sequence[Any]) -> str:
-    """The unit behind the first number of a column of cells such as "23.5 C"."""
+def _in_cells(cells: Sequence[Any]) -> dict[str, list[str]]:
+    """The units behind the numbers of a column of cells such as "23.5 C", each with its cells."""
     if isinstance(cells, np.ndarray):
-        return ""
-    first = next((m for c in cells if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip()))), None)
-    return first[2] if first and is_unit(first[2]) else ""
+        return {}
+    valued = ((c, m[2]) for c in dict.fromkeys(cells) if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip())))
+    out: dict[str, list[str]] = {}
+    for cell, unit in itertools.takewhile(lambda one: is_unit(one[1]), valued):
+        out.setdefault(unit_of(unit) or unit, []).append(cell)
+    return out
 
 
 def _any(cells: Sequence[Any]) -> bool:

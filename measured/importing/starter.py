@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from shlex import quote
 
 import numpy as np
@@ -22,18 +22,15 @@ from measured.importing.draft import Draft
 from measured.importing.guess import (
     AXES,
     CODES_ALONE,
-    DEMAND,
     ELSE,
-    IN_HEADER,
-    NAMELESS,
+    LOUD,
     NUMBERED,
     OF_INSTRUMENT,
-    RELATIVE,
     THAT_CAN_BE,
-    UNKNOWN,
     Array,
     Guess,
     in_memory,
+    is_whole,
 )
 from measured.importing.source import Source
 
@@ -85,8 +82,12 @@ class FirstNetwork:
         """As network.toml."""
         lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
         lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
+        role_of = {node: next(iter(roles_of(node)), "") for node in self.capacities}
+        whole = [node for node in role_of if is_whole(node)]
+        if len(whole) == 1 and Role.WINDING not in role_of.values():  # "motor temperature" of drives
+            role_of[whole[0]] = Role.WINDING
         for node, (C, sd) in self.capacities.items():
-            role = [f'role = "{roles[0]}"'] if (roles := roles_of(node)) else []
+            role = [f'role = "{role_of[node]}"'] * bool(role_of[node])
             lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {sd:.2g}", ""]
         names: set[str] = set()
         links = [term for term in self.terms if len(term.ends) == 2]
@@ -122,6 +123,20 @@ def _follows(term: FirstTerm) -> list[str]:
     return [f"of = {of[0] if len(of) == 1 else '[' + ', '.join(of) + ']'}"] if of else []
 
 
+def of_machine(columns: Columns) -> Columns:
+    """Without other devices, and with the coldest column as the room where it hardly warms and no other is the room."""
+    every = [(s, g, place_of(g, s.labels[g.column])) for s, g in columns]
+    parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
+    if parts:
+        columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
+    if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
+        return columns
+    source, room = min(parts, key=lambda one: float(np.nanmean(in_memory(*one))))
+    if roles_of(source.labels[room.column]) or rise(source, room) > STILL * max(rise(*one) for one in parts):
+        return columns
+    return [(s, replace(g, place="ambient") if g.column == room.column else g) for s, g in columns]
+
+
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     """The network of some columns. InputError where none is a temperature of a machine."""
     places = [(source, g, place_of(g, source.labels[g.column])) for source, g in columns]
@@ -130,7 +145,7 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
         lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
-        doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost)
+        doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost if not g.feeds)
         what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
         raise InputError(what + next(doubts, ""), files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
@@ -163,12 +178,15 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
                 out.setdefault("winding", f"the winding was not placed: {how}")
         for _, g in hot_left:
             if any(doubt in g.doubt for doubt in LOST):
-                out.setdefault(g.column, f"'{g.column}' is left out: {g.doubt}")
+                key = g.doubt if g.doubt == OF_INSTRUMENT else g.column
+                out.setdefault(key, f"'{g.column}' is left out: {g.doubt}")
+        if others := [g for _, g in hot_left if g.doubt.endswith("gives coolant already")]:
+            out.setdefault("outlet", f"'{others[0].column}' stays in the file as a check, and feeds nothing")
         rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
         if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
             how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
             out.setdefault("ambient", f"the room was not placed: {how}")
-        for doubt in (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT):
+        for doubt in LOUD:
             if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
                 out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
         if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
@@ -181,10 +199,6 @@ def unplaced(drafts: Sequence[Draft]) -> list[str]:
         hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
         if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
             out.setdefault("bearing", "no winding is measured, a bearing alone")
-        warmed = {g.column: (rise(s, g), roles_of(s.labels[g.column])) for s, g in columns if g.place}
-        still = [c for c, (K, roles) in warmed.items() if not roles and STILL * max(K for K, _ in warmed.values()) > K]
-        if still and any(note.startswith("ambient was not recorded") for note in draft.notes):
-            out.setdefault("room", f"'{still[0]}' hardly warms: is it the room? --place {quote(f'{still[0]}=ambient')}")
         heats = [g for s, g in columns if g.feeds and g.quantity in (*HEATS, "torque", "voltage")]
         warm = [g.column for s, g in left if set(quantities_of(s.labels[g.column])) & set(HEATS)]
         if not heats and not draft.constants and warm:

@@ -68,6 +68,12 @@ class Event:
         every = sum(y - x for e in (self, other) for x, y in e.every)
         return both / max(every - both, 1e-12)
 
+    def repeats_at(self, other: Event) -> Event:
+        """Those of its stretches that some of another event's meet."""
+        both = {t: self.spans[t] for t in self.spans if t in other.spans}
+        meets = {t: [(a, b) for a, b in s if any(a < d and c < b for c, d in other.spans[t])] for t, s in both.items()}
+        return Event.of({t: pairs for t, pairs in meets.items() if pairs})
+
     def document(self) -> dict:
         spans = [{"test": t, "begin_s": a, "end_s": b} for t, pairs in self.spans.items() for a, b in pairs]
         return {"event": self.name, "words": self.words, "spans": spans}

@@ -28,7 +28,7 @@ from validation.effects.time_window import Event, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, timed_event
 from validation.inference.evidence import Evidence, Progress
-from validation.inference.hypotheses import NOTHING, condition_prior, law_prior
+from validation.inference.hypotheses import NOTHING, condition_prior, is_rare, law_prior, repeats_price
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, fit_score
 from validation.inference.stretches import ALIKE, Interval, distinct, hat_scores, stretches, worth
@@ -216,13 +216,15 @@ def explanations(
     far, price = end_reach(scan), 0.5 / (len(bases) * len(evidence.tests))
     rows = tangent_worth(evidence, bases, s.event.name, 1.0, values)
     like = max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]  # type: ignore[attr-defined]
-    occurrence = timed_event(evidence, like, predicted_repeats(evidence, like, s.event, values), far, values)
+    occurrence = timed_event(evidence, like, s.event, far, values)
+    few = predicted_repeats(evidence, like, occurrence.event, values)
+    occurrence = occurrence if few == occurrence.event else timed_event(evidence, like, few, far, values)
     every = best(timed_worth(evidence, bases, occurrence, price, values), EACH)
-    few = every[: FEW if len(occurrence.event.every) <= SPANS else 0]
+    some = every[: FEW if len(occurrence.event.every) <= SPANS else 0]
     out = []
     for i, c in enumerate(every):
         base = c.effect.base  # type: ignore[attr-defined]
-        new = timed_event(evidence, base, occurrence.event, far, values) if i < len(few) else None
+        new = timed_event(evidence, base, occurrence.event, far, values) if i < len(some) else None
         again = timed_worth(evidence, [base], new, price, values) if new else []
         out.append(max([c, *again], key=lambda x: x.worth))
     return occurrence.event, out
@@ -237,7 +239,8 @@ def timed_worth(
     evidence: Evidence, bases: Sequence[Effect], occurrence: TimedEvent, price: float, values: Values
 ) -> list[Promising]:
     """All that an event may have been.  price : share of what and in which test"""
-    share = price * float(np.exp(max(occurrence.log_share, -600.0)))  # a share of zero has no logarithm
+    again = 0.0 if is_rare(evidence.tests, occurrence.event) else occurrence.repeats  # else a part of the evidence
+    share = price * float(np.exp(max(occurrence.log_share + again, -600.0)))  # a share of zero has no logarithm
     return tangent_worth(evidence, bases, occurrence.event.name, share, values)
 
 
@@ -254,6 +257,8 @@ def tangent_worth(
     parts = effect_columns(fit, evidence.tests, effects, values)
     scores = fit_score(fit, parts, np.array([q.sign for q in parameters], int))
     bayes = scores.log_bayes(np.array([q.prior_sd for q in parameters]))
+    if occurrence := event(condition):
+        bayes -= repeats_price(evidence.tests, occurrence)
     return [
         Promising(e, prior, float(b) + prior - NOTHING.log_prior)
         for e, b, visible in zip(effects, bayes, scores.visible, strict=True)

@@ -226,10 +226,12 @@ def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> De
 
 
 def is_same_event(one: Effect, other: Effect) -> bool:
-    """Is it the same effect, for about the same while?"""
+    """Is it the same effect, for about the same while, though in one of them it was again?"""
     if not (isinstance(one, During) and isinstance(other, During) and one.event and other.event):
         return one == other
-    return one.base == other.base and one.event.overlap(other.event) >= SAME
+    a, b = one.event.repeats_at(other.event), other.event.repeats_at(one.event)
+    alike = (a if b == other.event else one.event).overlap(b if a == one.event else other.event)
+    return one.base == other.base and alike >= SAME
 
 
 def differs(choice: Decision, other: Decision) -> bool:

@@ -29,11 +29,21 @@ from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
 from validation.effects.build import Shaped
 from validation.effects.during import During
-from validation.effects.time_window import Event, Span, TimeWindow, lasts
+from validation.effects.registry import extended
+from validation.effects.time_window import AND, Event, Span, TimeWindow, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
-from validation.inference.hypotheses import REPORTED, Weighed, probabilities, stretch_count
+from validation.inference.hypotheses import (
+    LENGTHS,
+    REPORTED,
+    Weighed,
+    is_rare,
+    probabilities,
+    repeat_price,
+    stretch_count,
+)
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
+from validation.noise import Noise
 
 Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
@@ -44,17 +54,21 @@ COARSEST = (
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 MOVES = 3  # of the ends and refitting with them: by then they stand within a sample
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
+MOST_KNOTS = 96  # instants at which a repeat may begin at first: each is a column of one run
+FIRST_RUNS = 4  # stretches that tangents like best are run
 
 
 @dataclass(frozen=True)
 class TimedEvent:
     """An event with its ends at the samples.
 
-    log_share : log evidence of all ends over that of the best ones, less the price of there being so many
+    log_share : log evidence of all ends of its longest stretch over that of the best ones, less the price of there
+    being so many;  repeats : the same of the others
     """
 
     event: Event
     log_share: float
+    repeats: float = 0.0
 
 
 def timed_event(
@@ -64,7 +78,7 @@ def timed_event(
 
     Parameters: `base` the effect that it is taken for; `reach_s` test -> how far (s) an end may move.
     """
-    spans, log_share = {t: list(pairs) for t, pairs in event.spans.items()}, 0.0
+    spans, shares = {t: list(pairs) for t, pairs in event.spans.items()}, list[float]()
     usual = float(np.mean([b - a for a, b in event.every]))
     tests = {t.name: t for t in evidence.tests}
     every = [(t, i) for t, pairs in spans.items() for i in range(len(pairs))]
@@ -73,8 +87,8 @@ def timed_event(
         length = usual if n else None
         one = timed_span(evidence, base, tests[test], spans[test][i], others, reach_s[test], values, length)
         spans[test][i] = one.event.spans[test][0]
-        log_share += one.log_share
-    return TimedEvent(Event.of(spans), log_share)
+        shares.append(one.log_share)
+    return TimedEvent(Event.of(spans), shares[0], sum(shares[1:]))
 
 
 def timed_span(
@@ -183,15 +197,17 @@ def step_scores(
 def predicted_repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:
     """The event without the repeats that the others do not predict; of one that does not repeat nothing is left out.
 
-    Each is left out in turn: at the amplitude of the others it must fit better than without. The worst goes first.
+    Each is left out in turn: at the amplitude of the others it must fit better than without, by what it costs to say
+    when it was. The worst goes first.
     """
     every = [(t, span) for t, pairs in event.spans.items() for span in pairs]
     if len(every) < 2:
         return event
     effects = [During.of(base, Event.of({t: [span]}).name) for t, span in every]
     scores = fit_score(evidence.fit, effect_columns(evidence.fit, evidence.tests, effects, values))
-    stays = list(range(len(every)))
-    while len(stays) > 1 and min(gain := [repeat_gain(scores, i, stays) for i in stays]) <= 0.0:
+    stays, usual = list(range(len(every))), float(np.median([b - a for a, b in event.every]))
+    price = [repeat_price(test, usual) for t, _ in every for test in evidence.tests if test.name == t]
+    while len(stays) > 1 and min(gain := [repeat_gain(scores, i, stays) - price[i] for i in stays]) <= 0.0:
         stays.remove(stays[int(np.argmin(gain))])
     spans: dict[str, list[Span]] = {}
     for i in stays:
@@ -255,11 +271,25 @@ def moved_events(evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Map
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
                 event = refit_ends(evidence, h.fit, effect, effect.event, reach_s)
+                event = further_repeats(evidence, h.fit, effect, event)
                 new[k] = During.of(effect.base, event.name)
     others = {e.name for k, e in enumerate(evidence.effects) if k not in new}
     new = {k: e for k, e in new.items() if e.name != evidence.names[k] and e.name not in others}
     names = [e.name for e in new.values()]
     return {k: e for k, e in new.items() if names.count(e.name) == 1}
+
+
+def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) -> Event:
+    """The event with further repeats in all tests, which a scan of windows longer than they are did not see; as it is
+    where it is not rare."""
+    if not is_rare(evidence.tests, event):
+        return event
+    network, now = with_condition(fit.network, effect.condition, event.name), During.of(effect.base, event.name)
+    values = {**parameter_values(fit.network, {}), **fit.values}
+    values[now.name] = values[effect.name]
+    more = {t.name: further_spans(network, t, values, now, fit.noise) for t in evidence.tests}
+    larger = Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
+    return larger if is_rare(evidence.tests, larger) else event
 
 
 def throughout(evidence: Evidence, event: Event) -> bool:
@@ -386,3 +416,83 @@ class Misfit:
             b[k] += z @ r
             square += float(r @ r)
         return 0.5 * (square - float(b @ np.linalg.solve(H, b)))
+
+
+def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
+    """The network in which an effect holds in these spans of the test, too."""
+    here = Event.of({test.name: spans}).name
+    return with_condition(network, effect.condition, f"{effect.condition}{AND}{here}") if spans else network
+
+
+def further_spans(network: Network, test: Test, values: Values, effect: During, noise: Noise) -> list[Span]:
+    """When else an effect held in a test, law and size as they are, one stretch after the other, as long as each gains
+    more than the price of saying when; none where one only makes another longer."""
+    assert effect.event is not None
+    lengths, step = [end - begin for begin, end in effect.event.every], sample_step(test)
+    usual, spans = float(np.median(lengths)), list(effect.event.spans.get(test.name, ()))
+    price, first_new = repeat_price(test, usual), len(spans)
+
+    def misfits(near: Test) -> Callable[[Sequence[Span]], float]:
+        def of(every: Sequence[Span]) -> float:
+            try:
+                parts = segments(with_spans(network, effect, test, every), [near], values)
+            except NoSolution:
+                return float("inf")
+            return 0.5 * sum(float(np.sum(noise.whiten(s, s.r[:, None]) ** 2)) for s in parts)
+
+        return of
+
+    while True:
+        reach, first = _first_spans(network, test, values, effect, noise, usual, spans)
+        if not first:
+            return spans[first_new:]
+        misfit = misfits(finer_blocks(test, first[0], reach))
+        best = min(first, key=lambda span: misfit([*spans, span]))
+
+        def closer(best: Span, reach_s: float) -> Callable[[Span], float]:
+            of = misfits(finer_blocks(test, best, reach_s))
+            return lambda span: of([*spans, span]) if _alike(span, lengths, step) else float("inf")
+
+        best = closest_span(test, best, reach, closer)
+        misfit = misfits(finer_blocks(test, best, step))
+        if not misfit(spans) - misfit([*spans, best]) > price:
+            return spans[first_new:]
+        if any(best[0] < b + LENGTHS * usual and a - LENGTHS * usual < best[1] for a, b in spans):
+            return []
+        spans.append(best)
+
+
+def _alike(span: Span, lengths: Sequence[float], slack: float) -> bool:
+    """Does a span last about as long as others (s)?"""
+    length = span[1] - span[0]
+    return (1.0 - LENGTHS) * min(lengths) - slack <= length <= (1.0 + LENGTHS) * max(lengths) + slack
+
+
+def _first_spans(
+    network: Network, test: Test, values: Values, effect: During, noise: Noise, usual: float, others: Sequence[Span]
+) -> tuple[float, list[Span]]:
+    """Stretches that tangents about the others promise most of, and how far (s) their ends may be off."""
+    begin, end = float(test.time[0]), float(test.time[-1])
+    count = int(np.clip(np.ceil((end - begin) / (0.5 * usual)), 2, MOST_KNOTS))
+    knots = np.linspace(begin, end, count + 1)
+    now = with_spans(network, effect, test, others)
+    steps = [During.of(effect.base, Event.of({test.name: [(float(t), end + 1.0)]}).name) for t in knots[:-1]]
+    larger = extended(now, steps)
+    parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(steps) :])
+    u, V = np.zeros(count + 1), np.zeros((count + 1, count + 1))
+    for s in parts:
+        X = values[effect.name] * noise.whiten(s, s.J)
+        u[:-1] += X.T @ noise.whiten(s, s.r[:, None])[:, 0]
+        V[:-1, :-1] += X.T @ X
+    spacing = knots[1] - knots[0]
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(count), np.arange(1, count + 1), indexing="ij"))
+    length = knots[j] - knots[i]
+    short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
+    pull, felt = u[i] - u[j], V[i, i] + V[j, j] - 2.0 * V[i, j]
+    part = np.clip(pull / np.maximum(felt, 1e-12), 0.0, 1.0)  # a large one does less than tangents say
+    gain = part * pull - 0.5 * part**2 * felt
+    free = (j > i) & np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
+    free &= short | (np.abs(length - usual) < LENGTHS * usual + spacing)
+    order = [k for k in np.argsort(-np.where(free, gain, -np.inf)) if free[k] and gain[k] > 0.0][:FIRST_RUNS]
+    middle, half = 0.5 * (knots[i] + knots[j]), 0.5 * np.where(short, usual, length)
+    return float(spacing), [(float(middle[k] - half[k]), float(middle[k] + half[k])) for k in order]

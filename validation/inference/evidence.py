@@ -141,6 +141,11 @@ class Evidence:
         """(K,) prior probability of each cause alone."""
         return np.exp([c.log_prior for c in self.causes])
 
+    @cached_property
+    def repeats(self) -> Array:
+        """(K,) what it costs (nats) to say when each cause was again."""
+        return np.array([c.repeats(self.tests) for c in self.causes])
+
     @property
     def p(self) -> int:
         """Number of calibrated parameters."""
@@ -350,7 +355,8 @@ def noise_evidence(evidence: Evidence, members: Sequence[int], noise: Noise) -> 
     s = score(G, *fit_prior(fit), h.sign)
     H = s.V + np.diag(h.scale**-2.0)
     log_det = np.linalg.slogdet(np.diag(h.scale) @ H @ np.diag(h.scale))[1]
-    return calibration_evidence(fit, parts, G) + float(0.5 * s.u @ np.linalg.solve(H, s.u) - 0.5 * log_det)
+    gain = float(0.5 * s.u @ np.linalg.solve(H, s.u) - 0.5 * log_det - np.sum(e.repeats[list(members)]))
+    return calibration_evidence(fit, parts, G) + gain
 
 
 def leftover_noise(evidence: Evidence, members: Sequence[int]) -> Noise:
@@ -404,7 +410,7 @@ def singles(evidence: Evidence) -> list[Weighed]:
 def single_evidence(evidence: Evidence) -> Array:
     """(K,) log Bayes factor of each cause against nothing; of a joint or a clock also at a large amplitude, of plugs
     exchanged."""
-    tangent = evidence.score.log_bayes(evidence.scale)
+    tangent = evidence.score.log_bayes(evidence.scale) - evidence.repeats
     both = np.logaddexp(tangent, evidence.whole) - np.where(np.isfinite(evidence.whole), np.log(2.0), 0.0)
     return np.asarray(np.where([e.whole for e in evidence.effects], evidence.whole, both))
 
@@ -419,7 +425,7 @@ def pairs(evidence: Evidence, ones: Sequence[Weighed]) -> list[Weighed]:
     a, b = few[i], few[j]
     every = (np.sum(prior) ** 2 - np.sum(prior**2)) / 2.0
     log_prior = np.log(PRIOR["two"].share * prior[a] * prior[b] / every)
-    more = np.maximum(alone - e.score.log_bayes(e.scale), 0.0)  # what a large amplitude gains beyond its tangent
+    more = np.maximum(alone + e.repeats - e.score.log_bayes(e.scale), 0.0)  # beyond its tangent, at a large amplitude
     bayes = pair_evidence(e, a, b) + np.maximum(more[a], more[b])
     likely = np.sort(np.argsort(-(log_prior + bayes), kind="stable")[:PAIRS])
     return [Weighed((int(a[n]), int(b[n])), "", float(log_prior[n]), float(bayes[n])) for n in likely]
@@ -436,7 +442,7 @@ def pair_evidence(evidence: Evidence, a: NDArray[np.int64], b: NDArray[np.int64]
         gain = 0.5 * (s.u[a] * ma + s.u[b] * mb) - 0.5 * np.log((f * sd[a]) ** 2 * (f * sd[b]) ** 2 * det)
         signed = [log_sign_gain(m / np.sqrt(Y / det), s.sign[k]) for m, Y, k in ((ma, B, a), (mb, A, b))]
         out.append(gain + signed[0] + signed[1])
-    return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)))
+    return np.asarray(logsumexp(out, axis=0) - np.log(len(SIZES)) - evidence.repeats[a] - evidence.repeats[b])
 
 
 def averaged_noise(hypotheses: Sequence[Weighed], loud: Evidence, over: float) -> list[Weighed]:
@@ -503,7 +509,8 @@ def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     v = amplitude_covariance(fit, p, wide)
     if np.all(np.abs(a) < ABSENT * h.scale):  # what moved is the calibration, which may go on without them as well
         gain = min(gain, 0.0)
-    return gain + float(logsumexp([_log_prior_mass(a, v, f * h.scale, h.sign) for f in SIZES]) - np.log(len(SIZES)))
+    mass = logsumexp([_log_prior_mass(a, v, f * h.scale, h.sign) for f in SIZES]) - np.log(len(SIZES))
+    return gain + float(mass - np.sum(evidence.repeats[free]))
 
 
 def amplitude_covariance(fit: Fit, p: int, wide: Array) -> Array:

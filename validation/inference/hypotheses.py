@@ -13,20 +13,26 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
+from scipy.stats import rankdata
 
 from geom.arrays import Array
 from lumped.model.network import Network, Parameter
 from measured.doubt import PRIOR, RARE, SHARPNESS, temper
 from validation.effects.base import Effect
+from validation.effects.during import During
 from validation.effects.registry import extended
+from validation.effects.time_window import Event, share
 from validation.inference.columns import Linearised
 
 if TYPE_CHECKING:
+    from measured.case import Test
     from validation.calibration.calibrate import Fit
 
 Signs = NDArray[np.int64]
 Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
+RARE_TIME = 0.05  # of its tests that an event lasts at most: a few minutes of an hour; more is how the machine is
+FOLLOWS = 2.5  # deviations from an input's usual level, which eight repeats have by chance once in a hundred events
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 
@@ -82,6 +88,10 @@ class Cause:
 
     def columns(self, run: Linearised) -> Sequence[Array]:
         return run.tangents[self.name]
+
+    def repeats(self, tests: Sequence[Test]) -> float:
+        """What it costs (nats) to say when it was again."""
+        return repeats_price(tests, self.effect.event) if isinstance(self.effect, During) and self.effect.event else 0.0
 
     def extend(self, network: Network) -> Network:
         return extended(network, [self.effect])
@@ -243,3 +253,33 @@ def stretch_count(n: int, usual: float | None) -> float:
     """How many stretches there are among n instants; repeats of one that is as long as `usual` (in instants) last about
     as long, and begin anywhere."""
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
+
+
+def repeat_price(test: Test, usual_s: float) -> float:
+    """What it costs (nats) to say when in a test a repeat was that lasts about so long (s)."""
+    return float(np.log(stretch_count(test.time.size, usual_s / float(np.median(np.diff(test.time))))))
+
+
+def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
+    """What it costs (nats) to say when every stretch of an event but one was; 0 where it is not rare.
+
+    It is a part of the evidence, as what the size of an effect costs: what repeats explain is tempered, and so is this.
+    """
+    every = [t for t in tests for _ in occurrence.spans.get(t.name, ())][1:]
+    usual = float(np.mean([b - a for a, b in occurrence.every]))
+    return sum(repeat_price(t, usual) for t in every) if is_rare(tests, occurrence) else 0.0
+
+
+def is_rare(tests: Sequence[Test], occurrence: Event) -> bool:
+    """Is an event short, its repeats alike, and at no level of an input but by chance?  Else it is a law."""
+    levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
+    lengths, slack = [b - a for a, b in occurrence.every], 2.0 * max(float(np.median(np.diff(t.time))) for t in here)
+    alike = (1.0 - LENGTHS) * (max(lengths) - slack) <= (1.0 + LENGTHS) * (min(lengths) + slack)
+    if not alike or sum(lengths) > RARE_TIME * sum(float(np.ptp(t.time)) for t in here):
+        return False
+    for t in here:
+        for name, u in t.inputs.items():
+            rank = rankdata(u) - 0.5 * (u.size + 1)
+            mean = [rank[share(t.time, [s]) > 0].mean() for s in occurrence.spans[t.name]]
+            levels.setdefault(name, []).extend(np.array(mean) / max(rank.std(), 1e-9))
+    return all(abs(np.mean(x)) < FOLLOWS / np.sqrt(len(x)) for x in levels.values())

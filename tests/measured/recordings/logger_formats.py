@@ -509,7 +509,7 @@ FORMATS: dict[str, Format] = {
         stamp=lambda k: str(43_210_000 + 5000 * k),
     ),
     "a flight log": Format(
-        "tnUIHW", ["timestamp", "RPM", "Volt", "Curr", "TempEsc", "MotTemp"], stamp=lambda k: f"{UNIX + 5 * k}.0"
+        "tnUIxW", ["timestamp", "RPM", "Volt", "Curr", "TempEsc", "MotTemp"], stamp=lambda k: f"{UNIX + 5 * k}.0"
     ),
     "a code among currents": Format(
         "tIWA", cells={"I": lambda k: -9999 if k == 60 else f"{signals(5.0)['I'][k]:.2f}"}, doubt="a logger's code?"

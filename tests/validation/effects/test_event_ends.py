@@ -10,9 +10,10 @@ from lumped.integration.simulate import Record, simulate
 from measured.case import Case, Channel, Model, Test
 from validation.effects import effect
 from validation.effects.time_window import Event
-from validation.inference.events import closer_look, refit_ends, timed_event
-from validation.inference.evidence import calibrated_case, scored
-from validation.inference.hypotheses import Weighed
+from validation.inference.decide import is_same_event
+from validation.inference.events import closer_look, further_repeats, refit_ends, timed_event
+from validation.inference.evidence import calibrated_case, pair_evidence, scored, single_evidence
+from validation.inference.hypotheses import Weighed, is_rare, repeats_price
 from validation.inference.refit import laplace
 
 DAY, STEP_S = 10800.0, 10.0
@@ -67,3 +68,55 @@ def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():
         events.append(timed_event(evidence, film, where, dict.fromkeys(held, 100.0), fit.values))
     assert events[0].event.name == events[1].event.name
     assert events[0].log_share == pytest.approx(events[1].log_share, abs=1e-3)
+
+
+def test_an_event_is_rare_where_it_is_short_and_at_no_level_of_an_input():
+    time = np.arange(0.0, 8000.0, 10.0)
+    load = (time % 1000.0 >= 500.0).astype(float)
+    test = Test("day", "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
+
+    def repeats(first, length, every=1000.0):
+        return Event.of({"day": [(first + every * k, first + every * k + length) for k in range(8)]})
+
+    assert is_rare([test], repeats(250.0, 40.0, 950.0)), "at the load now, and without it then"
+    assert not is_rare([test], repeats(600.0, 40.0)), "whenever the load is on"
+    assert not is_rare([test], repeats(100.0, 40.0)), "whenever it is off"
+    assert not is_rare([test], repeats(250.0, 300.0, 950.0)), "a third of the day"
+    assert not is_rare([test], Event.of({"day": [(300.0, 320.0), (5000.0, 5200.0)]})), "ten times as long"
+
+
+def test_when_repeats_were_is_a_part_of_the_evidence():
+    """Two more stretches of 80 s among 300 samples of 20 s: anywhere, and as long as half to half as long again."""
+    spans = [(1000.0, 1080.0), (2400.0, 2480.0), (4000.0, 4080.0)]
+    case = bench((("noon", tuple(spans)),), 5.0)
+    lids = [effect(f"convection.constant@body in {Event.of({'noon': x}).name}") for x in (spans, spans[:1])]
+    e = scored(case, lids, calibrated_case(case))
+    price = 2.0 * np.log(300 * 2.0)
+    assert repeats_price(case.tests, lids[0].event) == pytest.approx(price)
+    free, both = replace(e), (np.array([0]), np.array([1]))
+    free.__dict__["repeats"] = np.zeros(2)
+    assert single_evidence(free) - single_evidence(e) == pytest.approx([price, 0.0])
+    assert pair_evidence(free, *both) - pair_evidence(e, *both) == pytest.approx(price)
+    assert laplace(free, Weighed((0,))).log_bayes - laplace(e, Weighed((0,))).log_bayes == pytest.approx(price)
+
+
+@pytest.mark.parametrize("size", [5.0, 40.0])
+def test_what_repeats_beside_a_known_event_is_found_to_the_sample(size):
+    spans = [(1000.0, 1100.0), (2400.0, 2480.0), (4000.0, 4100.0)]
+    case = bench((("noon", tuple(spans)),), size)
+    two = effect(f"convection.constant@body in {Event.of({'noon': spans[:2]}).name}")
+    e = scored(case, [two], calibrated_case(case))
+    more = further_repeats(e, laplace(e, Weighed((0,))).fit, two, two.event)
+    assert np.array(more.spans["noon"]) == pytest.approx(np.array(spans), abs=40.0)
+    assert more.tests == ("noon",)
+
+
+def test_an_event_that_is_seen_less_often_is_the_same_and_another_is_not():
+    two, one, other, long = (
+        effect(f"convection.constant@body in noon:{x}s")
+        for x in ("1000-1200,3000-3200", "3020-3200", "3150-3400", "900-3300")
+    )
+    assert is_same_event(two, one)
+    assert is_same_event(one, two)
+    assert not is_same_event(two, other)
+    assert not is_same_event(two, long)

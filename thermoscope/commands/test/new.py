@@ -26,10 +26,9 @@ from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
-from measured.importing.starter import FirstNetwork, place_of, starter, unplaced
+from measured.importing.starter import FirstNetwork, of_machine, place_of, starter, unplaced
 from measured.importing.target import Target, target_of
 from measured.recordings.invalid_readings import coded
-from measured.recordings.sheet import MAX_GAP_S
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
@@ -191,14 +190,14 @@ def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str,
         for source, clock in read
         for g in guesses(source, clock.columns, Target())
     ]
-    first = starter(columns, test_name(read[0][0].file, []), read[0][1].end_s)
+    first = starter(machine := of_machine(columns), test_name(read[0][0].file, []), read[0][1].end_s)
     network = read_network(tomllib.loads(first.text()), "network.toml")
 
     def put(folder: Path) -> str:
         write_whole(folder / "network.toml", first.text())
         return 'network = "network.toml"'
 
-    places = {s.labels[g.column]: place for s, g in columns if (place := place_of(g, s.labels[g.column]))}
+    places = {s.labels[g.column]: place for s, g in machine if (place := place_of(g, s.labels[g.column]))}
     return Model(network, replace(target_of(network), places_by_header=places), put, first)
 
 
@@ -217,13 +216,19 @@ def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) 
     for column in wishes.places or {}:
         if column not in columns:
             raise InputError(f"no column '{column}'", "--place", suggestion(column, sorted(columns)))
-    records = []
+    records, unused, kinds = [], list[str](), [signature(source) for source, _ in read]
     for source, clock in read:
         guessed_columns = guesses(source, clock.columns, model.target)
         for column, place in (wishes.places or {}).items():
             guessed_columns = assigned(guessed_columns, source, column, place, model.target)
-        records.append(Recording(source, clock, dialogue.answered(source, guessed_columns)))
-    return drafts_of(records, dialogue, wishes.window_s)
+        try:
+            records.append(Recording(source, clock, dialogue.answered(source, guessed_columns)))
+        except InputError as fault:  # a recorder of something else, beside others
+            if kinds.count(signature(source)) > 1 or (not records and source is read[-1][0]):
+                raise
+            unused.append(f"{source.file.name} is left out: {fault.what}")
+    first, *others = drafts_of(records, dialogue, wishes.window_s)
+    return [replace(first, notes=(*first.notes, *unused)), *others]
 
 
 def drafts_of(
@@ -234,7 +239,7 @@ def drafts_of(
     for first, *others in grouped(list(records), [signature(r.source) for r in records]):
         rest = [replace(r, shift_s=s, how=how) for r in others for s, how in [shift(first, r)]]
         needed = [g.column for g in first.guesses if g.feeds or g.place in dialogue.target.boundaries]
-        whole, cut = longest_part(first, MAX_GAP_S, needed) if window_s == (0.0, None) else (window_s, ())
+        whole, cut = longest_part(first, first.gap_s, needed) if window_s == (0.0, None) else (window_s, ())
         part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]

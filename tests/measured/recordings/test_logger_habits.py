@@ -1,0 +1,242 @@
+"""Habits of other people's loggers, each in a file that its test makes."""
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from geom.description.roles import Role
+from measured.headers.cells import split_unit
+from measured.headers.words import roles_of
+from measured.importing.aligned import Recording, shift
+from measured.importing.case_files import read_runs
+from measured.importing.guess import guesses, in_memory
+from thermoscope.commands.test.new import Wishes, first_model
+from thermoscope.commands.test.new import new_case as new
+
+N = 240
+T = 5 * np.arange(N)
+ON = np.where((np.arange(N) > 20) & (np.arange(N) < 120), 1.0, 0.0)
+HEAT = np.cumsum(ON - 0.3 * np.roll(ON, 60))
+WARM = {"W": 22 + 0.5 * HEAT, "H": 22 + 0.2 * HEAT, "A": np.full(N, 22.0), "I": 9 * ON, "n": 1500 * ON, "t": T}
+
+
+def file(tmp_path, header, *columns, name="a.csv", digits=2):
+    values = [WARM[c] if isinstance(c, str) else c for c in columns]
+    rows = zip(*([f"{x:.{digits}f}" if isinstance(x, float) else str(x) for x in v] for v in values))
+    (tmp_path / name).write_text("\n".join([header, *map(",".join, rows)]) + "\n")
+    return tmp_path / name
+
+
+def read(*files):
+    """Column -> its guess, with the first network that is made of the files; and the recordings."""
+    runs = [run for one in files for run in read_runs(one)]
+    target = first_model(runs, {}).target
+    return {g.column: (g, source) for source, clock in runs for g in guesses(source, clock.columns, target)}, runs
+
+
+def goes(found):
+    return {column: g.place or g.feeds for column, (g, _) in found.items() if g.used}
+
+
+def written(tmp_path, *files):
+    document = tmp_path / "new.json"
+    assert new([*files], Wishes(out=tmp_path / "made", yes=True), str(document)) == 0
+    return json.loads(document.read_text())
+
+
+def test_units_that_change_from_cell_to_cell_are_made_one(tmp_path):
+    """Dashboards write 845 W and 1.23 kW in one column."""
+    power = [f"{x:.0f} W" if x < 1000 else f"{x / 1000:.3f} kW" for x in np.linspace(100, 2000, N)]
+    found, _ = read(file(tmp_path, "t [s],winding [°C],Room [°C],P", "t", "W", "A", power))
+    g, source = found["P"]
+    assert g.unit == "W"
+    assert in_memory(source, g) == pytest.approx(np.linspace(100, 2000, N), abs=1)
+
+
+def test_registers_in_tenths_are_read_by_their_names(tmp_path):
+    tenths = [(10 * WARM[c]).round().astype(int) for c in "WHA"]
+    found, _ = read(file(tmp_path, "t [s],T_wdg_x10,T_hsg_x10,T_amb_x10,I [A]", "t", *tenths, "I"))
+    assert goes(found) == {"T_wdg_x10": "wdg", "T_hsg_x10": "hsg", "T_amb_x10": "ambient", "I [A]": "current_A"}
+    g, source = found["T_wdg_x10"]
+    assert in_memory(source, g) == pytest.approx(WARM["W"], abs=0.06)
+
+
+@pytest.mark.parametrize(
+    ("header", "name", "unit"),
+    [("Wicklung US", "Wicklung US", ""), ("I_sek", "I_sek", ""), ("T_wdg_min", "T_wdg_min", ""), ("t_min", "t", "min")],
+)
+def test_the_end_of_a_name_is_no_unit_of_time(header, name, unit):
+    assert split_unit(header) == (name, unit)
+
+
+def test_what_is_made_of_a_reading_and_a_current_before_the_inverter_give_way(tmp_path):
+    header = "t [s],T_stator,T_stator_filtered,room [°C],I_batt [A],I_phase [A],eta [%]"
+    found, _ = read(file(tmp_path, header, "t", "W", "W", "A", WARM["I"] / 3, "I", WARM["I"]))
+    assert goes(found) == {"T_stator": "stator", "room [°C]": "ambient", "I_phase [A]": "current_A"}
+    found, _ = read(file(tmp_path, "t [s],winding [°C],room [°C],I_rms_mean,I_rms_rms", "t", "W", "A", "I", "I"))
+    assert "I_rms_rms" in goes(found)
+
+
+def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
+    header = "t [s],Temp_Motor [°C],Temp_ESC [°C],Schaltschrank [°C],Gehäuse [°C],Halle [°C],I [A]"
+    one = file(tmp_path, header, "t", "W", "H", "A", "H", "A", "I")
+    found, runs = read(one)
+    assert goes(found) == {
+        "Temp_Motor [°C]": "motor",
+        "Gehäuse [°C]": "gehäuse",
+        "Halle [°C]": "ambient",
+        "I [A]": "current_A",
+    }
+    network = tomllib.loads(first_model(runs, {}).first.text())
+    assert network["nodes"]["motor"]["role"] == "winding"
+    assert "the winding?" in found["Temp_Motor [°C]"][0].doubt
+
+
+def test_what_hardly_warms_is_the_room_where_no_other_column_is(tmp_path, capsys):
+    one = file(tmp_path, "t [s],T_wdg,T_housing,T_cell,I [A]", "t", "W", "H", WARM["A"] + 0.1 * np.sin(T), "I")
+    assert goes(read(one)[0])["T_cell"] == "ambient"
+    assert written(tmp_path, one)["warnings"] == ["'T_cell': hardly warms: taken as the room"]
+
+
+def test_a_long_table_by_day_and_month_has_its_units_and_a_remark_at_its_end(tmp_path):
+    """Each signal by itself, one below the other, each where it changes."""
+    lines = ["Tag;Horodatage;Valeur;Unité;Qualité"]
+    for name, unit, key, step in (
+        ("T_STATOR_U1", "°C", "W", 1),
+        ("AMBIANCE", "°C", "A", 2),
+        ("P_ACTIVE", "MW", "I", 5),
+    ):
+        for k in range(step - 1, N, step):
+            lines.append(f"{name};02/04/2024 {18 + k // 60}:{k % 60:02d}:00;{WARM[key][k]:.2f};{unit};Good")
+    (tmp_path / "a.csv").write_text("\n".join([*lines, "412 enregistrements;;;;"]) + "\n")
+    found, ((source, clock),) = read(tmp_path / "a.csv")
+    assert clock.seconds == pytest.approx(60.0 * np.arange(N))
+    assert {g.unit for g, _ in found.values() if g.used} == {"degC", "MW"}
+    assert not any("share signal and time" in note for note in source.notes)
+
+
+def test_logs_of_what_changes_have_no_gaps(tmp_path):
+    """Ten minutes without a row: nothing changed."""
+    lines = ["time,tag,value", *(f"2024-04-02 18:{m:02d}:00,T_winding,{20 + m}" for m in (0, 2, 4, 14, 16, 26, 28, 30))]
+    lines += [
+        f"2024-04-02 18:{m:02d}:30,I_stator,{value}" for m, value in ((0, 0), (15, 9), (17, "I/O Timeout"), (29, 2))
+    ]
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    document = written(tmp_path, tmp_path / "a.csv")
+    assert document["tests"][0]["duration_s"] == pytest.approx(1800.0)
+    assert "max_gap_s = 600" in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_an_outlet_beside_an_inlet_is_a_check_and_the_first_line_says_so(tmp_path):
+    header = "t [s],winding [°C],T_cool_in [°C],T_cool_out [°C],room [°C],I [A]"
+    document = written(tmp_path, file(tmp_path, header, "t", "W", "A", "H", "A", "I"))
+    assert document["warnings"] == ["'T_cool_out [°C]' stays in the file as a check, and feeds nothing"]
+
+
+def test_a_test_begins_where_its_inputs_do(tmp_path):
+    late = ["" if t < 300 else f"{i:.1f}" for t, i in zip(T, WARM["I"])]
+    (test,) = written(tmp_path, file(tmp_path, "t [s],winding [°C],room [°C],I [A]", "t", "W", "A", late))["tests"]
+    assert test["duration_s"] == pytest.approx(5 * (N - 1) - 300)
+
+
+def test_runs_of_two_recorders_are_told_by_their_column(tmp_path):
+    """A row for every reading beside a table of loads, both with the test of every row; two powers are a loss."""
+    lines = [
+        f"R{r},{k},{s},{273.15 + WARM[c][k]:.2f}"
+        for r in (1, 2)
+        for k in range(N)
+        for s, c in zip(("winding", "room"), "WA")
+    ]
+    (tmp_path / "T.csv").write_text("\n".join(["test_id,elapsed_min,sensor,value_K", *lines]) + "\n")
+    loads = [f"R{r},{k},{300 * ON[k]:.1f},{250 * ON[k]:.1f}" for r in (1, 2) for k in range(N)]
+    (tmp_path / "P.csv").write_text("\n".join(["test_id,elapsed_min,P_in [W],P_out [W]", *loads]) + "\n")
+    document = written(tmp_path, tmp_path / "T.csv", tmp_path / "P.csv")
+    assert [len(test["files"]) for test in document["tests"]] == [2, 2]
+    assert document["tests"][0]["files"][1]["aligned_by"] == "both clocks count alike"
+    given = {c["column"]: (c["feeds"], c["unit"]) for c in document["tests"][0]["columns"] if c["feeds"]}
+    assert given["loss P_in [W] - P_out [W]"] == ("power_W", "W")
+    assert {"P_in [W]", "P_out [W]"} < given.keys()
+    assert "of all between them" in str(document["tests"][0]["files"][1]["notes"])
+
+
+def test_a_number_of_the_run_parts_a_clock_that_goes_on(tmp_path):
+    """But only where it pauses: a profile that changes on the way is no other test."""
+    for pause, count in ((4000, 2), (0, 1)):
+        t, run = T + pause * (np.arange(N) >= 100), np.where(np.arange(N) < 100, 41, 42)
+        assert len(read_runs(file(tmp_path, "t [s],run,winding [°C],I [A]", t, run, "W", "I"))) == count
+
+
+def test_clocks_since_boot_agree_and_a_recorder_of_something_else_is_left_out(tmp_path):
+    boot = 61_234_567 + 100_000 * np.arange(N)
+    a = file(
+        tmp_path,
+        "timestamp,esc[0].rpm,esc[0].current,esc[1].rpm,esc[1].current",
+        boot,
+        "n",
+        "I",
+        "n",
+        "I",
+        name="e.csv",
+    )
+    b = file(tmp_path, "timestamp,m1_winding_degC,air_degC", boot + 50_000, "W", "A", name="m.csv")
+    c = file(tmp_path, "timestamp,baro_temp_degC,rho", boot, "H", "A", name="b.csv")
+    document = written(tmp_path, a, b, c)
+    (test,) = document["tests"]
+    assert [f["shift_s"] for f in test["files"]] == [0.0, pytest.approx(0.05)]
+    assert {c["column"] for c in test["columns"] if c["feeds"]} == {"esc[0].rpm", "esc[0].current"}
+    assert any("several machines" in warning for warning in document["warnings"])
+    assert any(note.startswith("b.csv is left out") for note in test["notes"])
+
+
+def test_clocks_of_two_loggers_from_zero_are_still_set_by_what_begins(tmp_path):
+    a, b = (
+        read_runs(file(tmp_path, f"t [s],{name}", "t", key, name=f"{key}.csv"))[0]
+        for name, key in (("I [A]", "I"), ("winding [°C]", "W"))
+    )
+    records = [
+        Recording(source, clock, list(guesses(source, clock.columns, first_model([b], {}).target)))
+        for source, clock in (a, b)
+    ]
+    assert "onset" in shift(*records)[1]
+
+
+def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path):
+    head = [
+        "LabVIEW Measurement",
+        "Separator\tTab",
+        "***End_of_Header***\t",
+        "Channels\t3",
+        "Date" + 3 * "\t2024/06/11",
+    ]
+    head += [
+        "Y_Unit_Label\tGrad C\tGrad C\tA",
+        "X_Dimension" + 3 * "\tTime",
+        "X0" + 3 * "\t0.0",
+        "Delta_X" + 3 * "\t5.0",
+    ]
+    rows = "\n".join(f"{5 * k}\t{WARM['W'][k]:.3f}\t{WARM['A'][k]:.3f}\t{WARM['I'][k]:.3f}" for k in range(N))
+    (tmp_path / "a.lvm").write_text(
+        "\n".join(head) + f"\n***End_of_Header***\t\t\t\nX_Value\tQx oben\tUmgebung\tI_sek\n{rows}\n"
+    )
+    found, _ = read(tmp_path / "a.lvm")
+    assert {c: g.unit for c, (g, _) in found.items()} == {"Qx oben": "degC", "Umgebung": "degC", "I_sek": "A"}
+
+
+@pytest.mark.parametrize(
+    ("name", "role"),
+    [
+        ("fTempSpindleNut", Role.BEARING),
+        ("Nut 3", Role.WINDING),
+        ("TEMP_STATOR_V1", Role.WINDING),
+        ("Stator", Role.IRON),
+        ("příruba", Role.END_SHIELD),
+        ("Hölje", Role.HOUSING),
+        ("axle", Role.SHAFT),
+        ("gearbox oil", None),
+        ("oil inlet", Role.COOLANT),
+    ],
+)
+def test_names_of_parts_in_the_words_of_other_shops(name, role):
+    assert next(iter(roles_of(name)), None) is role
