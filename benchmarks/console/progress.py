@@ -33,7 +33,8 @@ from scripts.published import publish
 ROOT = Path(__file__).resolve().parents[2]
 USUAL = ROOT / "thermoscope" / "console" / "usual_stages.json"
 CASES = tuple(sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml")))
-COMMANDS = {"compare": "test", "calibrate": "model", "diagnose": "explain", "improve": "explain"}
+OF_CASES = {"compare": "test", "calibrate": "model", "diagnose": "explain", "improve": "explain"}
+COMMANDS = {**OF_CASES, "build": "model"}  # build: --only names machines
 COLUMNS, SHORT_S, FIFTH, STOOD_S = 80, 10.0, 0.2, 20.0
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 LINE = re.compile(r"(\d+) %, about (\d+) (s|min) left")
@@ -74,11 +75,13 @@ def shown(command: list[str], environment: dict[str, str]) -> Iterator[tuple[flo
 
 
 def measured(name: str, case: str, run: str, cache: str) -> Row:
-    """One command, on a copy of a shipped case."""
+    """One command, on a copy of a shipped case; or the build of a machine of the library."""
     copy = Path(cache) / case
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(ROOT / "cases" / case, copy, ignore=shutil.ignore_patterns("out"))
-    command = [sys.executable, "-m", "thermoscope", COMMANDS[name], name, str(copy)]
+    if name in OF_CASES:
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(ROOT / "cases" / case, copy, ignore=shutil.ignore_patterns("out"))
+    subject = [str(copy)] if name in OF_CASES else [case, "--out", str(copy)]
+    command = [sys.executable, "-m", "thermoscope", COMMANDS[name], name, *subject]
     lines = list(shown(command, {**os.environ, "THERMOSCOPE_CACHE": cache, "TERM": "xterm"}))
     took, widest = lines[-1][0], max(len(line) for _, line in lines)
     found = [(t, m) for t, line in lines if (m := LINE.search(line))]
@@ -127,7 +130,7 @@ def main() -> None:
     """A row per case and run."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="+", default=CASES)
-    parser.add_argument("--commands", nargs="+", default=COMMANDS, choices=COMMANDS)
+    parser.add_argument("--commands", nargs="+", default=OF_CASES, choices=COMMANDS)
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--usual", action="store_true")

@@ -106,7 +106,7 @@ def enrich(
         new = reduction.solved([reduction.random_point(first + fresh * k + j) for j in range(fresh)])
         errors = merged(errors_at(new, reduction, network, cases))
         history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
-        tell(f"{len(network.states)} states: {errors}")
+        tell(f"error with {len(network.states)} states: {errors}")
         if history[-1].met or k == rounds - 1:
             break
         fuller = [*guides, *reduction.solved([reduction.extreme_point(first + k)])]
