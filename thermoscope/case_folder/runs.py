@@ -39,6 +39,9 @@ ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they 
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
+KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conductivity of"}
+KINDS |= {word: word for word in ("contact", "link", "stream")}  # by the first word of a value's name
+POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 
 
 def by_interest(folder: Folder) -> list[Test]:
@@ -215,11 +218,11 @@ def added_words(case: Case, names: Iterable[str]) -> str:
 
 
 def step_words(case: Case, step: Revision) -> str:
-    """What a step added, as an engineer says it; what it did where it added nothing."""
+    """What a step added or removed, as an engineer says it; what else it did."""
     from validation.revision.revise import TOGETHER
 
-    if step.action == "add":
-        return added_words(case, step.effect.split(TOGETHER))
+    if step.action in ("add", "remove"):
+        return "remove " * (step.action == "remove") + added_words(case, step.effect.split(TOGETHER))
     return f"{step.action} {step.effect or ''}".strip()
 
 
@@ -265,6 +268,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
         out.append(
             {
                 "name": p.name,
+                "words": value_words(folder.case, p.name),
                 "value": last.values[p.name],
                 "unit": p.unit,
                 "ci95": [a, b],
@@ -274,6 +278,20 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             }
         )
     return out
+
+
+def value_words(case: Case, name: str) -> str:
+    """A value of the model as an engineer says it: "heat capacity of rotor"; a name that was chosen freely as it is."""
+    whole, powered, exponent = name.partition("^")
+    kind, dot, of = whole.partition(".")
+    if whole in [e.name for e in case.model.effects]:
+        words = added_words(case, [whole])
+    else:
+        place, _, share = of.partition(":")
+        words = f"{KINDS[kind]} {place}".replace("|", " - ") if dot and kind in KINDS else whole
+        words += f", share of {share}" * bool(share and words != whole)
+    power = POWERS.get(exponent, f"exponent of {exponent}".replace("_", " "))
+    return f"{words}, {power}" if powered else words
 
 
 def sensors(folder: Folder) -> dict[str, Channel]:

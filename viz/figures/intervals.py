@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from geom.table import with_interval
 from viz.colours import BLUE, LIGHT, VERMILION
@@ -15,6 +18,8 @@ if TYPE_CHECKING:
 
 MOST = 16  # rows: more are not read
 WIDEST = 2.5  # of what was expected: an interval that is wider runs off the picture
+EDGE = 0.98 * WIDEST
+LETTERS = 44  # of a line of a value's words
 
 
 @paper.styled
@@ -22,8 +27,8 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
     """Each value with its 95 % interval on the scale of what was expected (grey), those that moved most first.
 
     Blue is what the data fix; pale what they leave as it was; vermilion what left the expected.
-    parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them; those of
-        sensors are left out
+    parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them, and words
+        if there are; those of sensors are left out
     """
     rows = []
     for p in (p for p in parameters if p["prior"] and not p.get("of_measurement")):
@@ -37,11 +42,12 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
         colour = VERMILION if abs(x) > 1.0 else BLUE
         alpha = 1.0 if p["identified"] else 0.35
         ax.plot([a, b], [y, y], color=colour, lw=2.2, alpha=alpha, solid_capstyle="butt")
-        ax.plot([x], [y], "o", color=colour, ms=5.0, alpha=alpha)
+        mark = "o" if abs(x) < WIDEST else ">" if x > 0 else "<"  # an arrow where it lies beyond
+        ax.plot([np.clip(x, -EDGE, EDGE)], [y], mark, color=colour, ms=5.0, alpha=alpha)
         unit = "" if p["unit"] == "1" else f" {p['unit']}"
         words = f"{with_interval(p['value'], *p['ci95'])}{unit}".replace(" ... ", " … ")
         ax.text(1.02, y, words, transform=ax.get_yaxis_transform(), va="center", fontsize=8)
-    ax.set_yticks(range(len(rows)), [p["name"] for p, _ in rows])
+    ax.set_yticks(range(len(rows)), [textwrap.fill(p.get("words", p["name"]), LETTERS) for p, _ in rows], fontsize=8.5)
     ax.grid(False, axis="y")
     ax.set(
         xlim=(-WIDEST, WIDEST), xlabel="deviation from what was expected; grey: its 95 %; pale: not fixed by the data"

@@ -88,7 +88,7 @@ SHOWS = {
     "curves": ["flange.right", "earlier model", "measured and modelled (°C)", "fan flow (m/s)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
-    "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
+    "staircase": ["road-2 (hold-out)", "+ forced", "vehicle", "rms error (K)", "The error, step by step"],
     "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
     "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
@@ -159,6 +159,15 @@ def test_channel_without_model_curve_is_named():
     c = comparison()
     with pytest.raises(InputError, match=r"no model curve for flange\.right"):
         Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"}, c.limits)
+
+
+def test_a_value_far_from_what_was_expected_is_an_arrow_at_the_edge():
+    far = {**VALUE, "words": "link of a and b", "value": 9.0, "ci95": [8.0, 10.0]}
+    (ax,) = intervals([far, VALUE]).figure.axes
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["link.a-b", "link of a and b"]
+    marks = {line.get_marker(): line.get_xdata()[0] for line in ax.lines if len(line.get_xdata()) == 1}
+    assert set(marks) == {"o", ">"}
+    assert marks[">"] < ax.get_xlim()[1]
 
 
 def test_empty_history_is_refused():
