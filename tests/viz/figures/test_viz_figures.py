@@ -76,7 +76,9 @@ DRAW = {
     "residuals": lambda png: curves.residuals(comparison(), png=png),
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
-    "scores": lambda png: scores.scores(candidates(), png=png),
+    "scores": lambda png: scores.scores(
+        [{**c, "words": c["effect"].replace("@", " at ")} for c in candidates()], png=png
+    ),
     "posterior": lambda png: scores.posterior(EXPLANATIONS, png=png),
     "screened": lambda png: screening.screened(EFFECTS, title="magnets", png=png),
     "ranking": lambda png: screening.ranking(RANKED, measure="Sobol ST", png=png),
@@ -89,7 +91,7 @@ SHOWS = {
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
     "staircase": ["road-2 (hold-out)", "+ forced", "vehicle", "rms error (K)", "The error, step by step"],
-    "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
+    "scores": ["convection at flange.right", "12.3 W/m2/K", "as probable as nothing"],
     "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
     "ranking": ["base", "speed", "Sobol ST"],
