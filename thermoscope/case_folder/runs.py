@@ -17,6 +17,7 @@ from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
+from lumped.machine.bases import unused
 from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
@@ -122,6 +123,15 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
     """When something was different in a test, by the model's effects: from and to (s)."""
     events = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
     return tuple(span for event in events for span in event.spans.get(test.name, ()))
+
+
+def nodes_of(folder: Folder, test: Test) -> SplitMesh:
+    """The mesh to draw in a test: of several bases what the machine stands on."""
+    from viz.rendering.nodes import split
+
+    built = folder.built
+    assert built is not None
+    return split(built.mesh, unused(built.machine, test.inputs))
 
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:

@@ -107,6 +107,12 @@ def test_figure_is_drawn_and_labelled(name, tmp_path):
     assert [word for word in SHOWS[name] if word not in text] == []
 
 
+def test_what_drove_a_test_is_promised_only_where_something_changed():
+    steady = comparison()
+    for c, inputs in ((driven(steady), True), (steady, False)):
+        assert ("what drove it" in curves.measured_and_model(c)._suptitle.get_text()) == inputs
+
+
 def test_a_curve_has_the_colour_of_its_sensor():
     c = comparison()
     colours = {ch.name: c.residual_curve(ch).colour for ch in c.test.channels}
