@@ -6,6 +6,7 @@ and what that step did to the error. CASE has had an effect added, as the demo's
 
 import sys
 from pathlib import Path
+from textwrap import fill
 
 from PIL import Image
 
@@ -16,6 +17,7 @@ from thermoscope.case_folder.runs import (
     comparison_of,
     fields,
     instant_words,
+    step_words,
     temperature_range,
 )
 from viz import Comparison, cutaway, sensors, split
@@ -34,8 +36,9 @@ def draw(case: Path, png: Path) -> None:
     title = f"{instant_words(test, test.time[-1])}: measured minus modelled"
     ends = temperature_range(folder, nodes)
     p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
-    words = f"found missing:\n{last.effect}\nadded: {before:.2f} K → {after:.2f} K rms"
-    line = p.add_text(words, position=(0.69, 0.04), viewport=True, font_size=12, color=LIGHT.ink)
+    words = fill(f"found missing: {step_words(folder.case, last)}", 33)
+    words += f"\nadded: {before:.2f} K → {after:.2f} K rms"
+    line = p.add_text(words, position=(0.66, 0.02), viewport=True, font_size=11, color=LIGHT.ink)
     scene.set_font(line.GetTextProperty())
     line.GetTextProperty().SetLineSpacing(1.25)
     scene.save(p, png)
