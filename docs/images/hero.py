@@ -9,6 +9,7 @@ from pathlib import Path
 from textwrap import fill
 
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import (
@@ -25,7 +26,8 @@ from viz.colours import LIGHT
 from viz.rendering import scene
 
 
-def draw(case: Path, png: Path) -> None:
+def draw(case: Path, png: Path) -> str:
+    """What stands beside the machine, for a test that compares it with the text."""
     folder = load_case(case)
     test, earlier, last = by_interest(folder)[0], before_last(folder), folder.history.last
     assert earlier is not None, "a case whose model has had a step"
@@ -43,9 +45,11 @@ def draw(case: Path, png: Path) -> None:
     line.GetTextProperty().SetLineSpacing(1.25)
     scene.save(p, png)
     p.close()
+    return words
 
 
 if __name__ == "__main__":
     target = Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).parent / "road-test.png"
-    draw(Path(sys.argv[1]), target)
-    Image.open(target).convert("RGB").save(target, optimize=True)
+    info = PngInfo()
+    info.add_itxt("words", draw(Path(sys.argv[1]), target))
+    Image.open(target).convert("RGB").save(target, optimize=True, pnginfo=info)
