@@ -40,8 +40,7 @@ ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they 
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
-KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conductivity of"}
-KINDS |= {word: word for word in ("contact", "link", "stream")}  # by the first word of a value's name
+KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "contact": "contact", "k": "conduction of"}
 POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 
 
@@ -129,9 +128,8 @@ def nodes_of(folder: Folder, test: Test) -> SplitMesh:
     """The mesh to draw in a test: of several bases what the machine stands on."""
     from viz.rendering.nodes import split
 
-    built = folder.built
-    assert built is not None
-    return split(built.mesh, unused(built.machine, test.inputs))
+    assert folder.built is not None
+    return split(folder.built.mesh, unused(folder.built.machine, test.inputs))
 
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
@@ -292,14 +290,12 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
 
 def value_words(case: Case, name: str) -> str:
     """A value of the model as an engineer says it: "heat capacity of rotor"; a name that was chosen freely as it is."""
-    whole, powered, exponent = name.partition("^")
-    kind, dot, of = whole.partition(".")
-    if whole in [e.name for e in case.model.effects]:
-        words = added_words(case, [whole])
-    else:
-        place, _, share = of.partition(":")
-        words = f"{KINDS[kind]} {place}".replace("|", " - ") if dot and kind in KINDS else whole
-        words += f", share of {share}" * bool(share and words != whole)
+    words, powered, exponent = name.partition("^")
+    kind, dot, place = words.partition(".")
+    if words in [e.name for e in case.model.effects]:
+        words = added_words(case, [words])
+    elif dot and kind in KINDS:
+        words = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
     power = POWERS.get(exponent, f"exponent of {exponent}".replace("_", " "))
     return f"{words}, {power}" if powered else words
 

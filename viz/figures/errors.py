@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PALE = "#8DB9DB"
-STEP = 1.3  # inch at least of a step of the staircase
-LETTERS = 17  # of a line of its words
 
 
 @paper.styled
@@ -61,7 +59,6 @@ def staircase(
     *,
     floor_K: float | None = None,
     plain_K: float | None = None,
-    title: str = "The error, step by step",
     png: str | Path | None = None,
 ) -> Figure:
     """Error of every test over the revisions: a step per revision, held-out tests drawn strong.
@@ -71,7 +68,7 @@ def staircase(
     """
     if not history:
         raise InputError("no revisions to draw", "staircase", "a model with at least one revision")
-    figure, (ax,) = paper.subplots(max(8.4, STEP * len(history) + 3.0), 4.2)
+    figure, (ax,) = paper.subplots(max(8.4, 1.3 * len(history) + 3.0), 4.2)
     paths = error_paths(history)
     for (_, role), errors in paths.items():
         style: dict[str, Any] = {"color": BLUE, "lw": 2.4} if role == "hold-out" else {"color": PALE, "lw": 1.4}
@@ -87,7 +84,7 @@ def staircase(
         _level(ax, plain_K, "best plain model")
     ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
     ax.grid(False, axis="x")
-    ax.set(ylabel="rms error (K)", title=title)
+    ax.set(ylabel="rms error (K)", title="Error of every test; strong: never used")
     return paper.save(figure, png)
 
 
@@ -108,5 +105,5 @@ def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], l
 
 
 def _step_name(revision: Mapping[str, Any]) -> str:
-    sign = "+ " if revision["action"] == "add" else ""
-    return f"{revision['number']}\n{textwrap.fill(sign + revision['words'], LETTERS)}"
+    words = "+ " * (revision["action"] == "add") + revision["words"]
+    return f"{revision['number']}\n{textwrap.fill(words, 17)}"

@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from geom.table import with_interval
 from viz.colours import BLUE, LIGHT, VERMILION
 from viz.figures import paper
@@ -18,8 +16,6 @@ if TYPE_CHECKING:
 
 MOST = 16  # rows: more are not read
 WIDEST = 2.5  # of what was expected: an interval that is wider runs off the picture
-EDGE = 0.98 * WIDEST
-LETTERS = 44  # of a line of a value's words
 
 
 @paper.styled
@@ -42,12 +38,12 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
         colour = VERMILION if abs(x) > 1.0 else BLUE
         alpha = 1.0 if p["identified"] else 0.35
         ax.plot([a, b], [y, y], color=colour, lw=2.2, alpha=alpha, solid_capstyle="butt")
-        mark = "o" if abs(x) < WIDEST else ">" if x > 0 else "<"  # an arrow where it lies beyond
-        ax.plot([np.clip(x, -EDGE, EDGE)], [y], mark, color=colour, ms=5.0, alpha=alpha)
+        at, mark = (x, "o") if abs(x) < WIDEST else (0.98 * WIDEST, ">") if x > 0 else (-0.98 * WIDEST, "<")
+        ax.plot([at], [y], mark, color=colour, ms=5.0, alpha=alpha)
         unit = "" if p["unit"] == "1" else f" {p['unit']}"
         words = f"{with_interval(p['value'], *p['ci95'])}{unit}".replace(" ... ", " … ")
         ax.text(1.02, y, words, transform=ax.get_yaxis_transform(), va="center", fontsize=8)
-    ax.set_yticks(range(len(rows)), [textwrap.fill(p.get("words", p["name"]), LETTERS) for p, _ in rows], fontsize=8.5)
+    ax.set_yticks(range(len(rows)), [textwrap.fill(p.get("words", p["name"]), 44) for p, _ in rows], fontsize=8.5)
     ax.grid(False, axis="y")
     ax.set(
         xlim=(-WIDEST, WIDEST), xlabel="deviation from what was expected; grey: its 95 %; pale: not fixed by the data"

@@ -107,7 +107,7 @@ def _error(r: Report) -> str:
     most = max(error for path in errors.error_paths(r.history).values() for error in path)
     bars = errors.before_after(last["tests"], floor_K=floor, most_K=most)
     title = f"Last step: {last['words']}. Tests in bold were never used."
-    stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain, title="")
+    stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
         "The error, step by step",
         html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),

@@ -81,14 +81,10 @@ def repeated(triangles: Ints) -> Mask:
 
 
 def split(mesh: NamedMesh, without: Collection[str] = ()) -> SplitMesh:
-    """Give every part its own copy of the nodes it touches, parts one after the other.
-
-    without : parts to leave out
-    """
-    if left := [i for i, part in enumerate(mesh.parts) if part not in without]:
-        there = np.isin(mesh.region, left)
-        region, parts = np.searchsorted(left, mesh.region[there]), tuple(mesh.parts[i] for i in left)
-        mesh = replace(mesh, tets=mesh.tets[there], region=region, parts=parts)
+    """Give every part its own copy of the nodes it touches, parts one after the other, `without` some."""
+    left = [i for i, part in enumerate(mesh.parts) if part not in without]
+    there, parts = np.isin(mesh.region, left), tuple(mesh.parts[i] for i in left)
+    mesh = replace(mesh, tets=mesh.tets[there], region=np.searchsorted(left, mesh.region[there]), parts=parts)
     ids = [np.unique(mesh.tets[mesh.region == i]) for i in range(len(mesh.parts))]
     starts = np.cumsum([0, *map(len, ids)])
     tets = np.empty_like(mesh.tets)

@@ -119,8 +119,7 @@ def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
             draw(comparison, png=paths[-1])
     if folder.history.revisions:
         paths.append(into / "error.png")
-        title = f"{folder.case.name}: the error, step by step"
-        viz.staircase(runs.steps(folder), title=title, png=paths[-1])
+        viz.staircase(runs.steps(folder), png=paths[-1])
     files = [*paths, *_pictures(folder, into, current_diagnosis(folder)).values()]
     if folder.built is not None:
         tell("writing the recording")

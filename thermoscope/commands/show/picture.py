@@ -220,9 +220,7 @@ FLAT: dict[str, Callable[[Subject, Path], Any]] = {
     "curves": lambda s, png: viz.measured_and_model(s.comparison, png=png),
     "bands": _bands,
     "residuals": lambda s, png: viz.residuals(s.comparison, png=png),
-    "errors": lambda s, png: viz.staircase(
-        runs.steps(s.folder), title=f"{s.folder.case.name}: the error, step by step", png=png
-    ),
+    "errors": lambda s, png: viz.staircase(runs.steps(s.folder), png=png),
     "losses": _losses,
     "odds": _odds,
     "sizes": lambda s, png: viz.intervals(runs.parameters(s.folder), png=png),
