@@ -115,6 +115,7 @@ def candidates_table(candidates: Iterable[Document]) -> Table:
         held_out=lambda c: fall(c.get("holdout_rmse_K")),
         probability=_percent,
         unit=lambda c: unit_of(c["amplitude"]),
+        decision=lambda c: c["decision"].replace("-", " "),
     )
 
 

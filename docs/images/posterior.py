@@ -9,5 +9,7 @@ HERE = Path(__file__).parent
 
 if __name__ == "__main__":
     diagnosis = ts.open("hust-ipmsm").diagnose()
-    posterior([o.document() for o in diagnosis.odds], png=HERE / "posterior.png")
+    posterior(
+        diagnosis.document()["explanations"], title="hust-ipmsm: what the readings say", png=HERE / "posterior.png"
+    )
     print(diagnosis.words)

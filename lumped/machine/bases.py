@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geom.description.bases import THIS_MACHINE
+from geom.description.bases import PIECES, THIS_MACHINE
 from geom.description.machine import Machine
 from geom.description.roles import Role
 from lumped.model.network import Link, Network, Parameter, Place
@@ -32,6 +32,13 @@ class Switched(Wrapped):
     def factor(self, inputs: Inputs) -> Array | float:
         on = np.asarray(inputs[self.switch], float)
         return np.asarray(self.base.factor(inputs) * (on if self.closed else 1.0 - on))
+
+
+def unused(machine: Machine, inputs: Mapping[str, Array | float]) -> list[str]:
+    """Feet and bases that it does not stand on at any instant, by a test's inputs."""
+    bases = machine.sections.get("bases", {}).items()
+    off = [name for name, _ in bases if not np.any(inputs.get(f"on_{name}", 1.0))]
+    return [piece if of == THIS_MACHINE else f"{piece}.{name}" for name, of in bases if name in off for piece in PIECES]
 
 
 def on_all(machine: Machine) -> Machine:

@@ -4,6 +4,7 @@ import re
 import shlex
 
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 from scripts import tutorial
@@ -48,6 +49,13 @@ def test_what_a_command_prints_stands_under_it_and_fits_a_screen(commands, print
     assert max(map(len, lines)) <= 80
     count = sum(line.startswith("thermoscope") for line in commands.splitlines())
     assert len(lines) <= count * (LINES + 5), "a sentence of some lines, and at most 25 after it"
+
+
+def test_its_picture_tells_the_errors_of_its_text():
+    before, after = re.findall(r"[\d.]+(?= K)", Image.open(tutorial.ROOT / "docs/images/road-test.png").text["words"])
+    assert f"held-out tests {before} -> {after} K" in PAGE
+    readme = (tutorial.ROOT / "README.md").read_text(encoding="utf-8")
+    assert all(f"**{error}**" in readme for error in (before, after))
 
 
 def test_it_takes_less_than_a_quarter_of_an_hour():

@@ -17,6 +17,7 @@ from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Run, simulate
+from lumped.machine.bases import unused
 from lumped.model.network import Network, Row
 from lumped.model.once import once
 from measured.case import Case, Channel, Test
@@ -39,6 +40,8 @@ ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they 
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
+KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "contact": "contact", "k": "conduction of"}
+POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 
 
 def by_interest(folder: Folder) -> list[Test]:
@@ -119,6 +122,14 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
     """When something was different in a test, by the model's effects: from and to (s)."""
     events = [effect.event for effect in effects_of(case) if isinstance(effect, During) and effect.event]
     return tuple(span for event in events for span in event.spans.get(test.name, ()))
+
+
+def nodes_of(folder: Folder, test: Test) -> SplitMesh:
+    """The mesh to draw in a test: of several bases what the machine stands on."""
+    from viz.rendering.nodes import split
+
+    assert folder.built is not None
+    return split(folder.built.mesh, unused(folder.built.machine, test.inputs))
 
 
 def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
@@ -215,11 +226,11 @@ def added_words(case: Case, names: Iterable[str]) -> str:
 
 
 def step_words(case: Case, step: Revision) -> str:
-    """What a step added, as an engineer says it; what it did where it added nothing."""
+    """What a step added or removed, as an engineer says it; what else it did."""
     from validation.revision.revise import TOGETHER
 
-    if step.action == "add":
-        return added_words(case, step.effect.split(TOGETHER))
+    if step.action in ("add", "remove"):
+        return "remove " * (step.action == "remove") + added_words(case, step.effect.split(TOGETHER))
     return f"{step.action} {step.effect or ''}".strip()
 
 
@@ -265,6 +276,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
         out.append(
             {
                 "name": p.name,
+                "words": value_words(folder.case, p.name),
                 "value": last.values[p.name],
                 "unit": p.unit,
                 "ci95": [a, b],
@@ -274,6 +286,18 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             }
         )
     return out
+
+
+def value_words(case: Case, name: str) -> str:
+    """A value of the model as an engineer says it: "heat capacity of rotor"; a name that was chosen freely as it is."""
+    words, powered, exponent = name.partition("^")
+    kind, dot, place = words.partition(".")
+    if words in [e.name for e in case.model.effects]:
+        words = added_words(case, [words])
+    elif dot and kind in KINDS:
+        words = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
+    power = POWERS.get(exponent, f"exponent of {exponent}".replace("_", " "))
+    return f"{words}, {power}" if powered else words
 
 
 def sensors(folder: Folder) -> dict[str, Channel]:

@@ -28,7 +28,8 @@ DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LI
 def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
     """The highest log evidence as bars with each candidate's threshold, coloured by decision."""
     best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
-    figure, ax = _bars([c["effect"] for c in best], [c["score"] for c in best], [DECISION[c["decision"]] for c in best])
+    names = [textwrap.fill(c.get("words") or c["effect"], LABEL) for c in best]
+    figure, ax = _bars(names, [c["score"] for c in best], [DECISION[c["decision"]] for c in best], height=0.5)
     for y, c in enumerate(best):
         ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
         note = amplitude(c) if c["decision"] != "no" else ""

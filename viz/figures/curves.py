@@ -33,9 +33,10 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
     Below them a row of what the test was driven with.
     """
-    channels, title = _read(comparison), f"{comparison.test.name}: measured and modelled (°C), and what drove it"
+    channels, title = _read(comparison), f"{comparison.test.name}: measured and modelled (°C)"
     time, across = f"time ({comparison.clock[1]})", min(columns, len(channels))
     inputs, above = varying_inputs(comparison)[: max(across, 2)], -(-len(channels) // across) * across
+    title += ", and what drove it" if inputs else ""
     figure, axes = paper.panels(above + len(inputs), across, (3.4, 2.1), title, time)
     for ax, channel in zip(axes, channels, strict=False):
         _panel(ax, comparison, channel)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,11 +64,11 @@ def staircase(
     """Error of every test over the revisions: a step per revision, held-out tests drawn strong.
 
     floor_K, plain_K : what the sensors' own uncertainty explains, and what the best plain model leaves
-    history : [{"number", "action", "effect", "tests": [{"name", "role", "rmse_K": {"before", "after"}}]}]
+    history : [{"number", "action", "words", "tests": [{"name", "role", "rmse_K": {"before", "after"}}]}]
     """
     if not history:
         raise InputError("no revisions to draw", "staircase", "a model with at least one revision")
-    figure, (ax,) = paper.subplots(8.4, 4.2)
+    figure, (ax,) = paper.subplots(max(8.4, 1.3 * len(history) + 3.0), 4.2)
     paths = error_paths(history)
     for (_, role), errors in paths.items():
         style: dict[str, Any] = {"color": BLUE, "lw": 2.4} if role == "hold-out" else {"color": PALE, "lw": 1.4}
@@ -83,7 +84,7 @@ def staircase(
         _level(ax, plain_K, "best plain model")
     ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
     ax.grid(False, axis="x")
-    ax.set(ylabel="rms error (K)")
+    ax.set(ylabel="rms error (K)", title="Error of every test; strong: never used")
     return paper.save(figure, png)
 
 
@@ -104,6 +105,5 @@ def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], l
 
 
 def _step_name(revision: Mapping[str, Any]) -> str:
-    words = {"add": "+ ", "remove": "− "}.get(revision["action"])
-    effect = str(revision.get("effect") or "").replace("@", "\n@ ")
-    return f"{revision['number']}\n{words}{effect}" if words else f"{revision['number']}\n{revision['action']}"
+    words = "+ " * (revision["action"] == "add") + revision["words"]
+    return f"{revision['number']}\n{textwrap.fill(words, 17)}"

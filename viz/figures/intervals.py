@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,8 +23,8 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
     """Each value with its 95 % interval on the scale of what was expected (grey), those that moved most first.
 
     Blue is what the data fix; pale what they leave as it was; vermilion what left the expected.
-    parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them; those of
-        sensors are left out
+    parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them, and words
+        if there are; those of sensors are left out
     """
     rows = []
     for p in (p for p in parameters if p["prior"] and not p.get("of_measurement")):
@@ -37,11 +38,12 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
         colour = VERMILION if abs(x) > 1.0 else BLUE
         alpha = 1.0 if p["identified"] else 0.35
         ax.plot([a, b], [y, y], color=colour, lw=2.2, alpha=alpha, solid_capstyle="butt")
-        ax.plot([x], [y], "o", color=colour, ms=5.0, alpha=alpha)
+        at, mark = (x, "o") if abs(x) < WIDEST else (0.98 * WIDEST, ">") if x > 0 else (-0.98 * WIDEST, "<")
+        ax.plot([at], [y], mark, color=colour, ms=5.0, alpha=alpha)
         unit = "" if p["unit"] == "1" else f" {p['unit']}"
         words = f"{with_interval(p['value'], *p['ci95'])}{unit}".replace(" ... ", " … ")
         ax.text(1.02, y, words, transform=ax.get_yaxis_transform(), va="center", fontsize=8)
-    ax.set_yticks(range(len(rows)), [p["name"] for p, _ in rows])
+    ax.set_yticks(range(len(rows)), [textwrap.fill(p.get("words", p["name"]), 44) for p, _ in rows], fontsize=8.5)
     ax.grid(False, axis="y")
     ax.set(
         xlim=(-WIDEST, WIDEST), xlabel="deviation from what was expected; grey: its 95 %; pale: not fixed by the data"

@@ -62,7 +62,7 @@ def cutaway(
     paint_cut(p, surface, marks.cut, on_nodes(nodes, T), limits, theme, colours)
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
-    marks.draw(p, surface, view, theme, note)
+    marks.draw(p, surface, view, theme, note if sensors else "")
     return scene.save(p, png)
 
 
@@ -134,6 +134,7 @@ def pair(
     ends = limits or (min(first.min(), last.min()), max(first.max(), last.max()))
     most = float(np.abs(last - first).max())
     p, view, surface = scene.plotter(theme, PANELS, (1, 3)), view or View(), cut_away(nodes, wedge)
+    room = Room(0.13, 0.26, TITLE, NOTE) if any(sensors) else Room(0.02, 0.16, TITLE)
     numbers = [tuple(replace(s, name="") for s in row) for row in sensors]
     for i, (field, T_limits, colours, row, words) in enumerate(
         [
@@ -143,7 +144,7 @@ def pair(
         ]
     ):
         p.subplot(0, i)
-        scene.look(p, frame_points(surface, row), view, Room(0.13, 0.26, TITLE, NOTE))
+        scene.look(p, frame_points(surface, row), view, room)
         marks = marked(surface, row, LABELS, np.array(p.camera.position))
         paint_cut(p, surface, marks.cut, field, T_limits, theme, colours)
         if i:  # the first is on the scale of the second

@@ -143,10 +143,11 @@ def _missing(r: Report) -> str:
     evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
     table = tables.candidates_table(by_score[:12])
     bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
+    texts = {c["effect"]: c["words"] for c in by_score if c.get("words")}
     parts = [
         html.plot(bars, "odds", "Each leading cause and its odds; pale: with something else.") if bars else "",
-        html.table(table, {c["effect"]: c["words"] for c in by_score if c.get("words")}, DETAIL),
-        html.more("Evidence of each by itself", evidence, html.table(table)),
+        html.table(table, texts, DETAIL),
+        html.more("Evidence of each by itself", evidence, html.table(table, texts)),
         html.headed(tables.events_table(d.get("events", []))),
         _contradiction(d.get("contradiction")),
     ]

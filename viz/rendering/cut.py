@@ -34,7 +34,7 @@ class Wedge:
         return first, last
 
 
-NEAR = 0.22  # of the machine's size: further away a base may leave the picture
+NEAR = 1.3  # of the machine's size: further away a base may leave the picture
 QUARTER = Wedge(90.0, 90.0)  # the upper quadrant that faces the default camera
 HALF = Wedge(90.0, 180.0)
 
@@ -109,7 +109,7 @@ class Surface:
 
 
 def framed(machine: Array, bases: Array) -> Array:
-    """Points (n, 3) m that a picture must hold: of the machine all, of a long base only what is near it."""
+    """Points (n, 3) m that a picture must hold: of the machine all, of a very long base only what is near it."""
     low, high = machine.min(axis=0), machine.max(axis=0)
     more = NEAR * (high - low)
     return np.concatenate([machine, np.clip(bases, low - more, high + more)])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -80,8 +80,11 @@ def repeated(triangles: Ints) -> Mask:
     return out
 
 
-def split(mesh: NamedMesh) -> SplitMesh:
-    """Give every part its own copy of the nodes it touches, parts one after the other."""
+def split(mesh: NamedMesh, without: Collection[str] = ()) -> SplitMesh:
+    """Give every part its own copy of the nodes it touches, parts one after the other, `without` some."""
+    left = [i for i, part in enumerate(mesh.parts) if part not in without]
+    there, parts = np.isin(mesh.region, left), tuple(mesh.parts[i] for i in left)
+    mesh = replace(mesh, tets=mesh.tets[there], region=np.searchsorted(left, mesh.region[there]), parts=parts)
     ids = [np.unique(mesh.tets[mesh.region == i]) for i in range(len(mesh.parts))]
     starts = np.cumsum([0, *map(len, ids)])
     tets = np.empty_like(mesh.tets)

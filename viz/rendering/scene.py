@@ -149,7 +149,7 @@ def _strip(p: pyvista.Plotter, left: float, theme: Theme) -> None:
     import pyvista
     from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D
 
-    corners = np.array([[left, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0 - TITLE, 0.0], [left, 1.0 - TITLE, 0.0]])
+    corners = np.array([[left, 0.0, 0.0], [1.01, 0.0, 0.0], [1.01, 1.0 - TITLE, 0.0], [left, 1.0 - TITLE, 0.0]])
     place, mapper, actor = vtkCoordinate(), vtkPolyDataMapper2D(), vtkActor2D()
     place.SetCoordinateSystemToNormalizedViewport()
     mapper.SetTransformCoordinate(place)

@@ -14,7 +14,7 @@ from lumped.condensation.reduction import Recipe
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
-from lumped.machine.bases import Switched
+from lumped.machine.bases import Switched, unused
 
 LOAD = {"current_A": 8.0, "speed_rpm": 0.0}
 FEW = Recipe(tolerance=0.02, shifts=(), random_points=0)  # learned at the machine's own coefficients, where it is used
@@ -40,6 +40,17 @@ def both():
 def rest(network, **switches):
     rows = [network.places[p].mean for p in PLACES]
     return steady(network, {**LOAD, **switches}, {"ambient": 20.0}, None, rows)
+
+
+@pytest.mark.parametrize(
+    ("on", "off"), [((1, 0), ["foot.plate", "base.plate"]), ((0, 1), ["foot", "base"]), ((0, 0), 4), ((None, None), [])]
+)
+def test_bases_it_does_not_stand_on(on, off):
+    machine = machine_from(sections(bench="own", plate="pmsm-m1-plate"), "both.toml")
+    inputs = {f"on_{name}": np.full(3, x) for name, x in zip(("bench", "plate"), on, strict=True) if x is not None}
+    found = unused(machine, inputs)
+    assert len(found) == off if off == 4 else found == off
+    assert unused(load_machine("pmsm-m1"), inputs) == []
 
 
 @pytest.mark.heavy

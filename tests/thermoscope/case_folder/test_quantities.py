@@ -1,5 +1,7 @@
 """Which of several currents and speeds is the machine's: those that losses follow, the largest of them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from lumped.declarations.network import read_network
 from measured.case import Test
 from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.quantities import with_quantities
+from thermoscope.case_folder.runs import value_words
 
 NETWORK = {
     "network": {"name": "n", "boundaries": ["room"]},
@@ -71,3 +74,17 @@ def test_a_measured_loss_asks_which_input_is_the_speed():
     one = {n: np.ones(1) for n in ("P", "M", "shaft_rpm")}
     assert float(source.law.factor(one)[0]) == 1.0 - np.pi / 30
     assert said.measures("shaft_rpm") == "speed"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("capacity.rotor", "heat capacity of rotor"),
+        ("contact.a|b.c", "contact a - b.c"),
+        ("h.gap:rotor", "film of gap, share of rotor"),
+        ("loss.iron^speed_rpm", "loss of iron, exponent of speed rpm"),
+        ("fan.flow", "fan.flow"),
+    ],
+)
+def test_a_value_of_the_model_has_words(name, words):
+    assert value_words(SimpleNamespace(model=SimpleNamespace(effects=())), name) == words

@@ -76,7 +76,9 @@ DRAW = {
     "residuals": lambda png: curves.residuals(comparison(), png=png),
     "before_after": lambda png: errors.before_after(HISTORY[-1]["tests"], floor_K=0.6, png=png),
     "staircase": lambda png: errors.staircase(HISTORY, floor_K=0.6, png=png),
-    "scores": lambda png: scores.scores(candidates(), png=png),
+    "scores": lambda png: scores.scores(
+        [{**c, "words": c["effect"].replace("@", " at ")} for c in candidates()], png=png
+    ),
     "posterior": lambda png: scores.posterior(EXPLANATIONS, png=png),
     "screened": lambda png: screening.screened(EFFECTS, title="magnets", png=png),
     "ranking": lambda png: screening.ranking(RANKED, measure="Sobol ST", png=png),
@@ -88,8 +90,8 @@ SHOWS = {
     "curves": ["flange.right", "earlier model", "measured and modelled (°C)", "fan flow (m/s)"],
     "residuals": ["flange.right", "measured − model (K)", "time (min)"],
     "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
-    "staircase": ["road-2 (hold-out)", "convection", "rms error (K)"],
-    "scores": ["convection@flange.right", "12.3 W/m2/K", "as probable as nothing"],
+    "staircase": ["road-2 (hold-out)", "+ forced", "vehicle", "rms error (K)", "strong: never used"],
+    "scores": ["convection at flange.right", "12.3 W/m2/K", "as probable as nothing"],
     "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
     "ranking": ["base", "speed", "Sobol ST"],
@@ -103,6 +105,12 @@ def test_figure_is_drawn_and_labelled(name, tmp_path):
     assert np.asarray(Image.open(tmp_path / "f.png").convert("L")).std() > 8
     text = paper.svg(figure, name).replace("\u00a0", " ")
     assert [word for word in SHOWS[name] if word not in text] == []
+
+
+def test_what_drove_a_test_is_promised_only_where_something_changed():
+    steady = comparison()
+    for c, inputs in ((driven(steady), True), (steady, False)):
+        assert ("what drove it" in curves.measured_and_model(c)._suptitle.get_text()) == inputs
 
 
 def test_a_curve_has_the_colour_of_its_sensor():
@@ -159,6 +167,15 @@ def test_channel_without_model_curve_is_named():
     c = comparison()
     with pytest.raises(InputError, match=r"no model curve for flange\.right"):
         Comparison(c.test, {k: v for k, v in c.model.items() if k != "flange.right"}, c.limits)
+
+
+def test_a_value_far_from_what_was_expected_is_an_arrow_at_the_edge():
+    far = {**VALUE, "words": "link of a and b", "value": 9.0, "ci95": [8.0, 10.0]}
+    (ax,) = intervals([far, VALUE]).figure.axes
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["link.a-b", "link of a and b"]
+    marks = {line.get_marker(): line.get_xdata()[0] for line in ax.lines if len(line.get_xdata()) == 1}
+    assert set(marks) == {"o", ">"}
+    assert marks[">"] < ax.get_xlim()[1]
 
 
 def test_empty_history_is_refused():

@@ -124,6 +124,16 @@ def test_sections_follow_the_parts_given(page):
     assert re.findall(r"<h2>", render(Report("empty"))) == []
 
 
+def test_evidence_of_each_has_words_before_its_code():
+    compare, diagnose = documents()
+    one = {**diagnose["candidates"][0], "words": "wind at the flange", "decision": "cannot-tell"}
+    page = render(Report("r", comparison=compare, diagnosis={**diagnose, "candidates": [one]}))
+    evidence = page[page.index("Evidence of each by itself") :]
+    assert f'wind at the flange<br><code class="code">{one["effect"]}</code>' in evidence
+    assert "cannot tell" in evidence
+    assert "cannot-tell" not in page
+
+
 def test_words_from_outside_are_escaped(page):
     assert "road &lt;test&gt;" in page
     assert "road <test>" not in page

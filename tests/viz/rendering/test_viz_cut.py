@@ -21,6 +21,14 @@ def test_parts_share_no_node():
     assert all(len(np.unique(NODES.owner[NODES.tets[NODES.region == i]])) == 1 for i in range(len(NODES.parts)))
 
 
+def test_parts_that_are_left_out_leave_the_others_as_they_were():
+    less = split(motor(32), ["shaft", "flange.left"])
+    assert less.parts == tuple(p for p in NODES.parts if p not in ("shaft", "flange.left"))
+    np.testing.assert_array_equal(less.points[less.of("yoke")], NODES.points[NODES.of("yoke")])
+    kept = np.isin(NODES.region, [NODES.parts.index(p) for p in less.parts])
+    np.testing.assert_array_equal(less.points[less.tets], NODES.points[NODES.tets[kept]])
+
+
 def test_section_through_mesh_lines_has_the_area_of_the_half_planes():
     shaft = 2 * RADII[1] * LEVELS[-1]
     flange = 2 * (RADII[-1] - RADII[1]) * (LEVELS[2] - LEVELS[1])

@@ -18,6 +18,7 @@ from thermoscope.case_folder.runs import (
     by_interest,
     fields,
     instant_words,
+    nodes_of,
     readings,
     step_words,
     temperature_range,
@@ -48,12 +49,12 @@ def film(
     needs_geometry(case)
     required(("pyvista", "PIL", *(("imageio_ffmpeg",) if out is not None and out.suffix == ".mp4" else ())))
     with progress() as tell:
-        from viz import animate, require_gl, split
+        from viz import animate, require_gl
 
         require_gl()  # before anything is run
         folder = open_case(case, tell)
-        assert folder.built is not None
-        nodes, test, earlier = split(folder.built.mesh), by_interest(folder)[0], before_last(folder)
+        test, earlier = by_interest(folder)[0], before_last(folder)
+        nodes = nodes_of(folder, test)
         file = out or Path("out") / f"{file_stem(folder.case.name)}.gif"
         before, now = model_words(folder)
         models = {now: folder.case} if earlier is None else {before: earlier, now: folder.case}

@@ -101,7 +101,7 @@ class Subject:
 
     @cached_property
     def nodes(self) -> SplitMesh:
-        return viz.split(self.built.mesh)
+        return runs.nodes_of(self.folder, self.test)
 
     @property
     def comparison(self) -> Comparison:
