@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import pytest
 from two_bodies import bench
 
+from measured.case import AddedEffect
+from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
@@ -71,6 +73,16 @@ def test_a_link_that_follows_an_input_is_told_at_rest_and_at_most(case):
     (found,) = suggested_effects([link("body", "ambient", "", 2.0), link("body", "ambient", f"{name}^2", 1.5)], case)
     assert (found.rest, found.most, found.inputs) == (2.0, 3.5, (name,))
     assert found.words == f"body to ambient: 2 W/K at rest, 3.5 at the largest {name}"
+
+
+def test_ends_that_an_added_effect_joins_are_not_told_as_lacking(case):
+    """Whatever else the free network has that film follow."""
+    poorer, name = without(case, ("body", "ambient")), next(iter(case.tests[0].inputs))
+    terms = (link("body", "ambient", "", 2.0), link("body", "ambient", f"{name}^2", 1.5))
+    yard = replace(yardstick(poorer), terms=terms)
+    mended = replace(poorer, model=replace(poorer.model, effects=(AddedEffect("convection.constant", "body"),)))
+    lacking = [yardstick_document(yard, errors(c), c)["yardstick"]["lacking"] for c in (poorer, mended)]
+    assert [len(rows) for rows in lacking] == [1, 0]
 
 
 def test_per_capacity_there_is_no_start(case):
