@@ -120,7 +120,8 @@ def _odds(e: Evidence, h: Weighed, p: float, sure: tuple[str, ...]) -> Odds:
 def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
     """The hypotheses by leading cause: those with the cause that most of the probability holds, then of the rest.
 
-    A cause that leads has the probability of its row among the candidates. Plain faults are no part of it.
+    A cause that leads has the probability of its row among the candidates. Partners have theirs where it is there, as
+    the verdict tells two causes that do not depend on each other. Plain faults are no part of it.
     """
     e, words = posterior.evidence, {"nothing": "nothing is missing"}
     words |= {name: effect.statement for name, effect in zip(e.names, e.effects, strict=True)}
@@ -138,9 +139,9 @@ def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
         for each, p in left:
             if lead in each:
                 partners |= {name: partners.get(name, 0.0) + p for name in each if name != lead}
-        likely = sorted(((n, words[n], p) for n, p in partners.items() if p > LEAST_ODDS), key=lambda row: -row[2])
+        likely = [(n, words[n], p / share[lead]) for n, p in partners.items() if p > LEAST_ODDS]
         alone = sum(p for each, p in left if each == (lead,))
-        rows.append(Explanation(lead, words[lead], share[lead], alone, tuple(likely)))
+        rows.append(Explanation(lead, words[lead], share[lead], alone, tuple(sorted(likely, key=lambda row: -row[2]))))
         left = [(each, p) for each, p in left if lead not in each]
     return (*rows, Explanation("others", "anything else", max(1.0 - sum(r.probability for r in rows), 0.0)))
 

@@ -128,6 +128,12 @@ def test_the_leading_cause_has_the_probability_of_its_row_among_the_candidates()
     assert first.words == "forced convection by vehicle wind at flange.right"
     assert first.probability == inclusion(p.hypotheses, len(p.evidence.effects)).max()
     assert first.alone <= first.probability
+    P, names = probabilities(p.hypotheses), p.evidence.names
+    for cause, _, where_it_is in first.partners:
+        both = sum(
+            x for h, x in zip(p.hypotheses, P, strict=True) if {cause, first.cause} <= {names[k] for k in h.members}
+        )
+        assert where_it_is * first.probability == pytest.approx(both)
 
 
 def test_every_hypothesis_is_told_once():
