@@ -17,6 +17,7 @@ from measured.sensors.faults import PlainFaults
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
+from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During
 from validation.effects.time_window import Event
@@ -223,7 +224,7 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
         absorbed=float(s.absorbed[k]),
         twin=e.twins[k],
         title=effect.title,
-        words=effect.statement,
+        words=effect.words(a, e.fit.network, {}) if h.fit and isinstance(effect, Above) else effect.statement,
         isolating_test=effect.isolating_test,
     )
     if h.fit is None:
@@ -433,7 +434,7 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         return f"{'fault' if effect.fault else 'missing'}: {effect.statement}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    likely = [f"{e.effects[k].statement} ({percent(p)})" for k, p in members]
+    likely = [f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members]
     likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 
