@@ -232,8 +232,8 @@ def find_case(name: str | Path) -> Path:
         return shipped[str(name)]
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
-    own = [str(p.parent) for p in path.parent.glob("*/case.toml")]
-    near = [*own, *shipped] or ["no case came along"]
+    beside = [str(p.parent) for p in path.parent.glob("*/case.toml")]
+    near = [*beside, *shipped] or ["no case came along"]
     raise InputError("no such case folder", str(path), suggestion(str(path), near))
 
 

@@ -29,11 +29,11 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
         return {}
     words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
     larger = replace(case, model=replace(case.model, network=standing(case)))
-    declared = {x.name for x in case.model.network.links}
+    of_file = {x.name for x in case.model.network.links}
     lacking = [
         s.document()
         for s in suggested_effects(yard.terms, larger)
-        if all(x.name in declared for x in links_between(larger.model.network, s.place, s.other))  # none was added
+        if all(x.name in of_file for x in links_between(larger.model.network, s.place, s.other))  # none was added
     ]
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
 

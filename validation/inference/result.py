@@ -250,11 +250,6 @@ class Remainder:
         return f"{self.model_K:.1f} of the {self.error_K:.1f} K at {where} are forgiven as {self.doubt}"
 
     @property
-    def unexplained(self) -> bool:
-        """Is it off by more than the doubts of the model take, with nothing that would mend it?"""
-        return not self.effect and not self.forgiven
-
-    @property
     def words(self) -> str:
         text = f"{self.channel} is still {self.error_K:.1f} K off in {self.record}"
         if self.model_K > 0.5 * self.error_K:

@@ -403,11 +403,11 @@ def sentence(
         rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults(), left) if broken.names else ""
         return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
-        off = [f"{r.channel} is {r.error_K:.1f} K off in {r.record}, unexplained" for r in left if r.unexplained]
-        sure = " sure" * bool(choice.withheld)
-        words = f"no{sure} evidence of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
-        if off:
-            words = f"nothing with a{sure} name is missing ({percent(1.0 - choice.sure)}); {off[0]}"
+        none, sure = percent(1.0 - choice.sure), " sure" * bool(choice.withheld)
+        words = f"no{sure} evidence of a missing effect (nothing missing: {none})"
+        if off := [r for r in left if not (r.effect or r.forgiven)]:
+            where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, unexplained"
+            words = f"nothing with a{sure} name is missing ({none}); {where}"
         return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"

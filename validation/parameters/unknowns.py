@@ -312,9 +312,8 @@ def strain_words(case: Case) -> str:
 def _value_words(name: str, value: float, unit: str) -> str:
     """What became of a parameter; of an exponent the law that it makes."""
     law, of, quantity = name.partition("^")
-    if of:
-        return f"{law} had to follow {quantity}^{value:.3g}"
-    return f"the {name} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
+    shift = f"the {name} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
+    return f"{law} had to follow {quantity}^{value:.3g}" if of else shift
 
 
 def with_model(case: Case, model: Model) -> Case:
