@@ -406,7 +406,7 @@ def sentence(
         none, sure = percent(1.0 - choice.sure), " sure" * bool(choice.withheld)
         words = f"no{sure} evidence of a missing effect (nothing missing: {none})"
         if off := [r for r in left if not (r.effect or r.forgiven)]:
-            where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, unexplained"
+            where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, and nothing explains it"
             words = f"nothing with a{sure} name is missing ({none}); {where}"
         return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:

@@ -141,7 +141,7 @@ def test_the_leading_cause_has_the_probability_of_its_row_among_the_candidates()
 @pytest.mark.parametrize(
     ("effect_name", "model_K", "told"),
     [
-        ("", 0.0, "nothing with a name is missing (60 %); T is 6.4 K off in b, unexplained"),
+        ("", 0.0, "nothing with a name is missing (60 %); T is 6.4 K off in b, and nothing explains it"),
         (
             "",
             6.0,
