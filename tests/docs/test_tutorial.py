@@ -78,3 +78,13 @@ def test_every_command_of_the_ten_jobs_runs(tmp_path):
     lines = [line for texts in ours for text in texts for line in text.splitlines()]
     assert len(lines) > 40
     assert max(map(len, lines)) <= 80
+
+
+@pytest.mark.nightly
+def test_every_command_of_the_tutorial_runs(tmp_path):
+    """Seven minutes of a core. Its last comparison has the error of its page, to 0.1 K: other processors round."""
+    printed = tutorial.run(tutorial.commands(PAGE), tmp_path)
+    last = "thermoscope test compare my-case"
+    texts = PAGE[PAGE.rindex(last) :], printed[last][-1]
+    shown, now = (re.search(r"Held out ([\d.]+) K", text) for text in texts)
+    assert float(now[1]) == pytest.approx(float(shown[1]), abs=0.1)

@@ -14,6 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import IO, Any
 from urllib.parse import urlsplit
@@ -135,7 +136,7 @@ def _mqtt(where: str, host: str, port: int, topic: str) -> Source:
         going = state["client"].publish(f"{topic}/set", line, qos=1)
         try:
             asyncio.run_coroutine_threadsafe(going, state["loop"]).result(5.0)
-        except (aiomqtt.MqttError, TimeoutError, RuntimeError) as fault:
+        except (aiomqtt.MqttError, TimeoutError, RuntimeError, CancelledError) as fault:  # it ends, or has ended
             raise OSError(str(fault)) from None
 
     threading.Thread(target=lambda: asyncio.run(run()), daemon=True).start()
