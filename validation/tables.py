@@ -106,7 +106,7 @@ def candidates_table(candidates: Iterable[Document]) -> Table:
         "*error refitted=refitted | held out=held_out | log odds=score | threshold | decision"
     )
     return Table.of(
-        "Candidates",
+        "Candidates (odds of each, alone or with others)",
         candidates,
         columns,
         ["named", "group"],

@@ -16,13 +16,13 @@ SHORT = 60  # characters of a wrong value that a message repeats
 FREE = ("description", "source", "why", "reason", "file", "sheet", "machine", "network", "columns_of")
 
 
-def suggestion(word: str, words: Iterable[str]) -> str:
+def suggestion(word: str, words: Iterable[str], before: str = "known") -> str:
     """'did you mean ...? known: ...' for an error message; a stem without its unit finds the full key."""
     names = sorted(set(words))
     with_unit = [n for n in names if n.lower().startswith(f"{word}_".lower())]
     near = with_unit or difflib.get_close_matches(word, names, n=1)
     hint = f"did you mean '{near[0]}'? " if near else ""
-    return f"{hint}known: {', '.join(names)}"
+    return f"{hint}{before}: {', '.join(names)}"
 
 
 def excerpt(value: Any) -> str:

@@ -73,6 +73,13 @@ def test_what_was_found_is_one_sentence(told):
     worst = max((c["rmse_K"], c["channel"], c["limit_K"]) for t in told["compare"]["tests"] for c in t["channels"])
     assert f"at most {worst[0]:.1f} K, {short(worst[1])} in" in found
     assert f"(limit {worst[2]:.1f})" in found
+    last, second = told["right"].history.last, "convection@yoke"
+    step = replace(last, effect=second, effects=(EFFECT, second), rmse_K={"town": (after["rmse_K"] + 1.0, 0.0)})
+    twice = replace(told["right"], history=told["right"].history.and_then(step))
+    both = runs.finding_words(twice, told["compare"])
+    assert both.startswith("Found: forced convection by vehicle wind at yoke. ")
+    assert f"Held out {after['rmse_K'] + 1.0:.2f} -> {after['rmse_K']:.2f} K; since calibration, with " in both
+    assert f"vehicle wind at flange, from {before['rmse_K']:.2f} K. Left" in both, "one step, one before"
 
 
 def test_the_error_of_the_held_out_test_is_one_pair_of_numbers(told):

@@ -232,7 +232,9 @@ def find_case(name: str | Path) -> Path:
         return shipped[str(name)]
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
-    raise InputError("no such case folder", str(path), suggestion(str(name), shipped or ["no case came along"]))
+    beside = [str(p.parent) for p in path.parent.glob("*/case.toml")]
+    near = [*beside, *shipped] or ["no case came along"]
+    raise InputError("no such case folder", str(path), suggestion(str(path), near))
 
 
 def _homes() -> list[Path]:
@@ -280,9 +282,8 @@ def load_machine_file(path: Path) -> Machine:
     name = path.name.removesuffix(".toml")
     if name in shipped:
         return load_machine(name)
-    raise InputError(
-        "no such machine file", str(path), f"a file, or one of the machines that come along: {', '.join(shipped)}"
-    )
+    right = suggestion(name, shipped, "a file, or one of the machines that come along")
+    raise InputError("no such machine file", str(path), right)
 
 
 def _checked(case: Case, history: History, settings: Settings) -> Case:

@@ -235,9 +235,10 @@ def step_words(case: Case, step: Revision) -> str:
 
 
 def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
-    """In one sentence what was found and is in the model, what it did to the error, and the largest that it leaves.
+    """In one sentence what the last addition found, what it did to the error, and the largest that it leaves.
 
-    The error before is that of the calibrated model without it on the same tests: the held-out ones, else all.
+    The error before is that of the calibrated model without it on the same tests: the held-out ones, else all. What was
+    added before it stands behind that, with the error from which all together came.
     errors : a `compare` document of the model.  Empty where nothing was added.
     """
     from validation.revision.revise import TOGETHER
@@ -250,18 +251,19 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     names = [name for name in added if name in last.effects]
     if not names:
         return ""
-    before = {t: pair[0] for t, pair in min((added[n] for n in names), key=lambda r: r.number).rmse_K.items()}
-    tests = [t for t in errors["tests"] if t["name"] in before]
+    first, step = (of((added[n] for n in names), key=lambda r: r.number) for of in (min, max))
+    tests = [t for t in errors["tests"] if t["name"] in first.rmse_K.keys() & step.rmse_K.keys()]
     unseen = [t for t in tests if t["role"] == "hold-out"]
     n = [sum(c["n"] for c in t["channels"]) for t in unseen or tests]
-    pairs = np.array([(before[t["name"]], t["rmse_K"]) for t in unseen or tests])
-    was, now = np.sqrt(np.average(pairs**2, axis=0, weights=n))
-    words = added_words(folder.case, names)
+    each = [(first.rmse_K[t["name"]][0], step.rmse_K[t["name"]][0], t["rmse_K"]) for t in unseen or tests]
+    start, was, now = np.sqrt(np.average(np.square(each), axis=0, weights=n))
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
     verb, on = "Found" if now < was else "Added", "Held out" if unseen else "Error"
+    words, earlier = (added_words(folder.case, [n for n in names if (added[n] is step) == it]) for it in (True, False))
+    since = f"; since calibration, with {earlier}, from {start:.2f} K" if earlier else ""
     left = f"at most {error:.1f} K, {short(name)} in {test} (limit {limit:.1f})"
-    return f"{verb}: {words}. {on} {was:.2f} -> {now:.2f} K. Left: {left}."
+    return f"{verb}: {words}. {on} {was:.2f} -> {now:.2f} K{since}. Left: {left}."
 
 
 def parameters(folder: Folder) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@ from geom.storage import cache_folder
 from measured.case import Case
 from thermoscope.case_folder.content import code_digest, digest, recorded_arrays
 from validation.comparison.compare import Comparison
+from validation.effects.build import links_between
 from validation.parameters.unknowns import standing
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
@@ -28,7 +29,12 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
         return {}
     words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
     larger = replace(case, model=replace(case.model, network=standing(case)))
-    lacking = [s.document() for s in suggested_effects(yard.terms, larger)]
+    of_file = {x.name for x in case.model.network.links}
+    lacking = [
+        s.document()
+        for s in suggested_effects(yard.terms, larger)
+        if all(x.name in of_file for x in links_between(larger.model.network, s.place, s.other))  # none was added
+    ]
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
 
 

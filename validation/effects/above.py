@@ -63,7 +63,7 @@ class Above(ReadingEffect):
     @property
     def statement(self) -> str:
         target, name, level = self.parts()
-        return f"the declared {target.replace(':', ' ')} is off where {name} is above {level:g}"
+        return f"the declared {target.replace(':', ' ')} is wrong where {name} is above {level:g}"
 
     @property
     def inputs(self) -> tuple[str, ...]:

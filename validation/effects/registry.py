@@ -12,6 +12,7 @@ from typing import Any
 from geom.errors import InputError
 from geom.plugins import plugins
 from lumped.model.network import Network
+from lumped.schemas.reader import suggestion
 from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect, Scene
 from validation.effects.during import During
@@ -49,7 +50,7 @@ def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, 
 
 def _of(kind: str, classes: Mapping[str, type[Effect]], where: str) -> type[Effect]:
     if kind not in classes:
-        raise InputError(f"unknown effect '{kind}'", where, f"known: {', '.join(classes)}")
+        raise InputError(f"unknown effect '{kind}'", where, suggestion(kind, classes))
     return classes[kind]
 
 
@@ -70,11 +71,12 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
     if scene is not None and place not in (places := cls.places(scene)):
         needs = ", ".join(cls.needs)
         right = (
-            f"it can sit at: {', '.join(places)}"
+            suggestion(place, places, "it can sit at")
             if places
             else f"it can sit nowhere here; it needs: {needs or 'a place'}"
         )
-        raise InputError(f"'{kind}' cannot sit at '{place}'", f"effect '{name}'", right)
+        what = f"'{kind}' cannot sit at '{place}'" if place else f"'{kind}' needs a place: {kind}@PLACE"
+        raise InputError(what, f"effect '{name}'", right)
     return cls(place)
 
 

@@ -121,7 +121,7 @@ def sentence(sure: Sequence[Difference], tests: int) -> str:
     clauses = []
     if fixed:
         clauses.append(
-            f"it would need {needs(fixed)}, which cannot be: conditions differed, or an effect is missing there"
+            f"it would need {needs(fixed)}, which cannot be: conditions differed, or something is missing there"
         )
     if able and able.nats > 0.0:
         clauses.append(f"{'or ' if fixed else 'it would need '}{needs(able)}, which can differ between tests")

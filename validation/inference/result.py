@@ -139,7 +139,7 @@ class Explanation:
 
     cause : an effect, "heat@place", "nothing" or "others";  words : the same in plain words
     probability : of them all;  alone : of the cause by itself;  partners : (cause, words, probability) of what is
-        there as well, most probable first
+        there as well where this one is, most probable first
     """
 
     cause: str

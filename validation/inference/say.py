@@ -17,6 +17,7 @@ from measured.sensors.faults import PlainFaults
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import Segment, rmse, segments
+from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During
 from validation.effects.time_window import Event
@@ -120,7 +121,8 @@ def _odds(e: Evidence, h: Weighed, p: float, sure: tuple[str, ...]) -> Odds:
 def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
     """The hypotheses by leading cause: those with the cause that most of the probability holds, then of the rest.
 
-    A cause that leads has the probability of its row among the candidates. Plain faults are no part of it.
+    A cause that leads has the probability of its row among the candidates. Partners have theirs where it is there, as
+    the verdict tells two causes that do not depend on each other. Plain faults are no part of it.
     """
     e, words = posterior.evidence, {"nothing": "nothing is missing"}
     words |= {name: effect.statement for name, effect in zip(e.names, e.effects, strict=True)}
@@ -138,9 +140,9 @@ def explanations(posterior: Posterior) -> tuple[Explanation, ...]:
         for each, p in left:
             if lead in each:
                 partners |= {name: partners.get(name, 0.0) + p for name in each if name != lead}
-        likely = sorted(((n, words[n], p) for n, p in partners.items() if p > LEAST_ODDS), key=lambda row: -row[2])
+        likely = [(n, words[n], p / share[lead]) for n, p in partners.items() if p > LEAST_ODDS]
         alone = sum(p for each, p in left if each == (lead,))
-        rows.append(Explanation(lead, words[lead], share[lead], alone, tuple(likely)))
+        rows.append(Explanation(lead, words[lead], share[lead], alone, tuple(sorted(likely, key=lambda row: -row[2]))))
         left = [(each, p) for each, p in left if lead not in each]
     return (*rows, Explanation("others", "anything else", max(1.0 - sum(r.probability for r in rows), 0.0)))
 
@@ -222,7 +224,7 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
         absorbed=float(s.absorbed[k]),
         twin=e.twins[k],
         title=effect.title,
-        words=effect.statement,
+        words=effect.words(a, e.fit.network, {}) if h.fit and isinstance(effect, Above) else effect.statement,
         isolating_test=effect.isolating_test,
     )
     if h.fit is None:
@@ -401,8 +403,11 @@ def sentence(
         rest = sentence(choice.verdict, posterior, choice, rows, pulls, PlainFaults(), left) if broken.names else ""
         return f"check the measurement first: {broken.words}" + (f"; without those readings: {rest}" if rest else "")
     if verdict == "adequate":
-        evidence = "no sure evidence" if choice.withheld else "no evidence"
-        words = f"{evidence} of a missing effect (nothing missing: {percent(1.0 - choice.sure)})"
+        none, sure = percent(1.0 - choice.sure), " sure" * bool(choice.withheld)
+        words = f"no{sure} evidence of a missing effect (nothing missing: {none})"
+        if off := [r for r in left if not (r.effect or r.forgiven)]:
+            where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, and nothing explains it"
+            words = f"nothing with a{sure} name is missing ({none}); {where}"
         return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
@@ -432,7 +437,7 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         return f"{'fault' if effect.fault else 'missing'}: {effect.statement}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    likely = [f"{e.effects[k].statement} ({percent(p)})" for k, p in members]
+    likely = [f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members]
     likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 

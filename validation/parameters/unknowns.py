@@ -299,17 +299,21 @@ def large_nuisances(case: Case) -> list[tuple[str, float, str, float]]:
 
 
 def strain_words(case: Case) -> str:
-    """That, as the first thing to say of a model; "" where nothing is strained."""
-    rows = large_nuisances(case)
-    each = [f"{_value_words(name, value, unit)} ({abs(z):.1f} deviations)" for name, value, unit, z in rows]
-    more = f" and {len(each) - NAMES} more" if len(each) > NAMES else ""
-    return f"The fit leans on what should be small: {', '.join(each[:NAMES])}{more}." if each else ""
+    """That, to be said right after the answer; "" where nothing is strained."""
+    rows, times = large_nuisances(case), " times the usual deviation"
+    each = [
+        f"{_value_words(name, value, unit)} ({abs(z):.1f}{times * (i == 0)})"
+        for i, (name, value, unit, z) in enumerate(rows[:NAMES])
+    ]
+    more = f" and {len(rows) - NAMES} more" if len(rows) > NAMES else ""
+    return f"To fit, {', '.join(each)}{more}." if each else ""
 
 
 def _value_words(name: str, value: float, unit: str) -> str:
-    """A parameter with its value; an exponent as the law that it makes."""
+    """What became of a parameter; of an exponent the law that it makes."""
     law, of, quantity = name.partition("^")
-    return f"{law} follows {quantity}^{value:.3g}" if of else f"{name} {value:.3g} {unit.removesuffix('1')}".strip()
+    shift = f"the {name} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
+    return f"{law} had to follow {quantity}^{value:.3g}" if of else shift
 
 
 def with_model(case: Case, model: Model) -> Case:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from textwrap import shorten
 
 import numpy as np
 
@@ -21,7 +23,9 @@ from validation.yardstick.yardstick import yardstick
 
 Progress = Callable[[str], None]
 Trial = tuple[tuple[str, ...], dict[str, float | str]]  # effects, and what speaks for them
+LEAST = 0.005  # K, a rise that two digits show
 LIKELY = 3  # sets tried where the diagnosis gives no name: each costs a fit, and the criterion decides
+LINE = 60  # letters of a verdict that a line of progress has room for
 MOST = 6  # effects at a time: more are a reason to look at the model
 
 
@@ -146,7 +150,7 @@ def improve(
         case = _with_step(case, first, supervisor, {}, stairs) if first.worth_keeping else case
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
-        progress(f"{diagnosis.verdict}: {diagnosis.words}")
+        progress(shorten(diagnosis.words, LINE, placeholder=" ..."))
         if supervisor.offer(diagnosis) and len(stairs) > most:
             return ended(case, stairs, diagnosis, f"{most} steps are enough for one run")
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, progress)
@@ -161,11 +165,19 @@ def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) ->
     finite = {kind: K for kind, K in yard.left_out.items() if np.isfinite(K)} if yard else {}
     if not finite:
         why = f"{why}; no plain model can be learnt from these tests, so nothing says how good a model could be"
-        return Improvement(case, tuple(stairs), diagnosis, why)
+        return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
     beside = f"left out in turn {ours:.2f} K, where {NAMES[kind]} leaves {K:.2f} K"
     why = f"{beside}; what stops it: {why}" if ours > WORTH * K else f"{why}; {beside}"
-    return Improvement(case, tuple(stairs), diagnosis, why, K)
+    return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
+
+
+def rise_words(stairs: Sequence[Step]) -> str:
+    """The steps with which the error of the held-out tests rose; "" where there is none."""
+    unseen = [[c for t in s.comparison.tests if t.role == "hold-out" for c in t.channels] for s in stairs]
+    each = zip(pairwise(map(pooled, unseen)), stairs[1:], strict=True) if all(unseen) else ()
+    rows = [f"{s.effect or s.step} {was:.2f} -> {now:.2f} K" for (was, now), s in each if now > was + LEAST]
+    return f"; held-out tests got worse with {', '.join(rows)}" if rows else ""
 
 
 def _added(

@@ -26,7 +26,9 @@ def sentence(yard: Yardstick, comparison: Comparison) -> str:
     """Held out 2.0 K; a free network 1.3 K, and so on; and what is still to be learnt."""
     error = model_error(yard, comparison)
     others = {kind: K for kind, K in yard.errors.items() if np.isfinite(K)}
+    sizes = {f"{K:.2f}" for K in others.values()}
     each = ", ".join(f"{NAMES[kind]} {K:.2f} K" for kind, K in others.items())
+    each = f"every plain model {sizes.pop()} K" if len(sizes) == 1 < len(others) else each
     if not yard.hold_out:
         parts = "each" if len(yard.tests) > 1 else "its parts, each"
         return f"Fitted tests {error:.2f} K; {parts} predicted from the others by {each}."

@@ -141,7 +141,8 @@ def _missing(r: Report) -> str:
         return ""
     d, by_score = r.diagnosis, sorted(r.diagnosis["candidates"], key=lambda c: c["score"], reverse=True)
     evidence = html.plot(candidates.scores(by_score), "scores", "Evidence; beyond the black mark it is not chance.")
-    table = tables.candidates_table(by_score[:12])
+    by_odds = sorted(d["candidates"], key=lambda c: c.get("probability", 0.0), reverse=True)[:12]
+    table = tables.candidates_table(by_odds)
     bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
     texts = {c["effect"]: c["words"] for c in by_score if c.get("words")}
     parts = [
@@ -154,8 +155,9 @@ def _missing(r: Report) -> str:
     if placed(d) and d["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
         parts.append(html.plot(bands.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
-    parts.append(html.text("Errors: without the effect → with it, all else fitted anew each time."))
-    alike = [c for c in by_score[:12] if c["confused_with"]]
+    errors_words = "Errors: without the effect → with it, all else fitted anew each time."
+    parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
+    alike = [c for c in by_odds if c["confused_with"]]
     likeness = html.table(Table.of("", alike, "effect | looks like=confused_with"))
     names = [c["effect"] for c in by_score[:10]]
     if d.get("confusion"):

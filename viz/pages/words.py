@@ -18,8 +18,11 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         return _agreement(comparison)
     code = diagnosis["verdict"]
     names = [c.get("words") or c["effect"] for c in diagnosis["candidates"] if c["decision"] in ("named", "group")]
+    off = " ".join(r["words"] for r in diagnosis.get("remainder", [])[:1])
     sentences = {
-        "adequate": "The model agrees with the measurements; nothing is found missing.",
+        "adequate": f"Nothing with a name is missing from the model. {off}"
+        if off
+        else "The model agrees with the measurements; nothing is found missing.",
         "named": f"Missing from the model: {spoken(names[:1])}.",
         "group": f"Missing from the model: one of {spoken(names, 'or')}. These tests cannot tell them apart.",
         "several": f"Missing from the model: {spoken(names)}.",

@@ -45,6 +45,10 @@ def refused(case, *words):
 def test_no_folder(tmp_path):
     with pytest.raises(InputError, match="no such case folder"):
         find_case(tmp_path / "nowhere")
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "case.toml").touch()
+    with pytest.raises(InputError, match=f"did you mean '{tmp_path / 'own'}'"):
+        find_case(tmp_path / "onw")
 
 
 def test_missing_recording_names_what_is_there(case):

@@ -1,10 +1,13 @@
 """thermoscope show picture: a picture per kind, one message for what it does not know."""
 
+from pathlib import Path
+
 import pytest
 
 from geom.errors import InputError
 from thermoscope.commands.show.picture import PICTURES, picture
 
+ROOT = Path(__file__).parents[3]
 WITHOUT_GEOMETRY = ["curves", "bands", "residuals", "losses", "sizes"]
 
 
@@ -29,3 +32,8 @@ def test_an_unknown_picture_is_one_message_with_the_known_ones(thermoscope):
     assert answer.code == 2
     assert len(answer.err.strip().splitlines()) == 1
     assert "field" in answer.err
+
+
+def test_the_page_names_every_picture():
+    page = (ROOT / "docs" / "how-to" / "pictures.md").read_text(encoding="utf-8")
+    assert [name for name in PICTURES if f"`{name}`" not in page] == []

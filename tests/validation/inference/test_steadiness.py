@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from playground import Truth, wind
 
+from measured.sensors.faults import PlainFaults
 from validation.effects import effect
 from validation.inference.decide import (
     Decision,
@@ -21,7 +22,8 @@ from validation.inference.decide import (
 from validation.inference.evidence import calibrated_case, scored, singles
 from validation.inference.hypotheses import Weighed, inclusion, probabilities
 from validation.inference.refit import laplace
-from validation.inference.say import explanations, unsteady_words
+from validation.inference.result import Remainder
+from validation.inference.say import explanations, sentence, unsteady_words
 
 NAMES = ("convection@flange.right", "brush.drop@commutator", "mass@shaft")
 
@@ -128,6 +130,29 @@ def test_the_leading_cause_has_the_probability_of_its_row_among_the_candidates()
     assert first.words == "forced convection by vehicle wind at flange.right"
     assert first.probability == inclusion(p.hypotheses, len(p.evidence.effects)).max()
     assert first.alone <= first.probability
+    P, names = probabilities(p.hypotheses), p.evidence.names
+    for cause, _, where_it_is in first.partners:
+        both = sum(
+            x for h, x in zip(p.hypotheses, P, strict=True) if {cause, first.cause} <= {names[k] for k in h.members}
+        )
+        assert where_it_is * first.probability == pytest.approx(both)
+
+
+@pytest.mark.parametrize(
+    ("effect_name", "model_K", "told"),
+    [
+        ("", 0.0, "nothing with a name is missing (60 %); T is 6.4 K off in b, and nothing explains it"),
+        (
+            "",
+            6.0,
+            "6.0 of the 6.4 K at T in b are forgiven as slow; no evidence of a missing effect (nothing missing: 60 %)",
+        ),
+        ("mass@core", 0.0, "no evidence of a missing effect (nothing missing: 60 %)"),
+    ],
+)
+def test_an_adequate_model_is_not_said_to_miss_nothing_where_a_sensor_stays_off(effect_name, model_K, told):
+    left = Remainder("T", "b", 6.4, model_K, "slow", effect_name, 0.1, 1.0, "")
+    assert sentence("adequate", posterior(), Decision("adequate", (), 0.4), (), (), PlainFaults(), [left]) == told
 
 
 def test_every_hypothesis_is_told_once():

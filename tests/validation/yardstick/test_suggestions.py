@@ -1,11 +1,14 @@
 """What a free network knows and the declared one lacks, as effects with place and start."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from two_bodies import bench
 
+from measured.case import AddedEffect
+from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
@@ -73,6 +76,16 @@ def test_a_link_that_follows_an_input_is_told_at_rest_and_at_most(case):
     assert found.words == f"body to ambient: 2 W/K at rest, 3.5 at the largest {name}"
 
 
+def test_ends_that_an_added_effect_joins_are_not_told_as_lacking(case):
+    """Whatever else the free network has that film follow."""
+    poorer, name = without(case, ("body", "ambient")), next(iter(case.tests[0].inputs))
+    terms = (link("body", "ambient", "", 2.0), link("body", "ambient", f"{name}^2", 1.5))
+    yard = replace(yardstick(poorer), terms=terms)
+    mended = replace(poorer, model=replace(poorer.model, effects=(AddedEffect("convection.constant", "body"),)))
+    lacking = [yardstick_document(yard, errors(c), c)["yardstick"]["lacking"] for c in (poorer, mended)]
+    assert [len(rows) for rows in lacking] == [1, 0]
+
+
 def test_per_capacity_there_is_no_start(case):
     (found,) = suggested_effects([link("core", "ambient", "", 1e-3, unit="1/s")], case)
     assert (found.starts, found.unit) == ({}, "1/s")
@@ -102,6 +115,10 @@ def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
     assert near.why == f"nothing is offered; left out in turn {near.stairs[-1].left_out_K:.2f} {both}"
     assert far.why.startswith("left out in turn ")
     assert far.why.endswith(f"{both}; what stops it: nothing is offered")
+    worse = without(case, ("body", "ambient"))
+    unseen = [replace(c, tests=(*c.tests[:2], replace(c.tests[2], role="hold-out"))) for c in (case, worse)]
+    rising = ended(unseen[1], [Step(errors(c), {}) for c in unseen], SILENT, "nothing is offered")
+    assert re.search(r"; held-out tests got worse with start [0-9.]+ -> [0-9.]+ K$", rising.why)
     short = replace(case, tests=tuple(replace(t, channels=()) for t in case.tests))
     assert end(short).why.startswith("nothing is offered; no plain model can be learnt from these tests")
 

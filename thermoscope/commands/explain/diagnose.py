@@ -118,7 +118,7 @@ def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     sentence, case = f"{document['words'][0].upper()}{document['words'][1:]}", quote(called)
-    sentence = " ".join(filter(None, [document.get("strained", ""), sentence]))
+    sentence = ". ".join(filter(None, [sentence, document.get("strained", "")]))
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")

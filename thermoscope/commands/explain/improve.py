@@ -114,8 +114,8 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         name=lambda s: s["effect"] or s["step"],
         probability=lambda s: s["evidence"].get("probability", ""),
     )
-    destination = f"{document['written']} revisions written to {folder.settings.model_file}"
-    outcome = destination if document["written"] else "nothing written"
+    number, file = document["written"], folder.settings.model_file
+    outcome = f"{number} revision{'s' * (number > 1)} written to {file}" if number else "nothing written"
     further = [] if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
     added = [s["effect"] for s in steps if s["effect"]]

@@ -203,7 +203,7 @@ def _outcome_words(document: Mapping[str, Any]) -> list[str]:
     verb = {"calibrate": "Calibrated", "remove": f"{effect} taken out"}.get(action, f"{effect} added")
     if not document["accepted"] and not document["written"]:
         verb = f"Not accepted: {action} {effect or ''}".rstrip()
-    return [document["strained"], f"{verb}: {document['why']}."]
+    return [f"{verb}: {document['why']}.", document["strained"]]
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:

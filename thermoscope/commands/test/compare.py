@@ -131,7 +131,7 @@ def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    words = [f"{unseen}." * bool(unseen), plain["warning"], document.get("strained", ""), document["words"]]
+    words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"], document.get("strained", "")]
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(" ".join(filter(None, words)), parts, more, every)
 

@@ -14,7 +14,7 @@ class Coupling(Effect):
     """A conductance a (W/K) between two parts that share a neighbour but are not joined in the network."""
 
     kind = "coupling"
-    title = "thermal bridge between two parts"
+    title = "thermal bridge"
     sits = "two parts near each other without a link"
     unit = "W/K"
     source = "conduction through bolts, leads, potting or air that the drawing does not show"
