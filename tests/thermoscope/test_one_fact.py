@@ -111,7 +111,8 @@ def test_the_odds_are_one_number(told):
     assert lead["probability"] == pytest.approx(best["probability"])
     assert rows.candidates(told["diagnosis"], ())[0]["score"] == odds
     assert numbers(told["diagnose"], r"(?m)^(.*?)  forced convection by vehicle wind at flange") == {odds}
-    assert re.search(rf"<td>{EFFECT}</td><td>{re.escape(odds)}</td>", told["diagnosed page"])
+    code = rf'<code class="code">{EFFECT}</code>'
+    assert re.search(rf"{code}</td><td>{re.escape(odds)}</td>", told["diagnosed page"])
 
 
 @pytest.mark.parametrize("stage", ["wrong", "right"])
