@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
-import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -19,17 +17,15 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
-
-from extras.bench.live.assessment import Assessment  # noqa: E402
-from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices  # noqa: E402
-from extras.bench.live.settings import Bench, SetPoint, read_bench  # noqa: E402
-from extras.bench.live.steering import Policy, Steering  # noqa: E402
-from extras.bench.live.store import BenchError, Store  # noqa: E402
-from simulated.bench.kinds import KINDS, write_case  # noqa: E402
-from simulated.bench.plant import Plant, drawn  # noqa: E402
-from thermoscope.plugin import load_case  # noqa: E402
+from extras.bench.live.assessment import Assessment
+from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices
+from extras.bench.live.settings import Bench, SetPoint, read_bench
+from extras.bench.live.steering import Policy, Steering
+from extras.bench.live.store import BenchError, Store
+from scripts.published import publish
+from simulated.bench.kinds import KINDS, write_case
+from simulated.bench.plant import Plant, drawn
+from thermoscope.plugin import load_case
 
 HOURS, FIRST = 3.0, 5000  # the fixed plan's, and everybody's most; seed of the first plant
 LOOK_S, SHARE = 120.0, 0.2  # a look at the odds every two minutes, later every fifth of the time so far
@@ -152,14 +148,7 @@ def main() -> None:
                 )
     print(table(rows))
     if a.page:
-        text = a.page.read_text(encoding="utf-8")
-        new = re.sub(
-            r"(<!-- table:begin -->\n).*?(<!-- table:end -->)",
-            lambda m: f"{m[1]}{table(rows)}\n{m[2]}",
-            text,
-            flags=re.S,
-        )
-        a.page.write_text(new, encoding="utf-8")
+        publish(a.page, "table", table(rows))
 
 
 if __name__ == "__main__":

@@ -221,8 +221,8 @@ def live(
     from thermoscope.plugin import give, notes, progress
 
     with progress() as tell:
-        document = live_document(case, follow, test, drive, json, tell)
+        document, events = live_document(case, follow, test, drive, json, tell)
     give(document, json, lambda: live_summary(document))
     if out is not None:
-        notes([f"written: {live_picture(case, test, out)}"])
+        notes([f"written: {live_picture(events, test, out)}"])
     return 0 if document["decided"] else 1

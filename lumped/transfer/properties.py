@@ -95,7 +95,7 @@ def water(T: float, pressure_bar: float = ATMOSPHERE_BAR) -> Fluid:
     cool, (degC, bar, *columns) = Water(), HOT_WATER.T
     boils = float(np.interp(np.log(pressure_bar), np.log(bar), degC))
     if not cool.t_max < T <= boils:
-        cool.t_max = boils if pressure_bar > bar[0] else cool.t_max
+        cool.t_max = boils
         return _liquid(cool, T)
     first, grow = _liquid(cool, cool.t_max), [float(np.interp(T, degC, column / column[0])) for column in columns]
     rho, cp, k, mu = grow

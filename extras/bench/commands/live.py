@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +29,10 @@ from thermoscope.plugin import (
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
 
-def live_document(case: str, follow: str, test: str, drive: bool, json: str | None, tell: Progress) -> dict[str, Any]:
-    """What a run on the bench ended with; its rows are a test of the case."""
+def live_document(
+    case: str, follow: str, test: str, drive: bool, json: str | None, tell: Progress
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """What a run on the bench ended with, and its journal; its rows are a test of the case."""
     path = find_case(case)
     if PACKAGE in path.resolve().parents:
         raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
@@ -49,7 +51,7 @@ def live_document(case: str, follow: str, test: str, drive: bool, json: str | No
     finally:
         store.close()
     assessment = thought.assessment if thought else None
-    return {
+    document = {
         "case": path.name,
         "test": test,
         "source": follow,
@@ -62,6 +64,7 @@ def live_document(case: str, follow: str, test: str, drive: bool, json: str | No
         "set_points": [e for e in events if e["event"] == "set"],
         "file": str(store.path),
     }
+    return document, events
 
 
 def live_summary(document: Mapping[str, Any]) -> Summary:
@@ -81,14 +84,10 @@ def live_summary(document: Mapping[str, Any]) -> Summary:
     )
 
 
-def live_picture(case: str, test: str, out: Path) -> Path:
-    """Odds over time, set points beneath."""
+def live_picture(events: Sequence[dict[str, Any]], test: str, out: Path) -> Path:
+    """Odds over time, set points beneath.  events : of the journal"""
     from extras.bench.figure import odds_over_time
 
-    path = find_case(case)
-    store = Store(path, test, read_bench(path, load_case(path, untested=True).case.model.network).sheet_file)
-    events = store.events()
-    store.close()
     file = out / f"{test}-odds.png"
     odds_over_time(events, png=file)
     return file
