@@ -22,7 +22,7 @@ from viz.labels import end_labels
 ROOT = Path(__file__).resolve().parents[2]
 PICTURES = Path(__file__).parent / "gallery"
 LINES = 5  # of a picture; of forty cells every tenth
-OWN_PAGES = {"hust", "tclab"}  # of measured machines, minutes long; their pages have their pictures
+OWN_PAGES = {"hust", "tclab", "live_bench"}  # minutes long, or of many programs; their pages have their pictures
 
 
 def numbers(left: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:

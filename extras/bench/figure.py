@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from extras.bench.measuring.drift import Drift
     from extras.bench.steady_law.law import SteadyLaw
     from extras.bench.steady_law.steady_tests import SteadyTests
+    from thermoscope.plugin import BenchRun
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
-LINES = 5  # causes in one picture
 SERIES = (BLUE, VERMILION, "#009e73", "#cc79a7", "#e69f00", "#56b4e9", LIGHT.ink)  # Okabe and Ito
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
@@ -90,34 +90,19 @@ def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
 
 
 @paper.styled
-def odds_over_time(events: Sequence[Row], *, png: str | Path | None = None) -> Figure:
-    """The odds of a live bench over bench time, and the set points beneath, each as a share of its largest.
-
-    events : of its journal
-    """
-    looks, sets = ([e for e in events if e["event"] == kind] for kind in ("odds", "set"))
-    begin = next((e["begin_s"] for e in events if e["event"] == "begin"), 0.0)
+def odds_over_time(run: BenchRun, *, png: str | Path | None = None) -> Figure:
+    """The odds of a live bench over bench time, and the set points beneath, each as a share of its largest."""
     figure, (upper, lower) = paper.subplots(7.2, 4.6, rows=2)
-    peak: dict[str, float] = {}
-    for look in looks:
-        peak |= {name: max(p, peak.get(name, 0.0)) for name, p in look["odds"]}
-    time = [(look["time_s"] - begin) / 60.0 for look in looks]
-    for name in sorted(peak, key=lambda n: -peak[n])[:LINES]:
-        upper.plot(time, [100.0 * dict(look["odds"]).get(name, 0.0) for look in looks], label=name)
+    for name, minutes, percent in run.odds:
+        upper.plot(minutes, percent, label=name)
+    for name, minutes, percent in run.set_points:
+        lower.step(minutes, percent, where="post", label=name)
     upper.axhline(90.0, color=LIGHT.faint, lw=1.0, ls="--")
     upper.set(ylabel="odds (%)", ylim=(0, 101))
-    upper.legend(fontsize=8, frameon=False, loc="center left")
-    at = [(e["time_s"] - begin) / 60.0 for e in sets]
-    end = max([*time, *at], default=1.0)
-    for name in sets[0]["set_point"] if sets else ():
-        level = [e["set_point"][name] for e in sets]
-        most = max(map(abs, level)) or 1.0
-        shares = [100.0 * v / most for v in (*level, level[-1])]
-        lower.step([*at, end], shares, where="post", label=f"{name}, 100 % = {most:g}")
-    for ax in (upper, lower):
-        ax.set_xlim(0.0, end)
     lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
-    lower.legend(fontsize=8, frameon=False, loc="center left")
+    for ax in (upper, lower):
+        ax.set_xlim(0.0, run.end)
+        ax.legend(fontsize=8, frameon=False, loc="center left")
     return paper.save(figure, png)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from extras.workbench import revisions as ledger
 from extras.workbench import tables as rows
 from extras.workbench.appearance import Appearance
+from extras.workbench.live import shown
 from extras.workbench.machines import Bench
 from thermoscope.plugin import DARK, LIGHT, History, Theme, by_interest, confusion, matrix
 from thermoscope.plugin import sensor as sensor_figure
@@ -43,6 +45,8 @@ START: dict[str, Any] = {
     "has_confusion": False,
     "rms": "",
     "floor": "",
+    "live": None,
+    "live_curve": NOTHING,
     "drop": None,
     "dragged": "",
     "made": "",
@@ -111,6 +115,11 @@ class Display:
         self.state.dark = dark
         self.select(self.state.sensor)
         self.show_candidates(diagnosis)
+
+    def show_bench(self, file: Path) -> None:
+        """What runs on the bench, or ran there last."""
+        if (of_run := shown(file, self.theme)) is not None:
+            self.state.live, self.state.live_curve = of_run
 
     def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:
         """The candidates of a diagnosis, or none."""

@@ -59,6 +59,7 @@ def actions(session: Session) -> dict[str, Callable[..., Any]]:
         "make_case": lambda: started(session.make_case()),
         "not_these": lambda: session.show_dropped(None),
         "edit_dropped": session.edit_dropped,
+        "done": session.done,
         "paper": session.paper,
         "stop": session.stop,
     }

@@ -9,8 +9,8 @@ from collections.abc import Callable, Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from extras.workbench import live, steps
 from extras.workbench import revisions as ledger
-from extras.workbench import steps
 from extras.workbench.appearance import Appearance
 from extras.workbench.display import Display
 from extras.workbench.dropped import Dropped
@@ -38,6 +38,7 @@ class Session:
         self.viewer_rest: dict[str, Any] = {}
         self._refused: Revision | None = None
         self._closed = False
+        self._seen = 0.0
         self._job: Job | None = None
         self._drawing: Drawing | None = None
         self._on_screen: History | None = None
@@ -226,6 +227,25 @@ class Session:
     def paper(self) -> None:
         """From light to dark and back."""
         self.shown.paper(not self.state.dark, self.diagnosis)
+        self._seen = 0.0  # the picture of the bench takes the new paper at the next look
+
+    async def watch_bench(self) -> None:
+        """Show what a run on the bench writes into the case, until the tab is closed."""
+        while not self._closed:
+            file = live.newest(self.bench.folder.settings.path)
+            if file is not None and (written := file.stat().st_mtime) != self._seen:
+                self._seen = written
+                with self.state:
+                    self.shown.show_bench(file)
+            await asyncio.sleep(live.LOOK_S)
+
+    def done(self) -> None:
+        """The set point that the bench asks for is there."""
+        file = live.newest(self.bench.folder.settings.path)
+        if file is not None and self.state.live and self.state.live["asks"]:
+            live.say_done(file)
+            with self.state:
+                self.state.live = {**self.state.live, "asks": False}
 
     def stop(self) -> None:
         """End the calculation."""

@@ -22,7 +22,7 @@ from aiohttp.http_exceptions import HttpProcessingError
 from extras.workbench.access_control import served
 from extras.workbench.dropped import stored
 from extras.workbench.machines import Bench
-from extras.workbench.session import Session
+from extras.workbench.session import Session, started
 
 MOST = 8  # tabs, each with a server of its own
 IDLE_S = 900.0  # a tab that is left alone so long is closed
@@ -100,6 +100,7 @@ class Tab:
             ),
         )
         self.session.open()
+        started(self.session.watch_bench())
         self.folders = {"": Path(server._www), **{k: Path(v) for k, v in server.serve.items()}}
 
     async def talk(self, socket: web.WebSocketResponse) -> None:

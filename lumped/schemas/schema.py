@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from geom.description.parameters import Parameter
 
 FOLDER = Path(__file__).parent
-FILES = ("network", "case", "sheet", "model", "cycle", "machine")
+FILES = ("network", "case", "sheet", "model", "cycle", "bench", "machine")
 Schema = dict[str, Any]
 
 

@@ -15,6 +15,7 @@ from thermoscope import InputError
 from thermoscope.plugin import (
     PACKAGE,
     STDOUT,
+    BenchRun,
     Progress,
     Summary,
     Table,
@@ -89,5 +90,5 @@ def live_picture(events: Sequence[dict[str, Any]], test: str, out: Path) -> Path
     from extras.bench.figure import odds_over_time
 
     file = out / f"{test}-odds.png"
-    odds_over_time(events, png=file)
+    odds_over_time(BenchRun(events), png=file)
     return file

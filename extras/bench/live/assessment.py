@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from warnings import catch_warnings, simplefilter
 
@@ -22,9 +22,10 @@ from thermoscope.plugin import (
 
 STUCK_S, MOTION_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
 MOST_ROWS = 3000  # that odds are worked out from: three hours of a row every four seconds
+SAME_K = 1e-6  # between equal readings: rows that were averaged differ in their last digits
 EQUAL = 5  # last readings of a channel that may be those of a dead sensor
 FEWEST = 15  # rows before anything is asked of a diagnosis
-NOTHING = "nothing"
+NOTHING, LEAST = "nothing", 0.01  # the probability from which a cause counts
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,14 @@ class Assessment:
         """Of the hypotheses (nats)."""
         p = probabilities(self.posterior.hypotheses)
         return float(-np.sum(p * np.log(np.maximum(p, 1e-300))))
+
+    def gain_over(self, before: Mapping[str, float]) -> float:
+        """What was learned since some odds (nats): how far the odds are, not how much surer.
+
+        An answer that changes has taught as much as one that stays.
+        """
+        likely = [(n, p) for n, p in self.odds if p > LEAST]
+        return float(sum(p * np.log(p / max(before.get(n, 0.0), LEAST)) for n, p in likely))
 
 
 def assess(folder: Folder, name: str, quick: bool = True) -> Assessment:
@@ -68,7 +77,7 @@ def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
     over, channels = [], []
     for c in test.channels:
         read = np.flatnonzero(np.isfinite(c.y))
-        different = read[c.y[read] != c.y[read[-1]]] if read.size else read
+        different = read[np.abs(c.y[read] - c.y[read[-1]]) > SAME_K] if read.size else read
         tail = read[read > (different[-1] if different.size else -1)]
         if tail.size >= EQUAL:
             first = int(tail[0])
@@ -80,9 +89,9 @@ def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
     return replace(test, channels=tuple(channels)), tuple(over)
 
 
-def thinned(test: Test) -> Test:
-    """At most MOST_ROWS rows, means of so many at a time, and one channel for each place: the mean of its sensors."""
-    step = -(-test.time.size // MOST_ROWS)
+def thinned(test: Test, most: int = MOST_ROWS) -> Test:
+    """At most so many rows, means of so many at a time, and one channel for each place: the mean of its sensors."""
+    step = -(-test.time.size // most)
     at = np.arange(0, test.time.size, step)
     count = np.diff(np.append(at, test.time.size))
 

@@ -1,4 +1,4 @@
-"""The next set point: expected information per minute, under limits that the upper band of the model must not cross.
+"""The next set point: expected information, under limits that the upper band of the model must not cross.
 
 Under each hypothesis the coming readings are normal, their mean and covariance by the tangents of the calibrated model:
 
@@ -13,14 +13,14 @@ Source: Kolchinsky and Tracey 2017, Estimating mixture entropy with pairwise dis
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from extras.bench.live.assessment import Assessment
+from extras.bench.live.assessment import LEAST, Assessment, thinned
 from extras.bench.live.settings import Bench, SetPoint
 from thermoscope.plugin import (
     USUAL_DOUBT,
@@ -40,13 +40,15 @@ from thermoscope.plugin import (
 )
 
 MINUTE = 60.0
-LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over again
+LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, as the limits allow
+HORIZON_MIN, AGAIN_MIN = LENGTHS_MIN[-1], 10.0  # every plan looks so far ahead, and is thought over after so long
 STEP_S = 30.0  # of a planned record: sensors and windings take as long to follow
 PAST, CHECKED = 40, 3  # blocks of what was read; set points that are looked at again
-RIVALS, LEAST = 8, 0.01  # hypotheses that are told apart, and the probability from which one of them counts
+RIVALS = 8  # hypotheses that are told apart
+UNTOLD = 0.8  # of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
 BAND = 2.5  # standard deviations of the upper band
-CHANGE_MIN = 1.0  # until a set point that was asked for is there
 LIMIT = "limit: "
+PLAIN_STEPS = {**USUAL_DOUBT, "step in sample": 0.0}  # when a set point comes is no doubt of a plan
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ class Rival:
     """A hypothesis.  p : its probability;  lead : the cause it counts for;
 
     at : its columns among parameters, model error, causes;  mean, covariance : of these by the readings so far
+    usual : amplitude of its first cause
     """
 
     p: float
@@ -61,11 +64,15 @@ class Rival:
     at: tuple[int, ...]
     mean: Array
     covariance: Array
+    usual: float = 0.0
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A set point that the limits allow.  nats : expected of `minutes` of it;  hottest : limit -> upper band (degC)"""
+    """A set point that the limits allow.  nats : expected within HORIZON_MIN from now, the safe one after `allowed_min`
+
+    minutes : until all is thought over again;  hottest : limit -> upper band (degC)
+    """
 
     set_point: dict[str, float]
     minutes: float
@@ -74,8 +81,17 @@ class Choice:
 
     @property
     def rate(self) -> float:
-        """Nats per minute; to change a set point costs some as well."""
-        return self.nats / (self.minutes + CHANGE_MIN)
+        """Nats per minute."""
+        return self.nats / HORIZON_MIN
+
+
+@dataclass(frozen=True)
+class Plan:
+    """minutes : as long as the limits allow;  J : whitened columns of the coming readings;  hottest : upper bands"""
+
+    minutes: float
+    J: Array
+    hottest: dict[str, float]
 
 
 def sizes(e: Evidence, test: Test, bench: Bench) -> Array:
@@ -86,14 +102,19 @@ def sizes(e: Evidence, test: Test, bench: Bench) -> Array:
     return e.scale * np.array([now.get(n, 1.0) / later.get(n, now.get(n, 1.0)) for n in e.names])
 
 
-def rivals(assessment: Assessment, bench: Bench) -> list[Rival]:
-    """The hypotheses that carry weight, with what the readings so far say of their parameters."""
+def rivals(assessment: Assessment, bench: Bench, single: Sequence[str] | None = None) -> list[Rival]:
+    """The hypotheses that carry weight, with what the readings so far say of their parameters.
+
+    single : each of these causes alone instead, whatever its weight
+    """
     e = assessment.posterior.evidence
     p = probabilities(assessment.posterior.hypotheses)
     G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), sizes(e, assessment.test, bench)
     weighty = [(float(q), h) for q, h in zip(p, assessment.posterior.hypotheses, strict=True) if not h.heat]
+    if single is not None:
+        weighty = [(q, h) for q, h in weighty if len(h.members) == 1 and e.names[h.members[0]] in single]
     out = []
-    for q, h in sorted(weighty, key=lambda x: -x[0])[:RIVALS]:
+    for q, h in sorted(weighty, key=lambda x: -x[0])[: RIVALS if single is None else None]:
         k = list(h.members)
         weight = np.concatenate([sd, scale[k]]) ** -2.0
         A = np.block([[G.JJ, G.JZ[:, k]], [G.JZ[:, k].T, G.ZZ[np.ix_(k, k)]]]) + np.diag(weight)
@@ -102,68 +123,122 @@ def rivals(assessment: Assessment, bench: Bench) -> list[Rival]:
         lead = next((cause for cause, _ in assessment.odds if cause in names), names[0])
         at = (*range(theta.size), *(theta.size + i for i in k))
         b = np.concatenate([G.Jr - weight[: theta.size] * theta, G.Zr[k]])
-        out.append(Rival(q, lead, at, covariance @ b, covariance))
+        out.append(Rival(q, lead, at, covariance @ b, covariance, float(scale[k[0]]) if k else 0.0))
     whole = sum(r.p for r in out)
-    return [replace(r, p=r.p / whole) for r in out if r.p >= LEAST * out[0].p]
+    return [replace(r, p=r.p / whole) for r in out if single is not None or r.p >= LEAST * out[0].p]
 
 
-def choices(
-    assessment: Assessment, bench: Bench, now: SetPoint, only: Sequence[SetPoint] | None = None
-) -> list[Choice]:
-    """Every set point that the limits allow, most information per minute first.
+def choices(assessment: Assessment, bench: Bench, now: SetPoint) -> list[Choice]:
+    """Every set point that the limits allow, most information first.
 
-    The first few are looked at again with what a model of this kind gets wrong: it takes most of what tangents promise.
+    The first few are looked at again with what a model of this kind gets wrong.
     """
-    some = rivals(assessment, bench)
-    out = [c for s in (bench.set_points(now) if only is None else only) for c in _lengths(assessment, bench, some, s)]
-    out.sort(key=lambda c: -c.rate)
-    first = {str(c.set_point): c.set_point for c in out}
-    again = [c for s in list(first.values())[:CHECKED] for c in _lengths(assessment, bench, some, s, True)]
-    return sorted(again, key=lambda c: -c.rate)
+    assessment, some = coarse(assessment), rivals(assessment, bench)
+
+    def ranked(set_points: Iterable[SetPoint], doubting: bool) -> list[Choice]:
+        plans = ((dict(s), _plan(assessment, bench, some, s, doubting)) for s in set_points)
+        every = [Choice(s, min(x.minutes, AGAIN_MIN), information(x.J, some), x.hottest) for s, x in plans if x]
+        return sorted(every, key=lambda c: -c.nats)
+
+    out = ranked(bench.set_points(now), False)
+    return [*ranked([c.set_point for c in out[:CHECKED]], True), *out[CHECKED:]]
 
 
-def _lengths(
+def is_allowed(assessment: Assessment, bench: Bench, set_point: SetPoint) -> bool:
+    """Do the limits allow the shortest time of a set point?"""
+    return _plan(coarse(assessment), bench, rivals(assessment, bench), set_point) is not None
+
+
+def untold(assessment: Assessment, bench: Bench) -> list[Rival]:
+    """Causes of which the readings have told next to nothing yet."""
+    each = rivals(assessment, bench, assessment.unseen)
+    return [r for r in each if np.sqrt(r.covariance[-1, -1]) > UNTOLD * r.usual]
+
+
+def out_of_sight(assessment: Assessment, bench: Bench, now: SetPoint, some: Sequence[Rival]) -> list[str]:
+    """Which causes would be untold even after every set point that is allowed, each for as long as it is."""
+    assessment, e = coarse(assessment), assessment.posterior.evidence
+    q = e.p + (e.fit.error.size if e.fit.error else 0) + len(e.parameters)
+    plans = (_plan(assessment, bench, some, s) for s in bench.set_points(now))
+    told = sum((x.J.T @ x.J for x in plans if x), np.zeros((q, q)))
+
+    def deviation(r: Rival) -> float:
+        return float(np.sqrt(np.linalg.inv(np.linalg.inv(r.covariance) + told[np.ix_(r.at, r.at)])[-1, -1]))
+
+    return sorted(r.lead for r in some if deviation(r) > UNTOLD * r.usual)
+
+
+def coarse(assessment: Assessment) -> Assessment:
+    """With rows no closer than those of a plan: every set point is run from the first of them on."""
+    time = assessment.test.time
+    most = max(PAST, int((time[-1] - time[0]) / STEP_S))
+    return replace(assessment, test=thinned(assessment.test, most))
+
+
+def _plan(
     assessment: Assessment, bench: Bench, some: Sequence[Rival], set_point: SetPoint, doubting: bool = False
-) -> Iterator[Choice]:
-    e = assessment.posterior.evidence
-    test = planned(assessment.test, bench, set_point)
+) -> Plan | None:
+    """A set point for as long as the limits allow, the safe one for the rest of the time; None where they forbid it."""
+    e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
     columns = (*e.fit.unknowns.parameters, *e.parameters)
-    try:
-        parts = segments(e.network, [_with_limits(test, bench, assessment)], e.fit.values, columns)
-        error = model_error(e.fit.network, [test], e.fit.values) if doubting else None
-    except NoSolution:  # the model runs away there
-        return
-    begin = float(assessment.test.time[-1])
+    minutes, hottest = HORIZON_MIN, dict[str, float]()
+    for _ in range(2):
+        test = planned(assessment.test, bench, set_point, minutes)
+        try:
+            parts = segments(e.network, [_with_limits(test, bench, assessment)], e.fit.values, columns)
+        except NoSolution:  # the model runs away there
+            return None
+        if hottest:
+            break
+        minutes, hottest = _allowed(assessment, bench, some, parts)
+        if minutes in (0.0, HORIZON_MIN):
+            break
+    if not minutes:
+        return None
+    read = [s for s in parts if not s.channel.startswith(LIMIT)]
+    error = model_error(e.fit.network, [_expected(test, read)], e.fit.values, PLAIN_STEPS) if doubting else None
+    return Plan(minutes, np.vstack([_innovations(e, s, begin, error) for s in read]), hottest)
+
+
+def _allowed(
+    assessment: Assessment, bench: Bench, some: Sequence[Rival], parts: Sequence[Segment]
+) -> tuple[float, dict[str, float]]:
+    """Minutes of a set point for which all upper bands stay below their limits, and the bands; 0 where none do."""
+    e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
     bands = {s.channel[len(LIMIT) :]: _after(s, begin) for s in parts if s.channel.startswith(LIMIT)}
     q = e.p + (e.fit.error.size if e.fit.error else 0)
     cold = min(float(u[-1]) for u in assessment.test.boundaries.values())
     hottest = {x.name: _band(bands[x.name], e.p, q, some, x.hot_spot, cold) for x in bench.limits}
-    most = {x.name: x.most_C for x in bench.limits}
-    read = [_innovations(e, s, begin, error) for s in parts if not s.channel.startswith(LIMIT)]
-    for minutes in LENGTHS_MIN:
-        inside = {n: T[s <= minutes * MINUTE + bench.deaf_s].max() for n, (s, T) in hottest.items()}
-        if any(inside[n] > most[n] for n in inside):
-            return
-        J = np.vstack([white[time <= begin + minutes * MINUTE] for time, white in read])
-        yield Choice(dict(set_point), minutes, information(J, some), {n: float(T) for n, T in inside.items()})
+    for minutes in reversed(LENGTHS_MIN):
+        inside = {n: float(T[s <= minutes * MINUTE + bench.deaf_s].max()) for n, (s, T) in hottest.items()}
+        if all(inside[x.name] <= x.most_C for x in bench.limits):
+            return minutes, inside
+    return 0.0, {}
 
 
-def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
-    """The rows so far, then a set point for as long as any plan looks forward; all else stays where it is."""
-    future = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
-    n, m = future.size, test.time.size
+def _expected(test: Test, parts: Sequence[Segment]) -> Test:
+    """With the readings that the model expects: what it may be wrong by is a share of their rise."""
+    y = {s.channel: np.interp(test.time, s.time, -s.r) for s in parts}  # nothing is read in a plan: r = 0 - model
+    return replace(test, channels=tuple(replace(c, y=y[c.name]) for c in test.channels))
 
-    def on(u: Array, value: float | None = None) -> Array:
+
+def planned(test: Test, bench: Bench, set_point: SetPoint, minutes: float = HORIZON_MIN) -> Test:
+    """The rows so far, then a set point for some minutes, then the safe one; all else stays where it is."""
+    future = np.arange(STEP_S, HORIZON_MIN * MINUTE + bench.deaf_s + STEP_S, STEP_S)
+    stays = (future <= minutes * MINUTE) | (minutes == HORIZON_MIN)
+    m = test.time.size
+
+    def on(u: Array, name: str = "") -> Array:
         u = np.broadcast_to(np.asarray(u, float), test.time.shape)
-        return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
+        return np.concatenate([u, np.where(stays, set_point.get(name, u[-1]), bench.safe.get(name, u[-1]))])
 
     before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
     return replace(
         test,
         time=np.concatenate([test.time, test.time[-1] + future]),
-        inputs={k: on(u, set_point.get(k)) for k, u in test.inputs.items()},
+        inputs={k: on(u, k) for k, u in test.inputs.items()},
         boundaries={k: on(u) for k, u in test.boundaries.items()},
-        channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
+        channels=tuple(replace(c, y=np.zeros(m + future.size)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
         recorded=None,
         blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(future), prepend=-1))]),
     )
@@ -174,8 +249,8 @@ def _block(future: Array) -> Array:
     return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
-def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> tuple[Array, Array]:
-    """Times of the coming readings of a channel, and their whitened columns given all that was read before.
+def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> Array:
+    """Whitened columns of the coming readings of a channel, given all that was read before.
 
     Columns: calibrated parameters, model error, causes.
     """
@@ -187,8 +262,9 @@ def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None
             if name in index:
                 doubts[:, index[name]] = error.of(s)[:, i]
     J = np.column_stack([s.J[:, : e.p], doubts, s.J[:, e.p :]])
-    late = s.time > begin
-    return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
+    late = (s.time > begin) & (s.time <= begin + HORIZON_MIN * MINUTE)
+    white: Array = e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
+    return white
 
 
 def _with_limits(test: Test, bench: Bench, assessment: Assessment) -> Test:

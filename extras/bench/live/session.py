@@ -32,6 +32,8 @@ class Session:
         self.thinking: Future[Thought] | None = None
         self.typed: queue.Queue[str] = queue.Queue()
         self.thought: Thought | None = None
+        steering.store.note({"event": "run", "drive": drive})
+        steering.store.hears_done()  # what an earlier run was told
         if hear and not drive:
             threading.Thread(target=self._hear, daemon=True).start()
 
@@ -81,7 +83,8 @@ class Session:
             if line and (row := self.parser.row(line)) is not None:
                 heard = time.monotonic()
                 self._out(self.steering.row(row, replay=self.steering.replays))
-            if not self.typed.empty() and self.typed.get() == "done":
+            typed = not self.typed.empty() and self.typed.get() == "done"
+            if typed or (not self.drive and self.steering.store.hears_done()):
                 self.steering.done()
             if self.thinking is not None and (self.thinking.done() or over):
                 thought, self.thinking = self.thinking.result(), None

@@ -83,7 +83,7 @@ def read_bench(case: Path, network: Network) -> Bench:
     knobs = tuple(_knob(n, t) for n, t in top.tables("set").items())
     limits = tuple(_limit(n, t, network) for n, t in top.tables("limits").items())
     usual = {k: getattr(Bench, k) for k in ("deaf_s", "silence_s", "budget_min", "patience_min", "every_s", "jump_s")}
-    times = {k: top.number(k, v, low=1.0) for k, v in usual.items()}
+    times = {k: top.number(k, v) for k, v in usual.items()}
     top.close()
     sheet = load_sheet(case / sheet_file)
     if not knobs or not limits:
@@ -99,8 +99,8 @@ def read_bench(case: Path, network: Network) -> Bench:
 
 
 def _knob(name: str, t: TomlTable) -> Knob:
-    levels = t.numbers("levels", of="inputs")
-    knob = Knob(name, levels, t.number("safe", of="inputs"), t.number("rate_per_s", low=1e-9), t.flag("cooling", False))
+    levels = t.numbers("levels")
+    knob = Knob(name, levels, t.number("safe"), t.number("rate_per_s"), t.flag("cooling", False))
     t.close()
     if not levels:
         raise t.error("levels = [] is not possible", "levels = [one number or more]")
@@ -109,6 +109,6 @@ def _knob(name: str, t: TomlTable) -> Knob:
 
 def _limit(name: str, t: TomlTable, network: Network) -> Limit:
     place = t.word("place", name, [p for p in network.places if p not in network.boundaries])
-    limit = Limit(name, place, t.number("most_C"), t.number("hot_spot", 1.0, low=1.0, high=3.0))
+    limit = Limit(name, place, t.number("most_C"), t.number("hot_spot", 1.0))
     t.close()
     return limit

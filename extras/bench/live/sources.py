@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import IO, Any
 from urllib.parse import urlsplit
 
-from extras.bench.live.store import BenchError, Row, number
+from extras.bench.live.store import BenchError, Row
 from thermoscope import InputError
-from thermoscope.plugin import required
+from thermoscope.plugin import as_number, required
 
 POLL_S = 0.2  # between two looks at a file that grows
 BYTES = 2**20  # of a line: more is no row
@@ -161,7 +161,8 @@ class Parser:
         cells = [c.strip().strip('"') for c in text.split(",")]
         if not text or cells == self.header:
             return None
-        if not self.header or all(math.isnan(number(c)) and c for c in cells):
+        values = [as_number(c) for c in cells]
+        if not self.header or all(v is None for v in values):
             self.header = cells
             return None
         if len(cells) != len(self.header):
@@ -170,7 +171,7 @@ class Parser:
                 f"{self.where} line {self.count}",
                 f"{len(self.header)}: {', '.join(self.header)}",
             )
-        return {n: number(c) for n, c in zip(self.header, cells, strict=True)}
+        return {n: math.nan if v is None else v for n, v in zip(self.header, values, strict=True)}
 
     def _object(self, text: str) -> Row:
         try:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from extras.bench.live.assessment import FEWEST, NOTHING, Assessment, assess
-from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices
+from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_allowed, out_of_sight, untold
 from extras.bench.live.settings import OVER, Bench, SetPoint
 from extras.bench.live.store import BenchError, Row, Store
 from thermoscope.plugin import load_case
@@ -18,9 +18,7 @@ from thermoscope.plugin import load_case
 SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
 DULL, LOOKS = 0.005, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
-LEAST_SHARE = 0.1  # of the time so far, that a set point lasts: what minutes did not tell, minutes will not
-CREDIT = 0.5  # of what a set point promised, below which it counts so much less the next time
-GAIN = 0.05  # of what was not known, that the readings have to take off while patience lasts
+GAIN = 0.02  # nats that the readings have to tell while patience lasts
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
 
@@ -45,7 +43,7 @@ class Thought:
 class Steering:
     """now : the set point;  sent : how far towards it the bench was told;  due : when the next one is chosen (s)
 
-    promise : of the last one: its name, entropy before, nats;  broken : set point -> how often it told less
+    known : odds when the readings last told something, at `gained` (s)
     since : when `now` was asked for;  obeyed : that the meters show it, or a person said so
     """
 
@@ -63,10 +61,8 @@ class Steering:
     count: int = 0
     last_look: float = -math.inf
     dull: int = 0
-    least: float = math.inf
+    known: dict[str, float] = field(default_factory=dict)
     gained: float = -math.inf
-    promise: tuple[str, float, float] | None = None
-    broken: dict[str, int] = field(default_factory=dict)
     replays: bool = True
     rate: float = math.nan
 
@@ -78,9 +74,11 @@ class Steering:
             if event["event"] == "set":
                 self.now, self.minutes = event["set_point"], event["minutes"]
                 self.since, self.due = event["time_s"], event["time_s"] + MINUTE * event["minutes"]
+                self.obeyed = not event["waits"]
+            elif event["event"] == "done":
+                self.obeyed, self.due = True, event["time_s"] + MINUTE * self.minutes
             self.begin = event.get("begin_s", self.begin)
-        last = self.store.last()
-        if last is not None:
+        if (last := self.store.last) is not None:
             self.last, self.count = last, FEWEST
             self.sent = {n: v for n in self.now if math.isfinite(v := self._input(n, last))} or dict(self.now)
 
@@ -124,6 +122,8 @@ class Steering:
 
     def done(self) -> None:
         """The set point is reached: its minutes count from now."""
+        if not self.obeyed:
+            self.store.note({"event": "done", "time_s": self.time})
         self.obeyed, self.due = True, self.time + MINUTE * self.minutes
 
     def _near(self, row: Row) -> bool:
@@ -176,17 +176,12 @@ class Steering:
         running = waits or time < self.due
         if running and self._stays_below(assessment):
             return Thought(time, assessment, left_min=self._left(assessment, None))
-        if self.promise and self.promise[1] - assessment.entropy < CREDIT * self.promise[2]:
-            self.broken[self.promise[0]] = self.broken.get(self.promise[0], 0) + 1
         options = self.policy(assessment, self.bench, self.now)
-        options = [c for c in options if c.minutes >= LEAST_SHARE * elapsed] or options
-        options = sorted(options, key=lambda c: -c.rate * CREDIT ** self.broken.get(str(c.set_point), 0))
         choice = options[0] if options else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
-        self.promise = str(choice.set_point), assessment.entropy, choice.nats
-        left = self._left(assessment, max((c.rate for c in options), default=0.0))
+        left = self._left(assessment, choice.rate)
         self.dull = self.dull + 1 if max((c.nats for c in options), default=0.0) < DULL else 0
-        if assessment.entropy < (1.0 - GAIN) * self.least:
-            self.least, self.gained = assessment.entropy, time
+        if assessment.gain_over(self.known) > GAIN:
+            self.known, self.gained = dict(assessment.odds), time
         stale = time - self.gained > MINUTE * self.bench.patience_min
         if stale or self.dull >= LOOKS or elapsed >= self.bench.budget_min:
             stop = UNDECIDED if stale or self.dull >= LOOKS else "the time is over"
@@ -194,13 +189,23 @@ class Steering:
 
     def _named(self, assessment: Assessment) -> str:
         cause, p = assessment.odds[0]
+        if cause == NOTHING and p < SURE:
+            p = self._of_what_shows(assessment, p)
         if p < SURE or cause.startswith("heat@"):
             return ""
         return "nothing is missing" if cause == NOTHING else f"{cause} is missing"
 
+    def _of_what_shows(self, assessment: Assessment, p: float) -> float:
+        """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""
+        odds, rest = dict(assessment.odds), untold(assessment, self.bench)
+        if not rest or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
+            return p
+        hidden = out_of_sight(assessment, self.bench, self.now, rest)
+        return p / (1.0 - sum(odds.get(n, 0.0) for n in hidden))
+
     def _stays_below(self, assessment: Assessment) -> bool:
         """Does what runs stay below every limit until the next look?"""
-        return bool(choices(assessment, self.bench, self.now, [self.now])) or self.now == self.bench.safe
+        return self.now == self.bench.safe or is_allowed(assessment, self.bench, self.now)
 
     def _left(self, assessment: Assessment, rate: float | None) -> float:
         """Minutes to the answer, as far as information per minute goes on."""
@@ -212,13 +217,13 @@ class Steering:
         """Goes on as thought. Returns set points to send."""
         stop = {"stop": thought.stop} if thought.stop else {}
         odds = [list(o) for o in thought.assessment.odds[:5]]
-        over = list(thought.assessment.over)
         self.store.note(
             {
                 "event": "odds",
                 "time_s": thought.time,
                 "odds": odds,
-                "over": over,
+                "over": list(thought.assessment.over),
+                "unseen": list(thought.assessment.unseen),
                 "left_min": _plain(thought.left_min),
                 **stop,
             }
@@ -233,13 +238,17 @@ class Steering:
         changed = dict(set_point) != self.now
         self.now, self.minutes, self.since = dict(set_point), minutes, self.time
         self.obeyed, self.due = not changed, self.time + MINUTE * minutes
-        self.store.note({"event": "set", "time_s": self.time, "set_point": self.now, "minutes": minutes, "nats": nats})
+        self._note_set(minutes=minutes, nats=nats, waits=changed)
         return self._ramp(1.0) if changed else []
+
+    def _note_set(self, *, waits: bool, minutes: float = 0.0, nats: float = 0.0) -> None:
+        more = {"minutes": minutes, "nats": nats, "waits": waits}
+        self.store.note({"event": "set", "time_s": _plain(self.time), "set_point": self.now, **more})
 
     def make_safe(self) -> list[dict[str, float]]:
         """The safe set point at once: no ramp where there is danger."""
         self.now = self.sent = dict(self.bench.safe)
-        self.store.note({"event": "set", "time_s": self.time, "set_point": self.now, "minutes": 0.0, "nats": 0.0})
+        self._note_set(waits=False)
         return [dict(self.now)]
 
 

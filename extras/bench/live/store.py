@@ -6,13 +6,13 @@ import fcntl
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from io import TextIOWrapper
 from pathlib import Path
 from typing import Any
 
 from thermoscope import InputError
-from thermoscope.plugin import csv_lines, toml_value, write_whole
+from thermoscope.plugin import csv_lines, journal, toml_value, write_whole
 
 Row = dict[str, float]
 
@@ -22,14 +22,18 @@ class BenchError(InputError):
 
 
 class Store:
-    """tests/NAME.csv of a case, held for one writer, and tests/NAME.jsonl.  sync : on the disk row by row"""
+    """tests/NAME.csv of a case, held for one writer, and tests/NAME.jsonl.  sync : on the disk row by row
+
+    last : the last row of an earlier run
+    """
 
     def __init__(self, case: Path, name: str, sheet: str, sync: bool = True) -> None:
         self.case, self.name, self.sheet, self.sync = case, name, sheet, sync
         self.path, self.journal_path = case / "tests" / f"{name}.csv", case / "tests" / f"{name}.jsonl"
+        self.done_path = self.path.with_suffix(".done")
         self.path.parent.mkdir(exist_ok=True)
         self.rows = self._locked(self.path)
-        self.header = self._resumed()
+        self.header, self.last = self._resumed()
         self.journal: TextIOWrapper = self.journal_path.open("a", encoding="utf-8")  # type: ignore[assignment]
 
     def _locked(self, path: Path) -> TextIOWrapper:
@@ -41,21 +45,19 @@ class Store:
             raise InputError("is written by another run", str(path), "one writer: end the other run first") from None
         return file  # type: ignore[return-value]
 
-    def _resumed(self) -> list[str]:
-        """The header of what is there; a last line that a killed run left half written is dropped."""
+    def _resumed(self) -> tuple[list[str], Row | None]:
+        """Header and last row of what is there; a last line that a killed run left half written is dropped."""
         whole = self.path.read_bytes()
-        if not whole.endswith(b"\n"):
-            self.rows.truncate(whole.rfind(b"\n") + 1)
-        lines = self.path.read_text(encoding="utf-8").splitlines()
-        return lines[0].split(",") if lines else []
-
-    def last(self) -> Row | None:
-        """The last row of an earlier run."""
-        lines = self.path.read_text(encoding="utf-8").splitlines()
-        return self.row(lines[-1].split(",")) if len(lines) > 1 else None
-
-    def row(self, cells: Sequence[str]) -> Row:
-        return {name: number(cell) for name, cell in zip(self.header, cells, strict=True)}
+        end = whole.rfind(b"\n") + 1
+        if end < len(whole):
+            self.rows.truncate(end)
+        if not end:
+            return [], None
+        first, last = whole[: whole.index(b"\n")], whole[whole.rfind(b"\n", 0, end - 1) + 1 : end - 1]
+        header, cells = (line.decode("utf-8").split(",") for line in (first, last))
+        if cells == header:
+            return header, None
+        return header, {name: float(cell or "nan") for name, cell in zip(header, cells, strict=True)}
 
     def append(self, row: Mapping[str, float]) -> None:
         """One row under the header of the first; what it lacks stays empty."""
@@ -80,10 +82,15 @@ class Store:
         if self.sync:
             os.fsync(file.fileno())
 
-    def events(self) -> list[dict[str, Any]]:
-        """The journal so far, without a last line that is cut short."""
-        lines = self.journal_path.read_text(encoding="utf-8").splitlines()
-        return [json.loads(line) for line in lines if line.endswith("}")]
+    def events(self) -> list[Mapping[str, Any]]:
+        """The journal so far."""
+        return journal(self.journal_path)
+
+    def hears_done(self) -> bool:
+        """Whether tests/NAME.done was put there since it was last asked: what a page says instead of typing."""
+        there = self.done_path.exists()
+        self.done_path.unlink(missing_ok=True)
+        return there
 
     def listed(self) -> None:
         """The test's table in case.toml, where it has none yet."""
@@ -96,11 +103,3 @@ class Store:
     def close(self) -> None:
         self.rows.close()
         self.journal.close()
-
-
-def number(cell: str) -> float:
-    """NaN where nothing was read."""
-    try:
-        return float(cell)
-    except ValueError:
-        return math.nan

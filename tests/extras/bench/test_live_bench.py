@@ -10,19 +10,24 @@ import socket
 import subprocess
 import threading
 import time
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 from command_line import answered
+from jsonschema import Draft202012Validator
 
-from extras.bench.live.assessment import MOST_ROWS, thinned
-from extras.bench.live.planning import Rival, choices, information
+from extras.bench.live.assessment import MOST_ROWS, Assessment, thinned, without_stuck
+from extras.bench.live.planning import Rival, choices, information, out_of_sight, untold
 from extras.bench.live.session import Session
 from extras.bench.live.settings import read_bench
 from extras.bench.live.sources import Parser, source_of
 from extras.bench.live.steering import Steering
 from extras.bench.live.store import BenchError, Store
+from lumped.schemas.schema import schema
 from simulated.bench.kinds import KINDS, write_case
 from simulated.bench.plant import Plant, drawn
 from thermoscope import InputError
@@ -101,6 +106,37 @@ def test_one_cooling_is_changed_at_a_time(tmp_path):
     assert all((s["fan_share"] != 1.0) + (s["pump_share"] != 1.0) <= 1 for s in two.set_points(now))
 
 
+def test_what_even_every_set_point_cannot_show_is_out_of_sight(tmp_path):
+    """Of a housing that water cools, still air takes a hundredth of the heat: its film could be anything."""
+    case = write_case("jacket", tmp_path / "jacket")
+    driven(case, Plant(drawn("jacket", 7, "nothing")), 3.0)
+    steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
+    assessment = steering.think(case).assessment
+    hidden = out_of_sight(assessment, steering.bench, steering.now, untold(assessment, steering.bench))
+    assert "convection.constant@housing" in hidden
+    assert {"copper.ac@winding", "windage@rotor"} & set(hidden) == set()
+    assert set(hidden) <= set(assessment.unseen)
+
+
+def test_what_a_model_gets_wrong_counts_in_a_plan(case, monkeypatch):
+    """A plan that is looked at again promises other than by tangents alone: its model error is not zero."""
+    driven(case, Plant(drawn("servo", 7, "nothing")), 2.0)
+    steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
+    assessment = steering.think(case).assessment
+    doubted = choices(assessment, steering.bench, steering.now)[0]
+    monkeypatch.setattr("extras.bench.live.planning.CHECKED", 0)
+    plain = {str(c.set_point): c.nats for c in choices(assessment, steering.bench, steering.now)}
+    assert abs(doubted.nats / plain[str(doubted.set_point)] - 1.0) > 0.02
+
+
+def test_an_answer_that_changes_is_a_gain(steering, case):
+    odds = [("nothing", 0.9), ("windage@rotor", 0.1)]
+    one, other = (Assessment(tuple(x), (), (), None, None) for x in (odds, [("windage@rotor", 0.6), ("nothing", 0.4)]))
+    assert one.gain_over(dict(odds)) == 0.0
+    # 0.6 ln(0.6 / 0.1) + 0.4 ln(0.4 / 0.9), though the odds are less sure than before
+    assert other.gain_over(dict(odds)) == pytest.approx(0.7507, abs=1e-4)
+
+
 def test_information_is_what_two_far_and_two_equal_hypotheses_give():
     # one reading of one parameter: equal predictions tell nothing, far ones all of ln 2 (Cover and Thomas, 2.4)
     def rival(mean, lead):
@@ -126,6 +162,68 @@ def test_a_run_goes_on_from_its_last_row_and_drops_half_a_row(case):
     assert again.row({**ROW, "time_s": 10.0}, replay=True) == []  # a recording that is read again from its start
     again.row({**ROW, "time_s": 20.0})
     assert [line.split(",")[0] for line in path.read_text().splitlines()] == ["time_s", "5", "10", "15", "20"]
+
+
+def test_a_page_says_done_and_a_run_that_is_killed_waits_on(case, steering):
+    steering.row(ROW)
+    steering._set(HOT, 3.0)
+    steering.store.close()
+    store = Store(case, "live", "tests/columns.toml")
+    again = Steering(bench_of(case), store)
+    assert (again.now, again.obeyed, again.time) == (HOT, False, 5.0)
+    assert not store.hears_done()
+    (case / "tests" / "live.done").touch()
+    assert store.hears_done()
+    assert not store.hears_done()
+    again.done()
+    assert [e["event"] for e in store.events()] == ["begin", "set", "done"]
+    store.close()
+    assert Steering(bench_of(case), Store(case, "live", "tests/columns.toml")).obeyed
+
+
+def test_a_run_that_goes_on_reads_its_file_once(case, steering, monkeypatch):
+    steering.row(ROW)
+    steering.store.close()
+    read = []
+    whole = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda p: read.append(p.name) or whole(p))
+    monkeypatch.setattr(Path, "read_text", lambda p, **_: read.append(p.name) or whole(p).decode())
+    Steering(bench_of(case), Store(case, "live", "tests/columns.toml"))
+    assert read.count("live.csv") == 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_bench_file_fits_its_schema(kind, tmp_path):
+    assert faults(tomllib.loads((write_case(kind, tmp_path) / "bench.toml").read_text())) == []
+
+
+SLIPS = {
+    "unknown key": lambda d: d["set"]["current_A"].update(colour=1),
+    "no levels": lambda d: d["set"]["current_A"].update(levels=[]),
+    "no limits": lambda d: d.pop("limits"),
+    "no sheet": lambda d: d.pop("sheet"),
+    "no rate": lambda d: d["set"]["current_A"].pop("rate_per_s"),
+    "a rate of zero": lambda d: d["set"]["current_A"].update(rate_per_s=0),
+    "text for a number": lambda d: d["limits"]["winding"].update(most_C="130"),
+    "a hot spot below its mean": lambda d: d["limits"]["winding"].update(hot_spot=0.5),
+    "a look in no time": lambda d: d.update(every_s=0),
+    "a number for a flag": lambda d: d["set"]["current_A"].update(cooling=1),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS.values(), ids=SLIPS)
+def test_what_the_schema_refuses_the_reader_refuses(slip, case):
+    file = case / "bench.toml"
+    data = tomllib.loads(file.read_text())
+    slip(data)
+    assert faults(data)
+    file.write_text(tomlkit.dumps(data))
+    with pytest.raises(InputError):
+        bench_of(case)
+
+
+def faults(data):
+    return [e.message for e in Draft202012Validator(schema("bench")).iter_errors(data)]
 
 
 def test_two_writers_are_refused(case, steering):
@@ -212,6 +310,16 @@ def test_fast_rows_and_equal_places_are_averaged():
     (channel,) = small.channels
     assert np.allclose(channel.y, np.interp(small.time, time, y) + 1.0)  # the mean of a straight line is at mid-block
     assert np.allclose(small.inputs["current_A"], np.interp(small.time, time, y))
+
+
+def test_a_dead_sensor_stays_over_when_its_rows_are_averaged():
+    """The mean of three equal readings may differ from them in its last digit."""
+    time = np.arange(0.0, 600.0, 5.0)
+    dead = np.where(time < 100.0, 30.0 + 0.01 * time, np.where(time % 2 < 1, 40.8, np.nextafter(40.8, 41.0)))
+    channels = (Channel("a", "core", None, dead, 0.5), Channel("b", "winding", None, 20.0 + 0.02 * time, 0.5))
+    live, over = without_stuck(Test("live", "calibrate", time, {"current_A": time}, {"ambient": 20.0}, channels))
+    assert over == ("a",)
+    assert not np.isfinite(live.channels[0].y[time > 105.0]).any()
 
 
 def test_rows_come_as_cells_and_as_objects():

@@ -54,6 +54,7 @@ def test_editors_are_told_which_schema_is_whose(kind, path):
         for r in rules
         for glob in r["include"]
         if fnmatch(f"/{name}", f"*/{glob.removeprefix('**/')}")
+        if not any(fnmatch(f"/{name}", f"*/{no.removeprefix('**/')}") for no in r.get("exclude", ()))
     }
     assert fits == {f"out/schemas/{kind}.json"}
     assert "$id" not in schema(kind)
