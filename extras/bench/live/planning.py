@@ -1,4 +1,4 @@
-"""The next set point: expected information, under limits that the upper band of the model must not cross.
+"""The next set point: expected information per minute, under limits that the upper band of the model must not cross.
 
 Under each hypothesis the coming readings are normal, their mean and covariance by the tangents of the calibrated model:
 
@@ -13,7 +13,7 @@ Source: Kolchinsky and Tracey 2017, Estimating mixture entropy with pairwise dis
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -40,12 +40,12 @@ from thermoscope.plugin import (
 )
 
 MINUTE = 60.0
-LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, as the limits allow
-HORIZON_MIN, AGAIN_MIN = LENGTHS_MIN[-1], 10.0  # every plan looks so far ahead, and is thought over after so long
+LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over again
 STEP_S = 30.0  # of a planned record: sensors and windings take as long to follow
 PAST, CHECKED = 40, 3  # blocks of what was read; set points that are looked at again
 RIVALS = 8  # hypotheses that are told apart
 UNTOLD = 0.8  # of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
+CHANGE_MIN = 1.0  # until a set point that was asked for is there
 BAND = 2.5  # standard deviations of the upper band
 LIMIT = "limit: "
 PLAIN_STEPS = {**USUAL_DOUBT, "step in sample": 0.0}  # when a set point comes is no doubt of a plan
@@ -69,10 +69,7 @@ class Rival:
 
 @dataclass(frozen=True)
 class Choice:
-    """A set point that the limits allow.  nats : expected within HORIZON_MIN from now, the safe one after `allowed_min`
-
-    minutes : until all is thought over again;  hottest : limit -> upper band (degC)
-    """
+    """A set point that the limits allow.  nats : expected of `minutes` of it;  hottest : limit -> upper band (degC)"""
 
     set_point: dict[str, float]
     minutes: float
@@ -81,13 +78,13 @@ class Choice:
 
     @property
     def rate(self) -> float:
-        """Nats per minute."""
-        return self.nats / HORIZON_MIN
+        """Nats per minute; to change a set point costs some as well."""
+        return self.nats / (self.minutes + CHANGE_MIN)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """minutes : as long as the limits allow;  J : whitened columns of the coming readings;  hottest : upper bands"""
+    """Some minutes of a set point.  J : whitened columns of the coming readings;  hottest : upper bands (degC)"""
 
     minutes: float
     J: Array
@@ -129,24 +126,25 @@ def rivals(assessment: Assessment, bench: Bench, single: Sequence[str] | None = 
 
 
 def choices(assessment: Assessment, bench: Bench, now: SetPoint) -> list[Choice]:
-    """Every set point that the limits allow, most information first.
+    """Every set point that the limits allow, most information per minute first.
 
     The first few are looked at again with what a model of this kind gets wrong.
     """
     assessment, some = coarse(assessment), rivals(assessment, bench)
 
     def ranked(set_points: Iterable[SetPoint], doubting: bool) -> list[Choice]:
-        plans = ((dict(s), _plan(assessment, bench, some, s, doubting)) for s in set_points)
-        every = [Choice(s, min(x.minutes, AGAIN_MIN), information(x.J, some), x.hottest) for s, x in plans if x]
-        return sorted(every, key=lambda c: -c.nats)
+        plans = ((dict(s), x) for s in set_points for x in _plans(assessment, bench, some, s, doubting))
+        every = [Choice(s, x.minutes, information(x.J, some), x.hottest) for s, x in plans]
+        return sorted(every, key=lambda c: -c.rate)
 
     out = ranked(bench.set_points(now), False)
-    return [*ranked([c.set_point for c in out[:CHECKED]], True), *out[CHECKED:]]
+    first = list({str(c.set_point): c.set_point for c in out}.values())[:CHECKED]
+    return [*ranked(first, True), *(c for c in out if c.set_point not in first)]
 
 
 def is_allowed(assessment: Assessment, bench: Bench, set_point: SetPoint) -> bool:
     """Do the limits allow the shortest time of a set point?"""
-    return _plan(coarse(assessment), bench, rivals(assessment, bench), set_point) is not None
+    return any(_plans(coarse(assessment), bench, rivals(assessment, bench), set_point))
 
 
 def untold(assessment: Assessment, bench: Bench) -> list[Rival]:
@@ -155,12 +153,15 @@ def untold(assessment: Assessment, bench: Bench) -> list[Rival]:
     return [r for r in each if np.sqrt(r.covariance[-1, -1]) > UNTOLD * r.usual]
 
 
-def out_of_sight(assessment: Assessment, bench: Bench, now: SetPoint, some: Sequence[Rival]) -> list[str]:
-    """Which causes would be untold even after every set point that is allowed, each for as long as it is."""
+def out_of_sight(
+    assessment: Assessment, bench: Bench, now: SetPoint, some: Sequence[Rival], left_min: float
+) -> list[str]:
+    """Which causes would be untold even if all that is left of the time went to all set points that are allowed."""
     assessment, e = coarse(assessment), assessment.posterior.evidence
     q = e.p + (e.fit.error.size if e.fit.error else 0) + len(e.parameters)
-    plans = (_plan(assessment, bench, some, s) for s in bench.set_points(now))
-    told = sum((x.J.T @ x.J for x in plans if x), np.zeros((q, q)))
+    longest = [x for s in bench.set_points(now) for x in list(_plans(assessment, bench, some, s, True))[-1:]]
+    told = sum((x.J.T @ x.J for x in longest), np.zeros((q, q)))
+    told = told * min(max(left_min, 0.0) / sum(x.minutes for x in longest), 1.0) if longest else told
 
     def deviation(r: Rival) -> float:
         return float(np.sqrt(np.linalg.inv(np.linalg.inv(r.covariance) + told[np.ix_(r.at, r.at)])[-1, -1]))
@@ -175,45 +176,33 @@ def coarse(assessment: Assessment) -> Assessment:
     return replace(assessment, test=thinned(assessment.test, most))
 
 
-def _plan(
+def _plans(
     assessment: Assessment, bench: Bench, some: Sequence[Rival], set_point: SetPoint, doubting: bool = False
-) -> Plan | None:
-    """A set point for as long as the limits allow, the safe one for the rest of the time; None where they forbid it."""
+) -> Iterator[Plan]:
+    """Of a set point, as long as the limits allow it."""
     e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
-    columns = (*e.fit.unknowns.parameters, *e.parameters)
-    minutes, hottest = HORIZON_MIN, dict[str, float]()
-    for _ in range(2):
-        test = planned(assessment.test, bench, set_point, minutes)
-        try:
-            parts = segments(e.network, [_with_limits(test, bench, assessment)], e.fit.values, columns)
-        except NoSolution:  # the model runs away there
-            return None
-        if hottest:
-            break
-        minutes, hottest = _allowed(assessment, bench, some, parts)
-        if minutes in (0.0, HORIZON_MIN):
-            break
-    if not minutes:
-        return None
+    test = planned(assessment.test, bench, set_point)
+    try:
+        parts = segments(
+            e.network,
+            [_with_limits(test, bench, assessment)],
+            e.fit.values,
+            (*e.fit.unknowns.parameters, *e.parameters),
+        )
+    except NoSolution:  # the model runs away there
+        return
     read = [s for s in parts if not s.channel.startswith(LIMIT)]
     error = model_error(e.fit.network, [_expected(test, read)], e.fit.values, PLAIN_STEPS) if doubting else None
-    return Plan(minutes, np.vstack([_innovations(e, s, begin, error) for s in read]), hottest)
-
-
-def _allowed(
-    assessment: Assessment, bench: Bench, some: Sequence[Rival], parts: Sequence[Segment]
-) -> tuple[float, dict[str, float]]:
-    """Minutes of a set point for which all upper bands stay below their limits, and the bands; 0 where none do."""
-    e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
     bands = {s.channel[len(LIMIT) :]: _after(s, begin) for s in parts if s.channel.startswith(LIMIT)}
     q = e.p + (e.fit.error.size if e.fit.error else 0)
     cold = min(float(u[-1]) for u in assessment.test.boundaries.values())
     hottest = {x.name: _band(bands[x.name], e.p, q, some, x.hot_spot, cold) for x in bench.limits}
-    for minutes in reversed(LENGTHS_MIN):
+    coming = [_innovations(e, s, begin, error) for s in read]
+    for minutes in LENGTHS_MIN:
         inside = {n: float(T[s <= minutes * MINUTE + bench.deaf_s].max()) for n, (s, T) in hottest.items()}
-        if all(inside[x.name] <= x.most_C for x in bench.limits):
-            return minutes, inside
-    return 0.0, {}
+        if any(inside[x.name] > x.most_C for x in bench.limits):
+            return
+        yield Plan(minutes, np.vstack([x[time <= begin + minutes * MINUTE] for time, x in coming]), inside)
 
 
 def _expected(test: Test, parts: Sequence[Segment]) -> Test:
@@ -222,23 +211,22 @@ def _expected(test: Test, parts: Sequence[Segment]) -> Test:
     return replace(test, channels=tuple(replace(c, y=y[c.name]) for c in test.channels))
 
 
-def planned(test: Test, bench: Bench, set_point: SetPoint, minutes: float = HORIZON_MIN) -> Test:
-    """The rows so far, then a set point for some minutes, then the safe one; all else stays where it is."""
-    future = np.arange(STEP_S, HORIZON_MIN * MINUTE + bench.deaf_s + STEP_S, STEP_S)
-    stays = (future <= minutes * MINUTE) | (minutes == HORIZON_MIN)
-    m = test.time.size
+def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
+    """The rows so far, then a set point for as long as any plan looks forward; all else stays where it is."""
+    future = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
+    n, m = future.size, test.time.size
 
-    def on(u: Array, name: str = "") -> Array:
+    def on(u: Array, value: float | None = None) -> Array:
         u = np.broadcast_to(np.asarray(u, float), test.time.shape)
-        return np.concatenate([u, np.where(stays, set_point.get(name, u[-1]), bench.safe.get(name, u[-1]))])
+        return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
 
     before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
     return replace(
         test,
         time=np.concatenate([test.time, test.time[-1] + future]),
-        inputs={k: on(u, k) for k, u in test.inputs.items()},
+        inputs={k: on(u, set_point.get(k)) for k, u in test.inputs.items()},
         boundaries={k: on(u) for k, u in test.boundaries.items()},
-        channels=tuple(replace(c, y=np.zeros(m + future.size)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
+        channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
         recorded=None,
         blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(future), prepend=-1))]),
     )
@@ -249,8 +237,8 @@ def _block(future: Array) -> Array:
     return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
-def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> Array:
-    """Whitened columns of the coming readings of a channel, given all that was read before.
+def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> tuple[Array, Array]:
+    """Times of the coming readings of a channel, and their whitened columns given all that was read before.
 
     Columns: calibrated parameters, model error, causes.
     """
@@ -262,9 +250,8 @@ def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None
             if name in index:
                 doubts[:, index[name]] = error.of(s)[:, i]
     J = np.column_stack([s.J[:, : e.p], doubts, s.J[:, e.p :]])
-    late = (s.time > begin) & (s.time <= begin + HORIZON_MIN * MINUTE)
-    white: Array = e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
-    return white
+    late = s.time > begin
+    return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
 
 
 def _with_limits(test: Test, bench: Bench, assessment: Assessment) -> Test:

@@ -18,7 +18,10 @@ from thermoscope.plugin import load_case
 SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
 DULL, LOOKS = 0.005, 3  # nats that no set point promises however long, as often in a row: nothing decides any more
+LEAST_SHARE = 0.1  # of the time so far, that a set point lasts: what minutes did not tell, minutes will not
+CREDIT = 0.5  # of what a set point promised, below which it counts so much less the next time
 GAIN = 0.02  # nats that the readings have to tell while patience lasts
+SOONEST_MIN, AGAIN = 5.0, 1.3  # of the time so far: when it is asked what no set point would show
 UNDECIDED = "no allowed set point would decide"
 LEFT_NATS = 0.33  # what is not known of two when one has 90 %
 
@@ -43,6 +46,8 @@ class Thought:
 class Steering:
     """now : the set point;  sent : how far towards it the bench was told;  due : when the next one is chosen (s)
 
+    promise : of the last one: its name, odds before, nats;  broken : set point -> how often it told less
+    hidden : causes that no set point would show, as of `searched_min`
     known : odds when the readings last told something, at `gained` (s)
     since : when `now` was asked for;  obeyed : that the meters show it, or a person said so
     """
@@ -61,6 +66,10 @@ class Steering:
     count: int = 0
     last_look: float = -math.inf
     dull: int = 0
+    promise: tuple[str, dict[str, float], float] | None = None
+    broken: dict[str, int] = field(default_factory=dict)
+    hidden: Sequence[str] = ()
+    searched_min: float = 0.0
     known: dict[str, float] = field(default_factory=dict)
     gained: float = -math.inf
     replays: bool = True
@@ -176,8 +185,13 @@ class Steering:
         running = waits or time < self.due
         if running and self._stays_below(assessment):
             return Thought(time, assessment, left_min=self._left(assessment, None))
+        if self.promise and assessment.gain_over(self.promise[1]) < CREDIT * self.promise[2]:
+            self.broken[self.promise[0]] = self.broken.get(self.promise[0], 0) + 1
         options = self.policy(assessment, self.bench, self.now)
+        options = [c for c in options if c.minutes >= LEAST_SHARE * elapsed] or list(options)
+        options.sort(key=lambda c: -c.rate * CREDIT ** self.broken.get(str(c.set_point), 0))
         choice = options[0] if options else Choice(self.bench.safe, LENGTHS_MIN[0], 0.0, {})
+        self.promise = str(choice.set_point), dict(assessment.odds), choice.nats
         left = self._left(assessment, choice.rate)
         self.dull = self.dull + 1 if max((c.nats for c in options), default=0.0) < DULL else 0
         if assessment.gain_over(self.known) > GAIN:
@@ -197,11 +211,14 @@ class Steering:
 
     def _of_what_shows(self, assessment: Assessment, p: float) -> float:
         """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""
-        odds, rest = dict(assessment.odds), untold(assessment, self.bench)
-        if not rest or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
+        odds, elapsed, rest = dict(assessment.odds), (self.time - self.begin) / MINUTE, untold(assessment, self.bench)
+        if elapsed < SOONEST_MIN or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
             return p
-        hidden = out_of_sight(assessment, self.bench, self.now, rest)
-        return p / (1.0 - sum(odds.get(n, 0.0) for n in hidden))
+        if elapsed > AGAIN * self.searched_min:  # it costs as much as ten looks, and changes as slowly as the parts
+            left = self.bench.budget_min - elapsed
+            self.hidden = out_of_sight(assessment, self.bench, self.now, rest, left)
+            self.searched_min = elapsed
+        return p / (1.0 - sum(odds.get(n, 0.0) for n in self.hidden))
 
     def _stays_below(self, assessment: Assessment) -> bool:
         """Does what runs stay below every limit until the next look?"""

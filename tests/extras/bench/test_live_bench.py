@@ -112,7 +112,7 @@ def test_what_even_every_set_point_cannot_show_is_out_of_sight(tmp_path):
     driven(case, Plant(drawn("jacket", 7, "nothing")), 3.0)
     steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
     assessment = steering.think(case).assessment
-    hidden = out_of_sight(assessment, steering.bench, steering.now, untold(assessment, steering.bench))
+    hidden = out_of_sight(assessment, steering.bench, steering.now, untold(assessment, steering.bench), 180.0)
     assert "convection.constant@housing" in hidden
     assert {"copper.ac@winding", "windage@rotor"} & set(hidden) == set()
     assert set(hidden) <= set(assessment.unseen)
