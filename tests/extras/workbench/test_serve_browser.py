@@ -3,6 +3,7 @@
 Screenshots are kept in out/screenshots.
 """
 
+import json
 import os
 import re
 import shutil
@@ -13,8 +14,15 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 import pytest
+from test_serve_live import RUN as FIRST
 
 from thermoscope.case_folder.history import load_history
+
+LOOKS = [
+    FIRST[2] | {"time_s": t, "odds": [["nothing", p], ["copper.ac@winding", 0.9 - p]]}
+    for t, p in ((65, 0.8), (125, 0.5))
+]
+RUN = [*FIRST[:2], *(e | {"over": ["T_yoke"]} for e in LOOKS), FIRST[3]]
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: uv pip install playwright")
@@ -189,6 +197,35 @@ def test_narrow_pages_lose_no_control(root, page, width):
     assert eventually(page, lambda: page.evaluate(SILENT), lambda found: found == []) == []
     page.wait_for_selector("#viewer[title*='town']")
     page.wait_for_selector("#curve[aria-label*='T_flange']")
+
+
+@pytest.mark.parametrize("width", [1200, 400])
+def test_a_run_on_the_bench_is_followed_and_told_that_it_is_done(root, page, served, width):
+    """Odds, the next set point with its button, what is over and unseen; on a phone too. The last run that is shown."""
+    journal = served[1] / "tests" / "live.jsonl"
+    page.set_viewport_size({"width": width, "height": 800})
+    try:
+        journal.write_text("".join(json.dumps(e) + "\n" for e in RUN))
+        page.wait_for_selector("#live-done")
+        assert "current_A = 8" in page.inner_text("#live-set")
+        assert "T_yoke" in page.inner_text("#live-over")
+        assert "windage@rotor" in page.inner_text("#live-unseen")
+        assert "about 12 min left" in page.inner_text("#live-left")
+        page.wait_for_selector("#live .js-plotly-plot .scatterlayer .trace")
+        page.locator("#live").scroll_into_view_if_needed()
+        kept(root, page, f"8-live-{width}")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert eventually(page, lambda: page.evaluate(REACHED), lambda found: found == []) == []
+        assert eventually(page, lambda: page.evaluate(SILENT), lambda found: found == []) == []
+        page.click("#live-done")
+        page.wait_for_selector("#live-done", state="detached")
+        assert journal.with_suffix(".done").exists()
+        with journal.open("a") as file:
+            file.write(json.dumps(RUN[-2] | {"time_s": 300.0, "stop": "nothing is missing"}) + "\n")
+        page.wait_for_selector("#live-stop")
+    finally:
+        journal.unlink()
+        journal.with_suffix(".done").unlink(missing_ok=True)
 
 
 DROP = """(text) => {
