@@ -218,10 +218,9 @@ def live(
     Exit code 1 if it ends without an answer.
     """
     from extras.bench.commands.live import live_document, live_picture, live_summary
-    from thermoscope.plugin import give, notes, progress
+    from thermoscope.plugin import give, notes
 
-    with progress() as tell:
-        document, events = live_document(case, follow, test, drive, json, tell)
+    document, events = live_document(case, follow, test, drive, json)
     give(document, json, lambda: live_summary(document))
     if out is not None:
         notes([f"written: {live_picture(events, test, out)}"])

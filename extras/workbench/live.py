@@ -30,14 +30,13 @@ def shown(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[str, Any]] | N
         return None
     last, begins = looks[-1], run.of("run")
     fault = run.events[-1].get("what", "") if run.events[-1]["event"] == "fault" else ""
-    left = last["left_min"]
     state = {
         "test": file.stem,
         "minutes": f"{run.minutes(last):.0f}",
         "odds": [{"cause": n, "p": odds(p), "width": percent(p, 1.0)} for n, p in last["odds"]],
         "over": ", ".join(last["over"]),
         "unseen": ", ".join(last["unseen"]),
-        "left": "" if left is None or last.get("stop") else f"about {left:.0f} min left",
+        "left": "" if last.get("stop") else f"about {last['left_min']:.0f} min left",
         "stop": fault or last.get("stop", ""),
         "fault": bool(fault),
         "set": [{"name": n, "value": f"{v:g}"} for n, v in (sets[-1]["set_point"] if sets else {}).items()],

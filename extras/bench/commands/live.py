@@ -16,7 +16,6 @@ from thermoscope.plugin import (
     PACKAGE,
     STDOUT,
     BenchRun,
-    Progress,
     Summary,
     Table,
     file_stem,
@@ -24,6 +23,7 @@ from thermoscope.plugin import (
     load_case,
     notes,
     percent,
+    progress,
     say,
 )
 
@@ -31,7 +31,7 @@ OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
 
 def live_document(
-    case: str, follow: str, test: str, drive: bool, json: str | None, tell: Progress
+    case: str, follow: str, test: str, drive: bool, json: str | None
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """What a run on the bench ended with, and its journal; its rows are a test of the case."""
     path = find_case(case)
@@ -39,8 +39,9 @@ def live_document(
         raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
     if file_stem(test) != test:
         raise InputError(f"'{test}' is no name of a file", "--test", f"a name like {file_stem(test)}")
-    tell("reading the case")
-    network = load_case(path, untested=True).case.model.network
+    with progress() as tell:
+        tell("reading the case")
+        network = load_case(path, untested=True).case.model.network
     bench = read_bench(path, network)
     store = Store(path, test, bench.sheet_file)
     lines: Callable[[str], None] = (lambda line: notes([line])) if json == STDOUT or follow == "-" else say

@@ -53,7 +53,7 @@ class Session:
                 return self._run(pool)
             except BaseException as fault:  # whatever it is, the bench comes first
                 self._safe()
-                self.steering.store.note({"event": "fault", "time_s": self.steering.time, "what": str(fault)})
+                self.steering.store.note({"event": "fault", "what": str(fault)})
                 if isinstance(fault, OSError):
                     raise BenchError(
                         f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept"
@@ -124,6 +124,6 @@ def words(thought: Thought) -> str:
         out.append(f"sensors over: {', '.join(thought.assessment.over)}")
     if thought.assessment.unseen:
         out.append(f"cannot see yet: {', '.join(thought.assessment.unseen[:3])}")
-    if thought.left_min < 1e4 and not thought.stop:
+    if not thought.stop:
         out.append(f"about {thought.left_min:.0f} min left")
     return "; ".join(out)

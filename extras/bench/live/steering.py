@@ -225,10 +225,11 @@ class Steering:
         return self.now == self.bench.safe or is_allowed(assessment, self.bench, self.now)
 
     def _left(self, assessment: Assessment, rate: float | None) -> float:
-        """Minutes to the answer, as far as information per minute goes on."""
+        """Minutes to the answer, as far as information per minute goes on; to the end of the run at most."""
         self.rate = self.rate if rate is None else rate
         need = max(assessment.entropy - LEFT_NATS, 0.0)
-        return need / self.rate if self.rate > 0.0 else math.inf
+        end = self.bench.budget_min - (self.time - self.begin) / MINUTE
+        return min(need / self.rate, end) if self.rate > 0.0 else end
 
     def apply(self, thought: Thought) -> list[dict[str, float]]:
         """Goes on as thought. Returns set points to send."""
@@ -241,7 +242,7 @@ class Steering:
                 "odds": odds,
                 "over": list(thought.assessment.over),
                 "unseen": list(thought.assessment.unseen),
-                "left_min": _plain(thought.left_min),
+                "left_min": thought.left_min,
                 **stop,
             }
         )
@@ -260,14 +261,11 @@ class Steering:
 
     def _note_set(self, *, waits: bool, minutes: float = 0.0, nats: float = 0.0) -> None:
         more = {"minutes": minutes, "nats": nats, "waits": waits}
-        self.store.note({"event": "set", "time_s": _plain(self.time), "set_point": self.now, **more})
+        self.store.note({"event": "set", "time_s": self.time, "set_point": self.now, **more})
 
     def make_safe(self) -> list[dict[str, float]]:
         """The safe set point at once: no ramp where there is danger."""
         self.now = self.sent = dict(self.bench.safe)
-        self._note_set(waits=False)
+        if self.last is not None:
+            self._note_set(waits=False)
         return [dict(self.now)]
-
-
-def _plain(x: float) -> float | None:
-    return x if math.isfinite(x) else None

@@ -123,10 +123,10 @@ def test_what_a_model_gets_wrong_counts_in_a_plan(case, monkeypatch):
     driven(case, Plant(drawn("servo", 7, "nothing")), 2.0)
     steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
     assessment = steering.think(case).assessment
-    doubted = choices(assessment, steering.bench, steering.now)[0]
+    doubted = [c for c in choices(assessment, steering.bench, steering.now) if c.minutes == 10.0]
     monkeypatch.setattr("extras.bench.live.planning.CHECKED", 0)
-    plain = {str(c.set_point): c.nats for c in choices(assessment, steering.bench, steering.now)}
-    assert abs(doubted.nats / plain[str(doubted.set_point)] - 1.0) > 0.02
+    plain = {str(c.set_point): c.nats for c in choices(assessment, steering.bench, steering.now) if c.minutes == 10.0}
+    assert max(abs(c.nats / plain[str(c.set_point)] - 1.0) for c in doubted) > 0.1
 
 
 def test_an_answer_that_changes_is_a_gain(steering, case):

@@ -52,7 +52,7 @@ def test_it_says_how_a_run_ended(written):
     names = [line["name"] for line in figure["data"]]
     assert names == ["copper.ac@winding", "nothing", "current_A, 100 % = 8", "speed_rpm, 100 % = 3000"]
     assert figure["layout"]["paper_bgcolor"] == DARK.paper
-    state, _ = live.shown(written(*RUN, {"event": "fault", "time_s": 95.0, "what": "the line is gone"}), LIGHT)
+    state, _ = live.shown(written(*RUN, {"event": "fault", "what": "the line is gone"}), LIGHT)
     assert (state["stop"], state["fault"]) == ("the line is gone", True)
 
 
