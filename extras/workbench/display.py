@@ -8,7 +8,7 @@ from typing import Any
 from extras.workbench import revisions as ledger
 from extras.workbench import tables as rows
 from extras.workbench.appearance import Appearance
-from extras.workbench.live import shown
+from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
 from thermoscope.plugin import DARK, LIGHT, History, Theme, by_interest, confusion, matrix
 from thermoscope.plugin import sensor as sensor_figure
@@ -118,7 +118,7 @@ class Display:
 
     def show_bench(self, file: Path) -> None:
         """What runs on the bench, or ran there last."""
-        if (of_run := shown(file, self.theme)) is not None:
+        if (of_run := state_and_picture(file, self.theme)) is not None:
             self.state.live, self.state.live_curve = of_run
 
     def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:

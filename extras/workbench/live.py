@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from extras.workbench.tables import percent
-from thermoscope.plugin import BenchRun, Theme, bench_run, journal
-from thermoscope.plugin import percent as odds
+from thermoscope.plugin import BenchRun, Theme, bench_run, journal, percent
 
 LOOK_S = 2.0  # between two looks at the journal
 
@@ -22,7 +20,7 @@ def say_done(file: Path) -> None:
     file.with_suffix(".done").touch()
 
 
-def shown(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[str, Any]] | None:
+def state_and_picture(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """What the page says of a run, and the picture of it; None before its first look at the odds."""
     run = BenchRun(journal(file))
     looks, sets = run.of("odds"), run.of("set")
@@ -33,7 +31,7 @@ def shown(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[str, Any]] | N
     state = {
         "test": file.stem,
         "minutes": f"{run.minutes(last):.0f}",
-        "odds": [{"cause": n, "p": odds(p), "width": percent(p, 1.0)} for n, p in last["odds"]],
+        "odds": [{"cause": n, "p": percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]],
         "over": ", ".join(last["over"]),
         "unseen": ", ".join(last["unseen"]),
         "left": "" if last.get("stop") else f"about {last['left_min']:.0f} min left",

@@ -233,8 +233,8 @@ class Session:
         """Show what a run on the bench writes into the case, until the tab is closed."""
         while not self._closed:
             file = live.newest(self.bench.folder.settings.path)
-            if file is not None and (written := file.stat().st_mtime) != self._seen:
-                self._seen = written
+            if file is not None and (mtime := file.stat().st_mtime) != self._seen:
+                self._seen = mtime
                 with self.state:
                     self.shown.show_bench(file)
             await asyncio.sleep(live.LOOK_S)

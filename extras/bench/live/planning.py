@@ -44,7 +44,9 @@ LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over ag
 STEP_S = 30.0  # of a planned record: sensors and windings take as long to follow
 PAST, CHECKED = 40, 3  # blocks of what was read; set points that are looked at again
 RIVALS = 8  # hypotheses that are told apart
-UNTOLD = 0.8  # of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
+UNRESOLVED = (
+    0.8  # of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
+)
 CHANGE_MIN = 1.0  # until a set point that was asked for is there
 BAND = 2.5  # standard deviations of the upper band
 LIMIT = "limit: "
@@ -147,26 +149,26 @@ def is_allowed(assessment: Assessment, bench: Bench, set_point: SetPoint) -> boo
     return any(_plans(coarse(assessment), bench, rivals(assessment, bench), set_point))
 
 
-def untold(assessment: Assessment, bench: Bench) -> list[Rival]:
+def unresolved(assessment: Assessment, bench: Bench) -> list[Rival]:
     """Causes of which the readings have told next to nothing yet."""
     each = rivals(assessment, bench, assessment.unseen)
-    return [r for r in each if np.sqrt(r.covariance[-1, -1]) > UNTOLD * r.usual]
+    return [r for r in each if np.sqrt(r.covariance[-1, -1]) > UNRESOLVED * r.usual]
 
 
-def out_of_sight(
+def undetectable(
     assessment: Assessment, bench: Bench, now: SetPoint, some: Sequence[Rival], left_min: float
 ) -> list[str]:
-    """Which causes would be untold even if all that is left of the time went to all set points that are allowed."""
+    """Which causes would stay unresolved even if all that is left of the time went to all set points that are allowed."""
     assessment, e = coarse(assessment), assessment.posterior.evidence
     q = e.p + (e.fit.error.size if e.fit.error else 0) + len(e.parameters)
     longest = [x for s in bench.set_points(now) for x in list(_plans(assessment, bench, some, s, True))[-1:]]
-    told = sum((x.J.T @ x.J for x in longest), np.zeros((q, q)))
-    told = told * min(max(left_min, 0.0) / sum(x.minutes for x in longest), 1.0) if longest else told
+    gram = sum((x.J.T @ x.J for x in longest), np.zeros((q, q)))
+    gram = gram * min(max(left_min, 0.0) / sum(x.minutes for x in longest), 1.0) if longest else gram
 
     def deviation(r: Rival) -> float:
-        return float(np.sqrt(np.linalg.inv(np.linalg.inv(r.covariance) + told[np.ix_(r.at, r.at)])[-1, -1]))
+        return float(np.sqrt(np.linalg.inv(np.linalg.inv(r.covariance) + gram[np.ix_(r.at, r.at)])[-1, -1]))
 
-    return sorted(r.lead for r in some if deviation(r) > UNTOLD * r.usual)
+    return sorted(r.lead for r in some if deviation(r) > UNRESOLVED * r.usual)
 
 
 def coarse(assessment: Assessment) -> Assessment:

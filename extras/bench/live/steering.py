@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from extras.bench.live.assessment import FEWEST, NOTHING, Assessment, assess
-from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_allowed, out_of_sight, untold
+from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_allowed, undetectable, unresolved
 from extras.bench.live.settings import OVER, Bench, SetPoint
 from extras.bench.live.store import BenchError, Row, Store
 from thermoscope.plugin import load_case
@@ -48,7 +48,7 @@ class Steering:
 
     promise : of the last one: its name, odds before, nats;  broken : set point -> how often it told less
     hidden : causes that no set point would show, as of `searched_min`
-    known : odds when the readings last told something, at `gained` (s)
+    last_odds : odds when the readings last told something, at `gained` (s)
     since : when `now` was asked for;  obeyed : that the meters show it, or a person said so
     """
 
@@ -70,7 +70,7 @@ class Steering:
     broken: dict[str, int] = field(default_factory=dict)
     hidden: Sequence[str] = ()
     searched_min: float = 0.0
-    known: dict[str, float] = field(default_factory=dict)
+    last_odds: dict[str, float] = field(default_factory=dict)
     gained: float = -math.inf
     replays: bool = True
     rate: float = math.nan
@@ -194,8 +194,8 @@ class Steering:
         self.promise = str(choice.set_point), dict(assessment.odds), choice.nats
         left = self._left(assessment, choice.rate)
         self.dull = self.dull + 1 if max((c.nats for c in options), default=0.0) < DULL else 0
-        if assessment.gain_over(self.known) > GAIN:
-            self.known, self.gained = dict(assessment.odds), time
+        if assessment.gain_over(self.last_odds) > GAIN:
+            self.last_odds, self.gained = dict(assessment.odds), time
         stale = time - self.gained > MINUTE * self.bench.patience_min
         if stale or self.dull >= LOOKS or elapsed >= self.bench.budget_min:
             stop = UNDECIDED if stale or self.dull >= LOOKS else "the time is over"
@@ -211,12 +211,16 @@ class Steering:
 
     def _of_what_shows(self, assessment: Assessment, p: float) -> float:
         """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""
-        odds, elapsed, rest = dict(assessment.odds), (self.time - self.begin) / MINUTE, untold(assessment, self.bench)
+        odds, elapsed, rest = (
+            dict(assessment.odds),
+            (self.time - self.begin) / MINUTE,
+            unresolved(assessment, self.bench),
+        )
         if elapsed < SOONEST_MIN or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
             return p
         if elapsed > AGAIN * self.searched_min:  # it costs as much as ten looks, and changes as slowly as the parts
             left = self.bench.budget_min - elapsed
-            self.hidden = out_of_sight(assessment, self.bench, self.now, rest, left)
+            self.hidden = undetectable(assessment, self.bench, self.now, rest, left)
             self.searched_min = elapsed
         return p / (1.0 - sum(odds.get(n, 0.0) for n in self.hidden))
 

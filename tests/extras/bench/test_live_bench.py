@@ -21,7 +21,7 @@ from command_line import answered
 from jsonschema import Draft202012Validator
 
 from extras.bench.live.assessment import MOST_ROWS, Assessment, thinned, without_stuck
-from extras.bench.live.planning import Rival, choices, information, out_of_sight, untold
+from extras.bench.live.planning import Rival, choices, information, undetectable, unresolved
 from extras.bench.live.session import Session
 from extras.bench.live.settings import read_bench
 from extras.bench.live.sources import Parser, source_of
@@ -112,7 +112,7 @@ def test_what_even_every_set_point_cannot_show_is_out_of_sight(tmp_path):
     driven(case, Plant(drawn("jacket", 7, "nothing")), 3.0)
     steering = Steering(bench_of(case), Store(case, "live", "tests/columns.toml", sync=False))
     assessment = steering.think(case).assessment
-    hidden = out_of_sight(assessment, steering.bench, steering.now, untold(assessment, steering.bench), 180.0)
+    hidden = undetectable(assessment, steering.bench, steering.now, unresolved(assessment, steering.bench), 180.0)
     assert "convection.constant@housing" in hidden
     assert {"copper.ac@winding", "windage@rotor"} & set(hidden) == set()
     assert set(hidden) <= set(assessment.unseen)

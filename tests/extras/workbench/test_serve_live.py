@@ -36,29 +36,29 @@ def written(tmp_path):
 
 
 def test_it_asks_for_the_next_set_point_until_that_is_there(written):
-    state, _ = live.shown(written(*RUN), LIGHT)
+    state, _ = live.state_and_picture(written(*RUN), LIGHT)
     assert state["asks"]
     assert [(s["name"], s["value"]) for s in state["set"]] == [("current_A", "8"), ("speed_rpm", "3000")]
     assert (state["minutes"], state["left"], state["stop"]) == ("1", "about 12 min left", "")
     assert (state["over"], state["unseen"]) == ("T_core", "windage@rotor")
-    assert not live.shown(written(*RUN, DONE), LIGHT)[0]["asks"]
-    assert not live.shown(written({"event": "run", "drive": True}, *RUN[1:]), LIGHT)[0]["asks"]
+    assert not live.state_and_picture(written(*RUN, DONE), LIGHT)[0]["asks"]
+    assert not live.state_and_picture(written({"event": "run", "drive": True}, *RUN[1:]), LIGHT)[0]["asks"]
 
 
 def test_it_says_how_a_run_ended(written):
-    state, figure = live.shown(written(*RUN, DONE, *END), DARK)
+    state, figure = live.state_and_picture(written(*RUN, DONE, *END), DARK)
     assert (state["stop"], state["fault"], state["left"]) == ("copper.ac@winding is missing", False, "")
     assert [o["cause"] for o in state["odds"]] == ["copper.ac@winding", "nothing"]
     names = [line["name"] for line in figure["data"]]
     assert names == ["copper.ac@winding", "nothing", "current_A, 100 % = 8", "speed_rpm, 100 % = 3000"]
     assert figure["layout"]["paper_bgcolor"] == DARK.paper
-    state, _ = live.shown(written(*RUN, {"event": "fault", "what": "the line is gone"}), LIGHT)
+    state, _ = live.state_and_picture(written(*RUN, {"event": "fault", "what": "the line is gone"}), LIGHT)
     assert (state["stop"], state["fault"]) == ("the line is gone", True)
 
 
 def test_before_the_first_look_there_is_nothing_to_show(written, tmp_path):
     assert live.newest(tmp_path) is None
-    assert live.shown(written(*RUN[:2]), LIGHT) is None
+    assert live.state_and_picture(written(*RUN[:2]), LIGHT) is None
 
 
 def test_done_is_said_beside_the_journal(written, tmp_path):
