@@ -158,7 +158,7 @@ def unresolved(assessment: Assessment, bench: Bench) -> list[Rival]:
 def undetectable(
     assessment: Assessment, bench: Bench, now: SetPoint, some: Sequence[Rival], left_min: float
 ) -> list[str]:
-    """Which causes would stay unresolved even if all that is left of the time went to all set points that are allowed."""
+    """Which causes would stay unresolved even if all the time that is left went to all allowed set points."""
     assessment, e = coarse(assessment), assessment.posterior.evidence
     q = e.p + (e.fit.error.size if e.fit.error else 0) + len(e.parameters)
     longest = [x for s in bench.set_points(now) for x in list(_plans(assessment, bench, some, s, True))[-1:]]
