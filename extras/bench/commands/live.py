@@ -32,7 +32,7 @@ OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
 def live_document(
     case: str, follow: str, test: str, drive: bool, json: str | None
-) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
     """What a run on the bench ended with, and its journal; its rows are a test of the case."""
     path = find_case(case)
     if PACKAGE in path.resolve().parents:
@@ -86,7 +86,7 @@ def live_summary(document: Mapping[str, Any]) -> Summary:
     )
 
 
-def live_picture(events: Sequence[dict[str, Any]], test: str, out: Path) -> Path:
+def live_picture(events: Sequence[Mapping[str, Any]], test: str, out: Path) -> Path:
     """Odds over time, set points beneath.  events : of the journal"""
     from extras.bench.figure import odds_over_time
 
