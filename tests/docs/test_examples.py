@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 from example_references import REFERENCE
 
-TOLERANCE = {"one_node": ("error_K", 1e-2), "residuals": ("error_K", 1e-9), "machine": ("error", 1e-9), "live_bench": ("error", 0.5)}
+TOLERANCE = {
+    "one_node": ("error_K", 1e-2),
+    "residuals": ("error_K", 1e-9),
+    "machine": ("error", 1e-9),
+    "live_bench": ("error", 0.5),
+}
 WRITES = {
     "one_node": [],
     "residuals": ["residuals-1.png", "residuals-2.png", "parity.html"],
@@ -20,7 +25,10 @@ TESTED_ELSEWHERE = {"hust", "tclab"}
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.nightly] if n in LONG else []) for n in TOLERANCE])
 def test_example(name, root, tmp_path, monkeypatch):
-    """one_node: a step of the integrator may be wrong by 10 mK, of 30 K here; live_bench: 0 for the right name, 1 for another; the others are the same sums."""
+    """one_node: a step of the integrator may be wrong by 10 mK, of 30 K here; live_bench: 0 for the right name.
+
+    The others are the same sums.
+    """
     monkeypatch.setattr(sys, "argv", [name, str(tmp_path)])
     left = runpy.run_path(str(root / "examples" / f"{name}.py"))
     key, tolerance = TOLERANCE[name]
