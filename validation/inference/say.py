@@ -468,3 +468,14 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     if d.groups and d.groups == choice.groups:
         return f"; {claimed}every second reading alone cannot tell them apart"
     return f"; {claimed}every second reading alone says {other}"
+
+
+def unseen_words(fit: Fit) -> str:
+    """Where what inputs were between two rows moves a record by more than it is otherwise uncertain; "" where nowhere."""
+    error, worst = fit.error, (1.0, "")
+    for s in fit.parts if error else ():
+        between = float(np.sqrt(np.mean(np.sum(error.of(s)[:, error.model_columns :] ** 2, axis=1))))  # type: ignore[union-attr]
+        share = between / s.weight
+        if share > worst[0]:
+            worst = share, f"; inputs change between rows of {s.test}: unseen, they move {s.channel} by {between:.1f} K"
+    return worst[1]
