@@ -16,18 +16,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from geom.arrays import Array
 from hidden.answer import answer
 from hidden.cases import SHARES, Label, edits_of, plan, records_of
 from hidden.kinds import KINDS
 from hidden.odds import nats, unordered
-from hidden.user import case_of, network_of
+from hidden.user import case_of
+
+from geom.arrays import Array
 from measured.case import Case, Recorded, Test
 from measured.recordings.grid import averaged, read, rms
 from scripts.published import ROOT, publish
 
-EVERY = (2, 10)
+EVERY, MOVED = (2, 10), 0.1
 HABITS = {
     "grid": "the same file, looked at in longer steps (`sample_s`)",
     "means": "inputs are means over the time of a row",
@@ -45,7 +45,9 @@ def thinned(test: Test, every: int, habit: str, currents: frozenset[str] = froze
         return whole[::every] if lost else mean(test.time, whole, time)
 
     inputs = {n: kept(u, rms if n in currents else averaged) for n, u in test.inputs.items()}
-    channels = tuple(replace(c, y=read(test.time, c.y, time) if habit == "grid" else c.y[::every]) for c in test.channels)
+    channels = tuple(
+        replace(c, y=read(test.time, c.y, time) if habit == "grid" else c.y[::every]) for c in test.channels
+    )
     recorded = Recorded(test.time, test.inputs, time, inputs) if habit == "grid" else None
     boundaries = {n: kept(b) for n, b in test.boundaries.items()}
     return replace(test, time=time, inputs=inputs, boundaries=boundaries, channels=channels, recorded=recorded)
@@ -68,7 +70,7 @@ def asked(label: Label, every: int, habit: str) -> dict[str, Any]:
 
 
 def rows(file: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    return [json.loads(line) for line in file.read_text().splitlines()] if file.is_file() else []
 
 
 def run(labels: Sequence[Label], habits: Sequence[str], every: Sequence[int], file: Path) -> None:
@@ -108,22 +110,30 @@ def _bare(name: str) -> str:
     return f"{effect} in {when.partition(':')[0]}" if when else effect
 
 
-def markdown(answers: Sequence[Mapping[str, Any]]) -> str:
-    whole = {a["case"]: a for a in answers if a["habit"] == "whole"}
-    lines = [
-        "| logger | rows | verdict or lead changed | more than 10 % on P(nothing) | log posterior of the truth, whole | then |",
-        "|---|---|---|---|---|---|",
-    ]
-    for habit, words in HABITS.items():
-        for n in sorted({a["every"] for a in answers if a["habit"] == habit}):
-            pairs = [(whole[a["case"]], a) for a in answers if a["habit"] == habit and a["every"] == n and a["case"] in whole]
-            moved = sum(abs(w["p_nothing"] - a["p_nothing"]) > 0.1 for w, a in pairs)
-            scores = np.array([[nats(unordered(a["label"]), unordered(x)) for x in (w, a)] for w, a in pairs])
-            lines.append(
-                f"| {words} | one in {n} | {sum(changed(w, a) for w, a in pairs)} of {len(pairs)} | {moved} | "
-                f"{scores[:, 0].mean():.2f} | {scores[:, 1].mean():.2f} |"
-            )
+def markdown(answers: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]] = ()) -> str:
+    """Rows per recorder and number of rows left; of another file, too, on the cases that both have."""
+    heads = "rows left", "verdict or lead changed", "P(nothing) moved by over 10 %", "log score, whole record", "then"
+    lines = [f"| recorder | {' | '.join(heads)} |", "|---|---|---|---|---|---|"]
+    files = [scores(x) for x in (before, answers) if x]
+    for habit, n in sorted(set.intersection(*map(set, files)), key=lambda key: (list(HABITS).index(key[0]), key[1])):
+        each = [x[habit, n] for x in files]
+        cases = set.intersection(*map(set, each))
+        told, now = [np.array([x[case] for case in cases]) for x in each], " now" * (len(each) > 1)
+        cells = [" before, ".join(f"{t[:, k].sum():.0f} of {len(t)}" for t in told) + now for k in (0, 1)]
+        cells += [" before, ".join(f"{t[:, k].mean():.2f}" for t in told) + now for k in (2, 3)]
+        lines.append(f"| {HABITS[habit]} | one in {n} | {' | '.join(cells)} |")
     return "\n".join(lines)
+
+
+def scores(answers: Sequence[Mapping[str, Any]]) -> dict[tuple[str, int], dict[str, tuple[float, ...]]]:
+    """Habit and number -> case -> whether its verdict changed, its P(nothing) moved; log scores of both records."""
+    whole, out = {a["case"]: a for a in answers if a["every"] == 1}, {}  # type: ignore[var-annotated]
+    for a in (a for a in answers if a["every"] > 1 and a["case"] in whole):
+        w = whole[a["case"]]
+        two = (nats(unordered(x["label"]), unordered(x)) for x in (w, a))
+        row = (float(changed(w, a)), float(abs(w["p_nothing"] - a["p_nothing"]) > MOVED), *two)
+        out.setdefault((a["habit"], a["every"]), {})[a["case"]] = row
+    return out
 
 
 def main() -> None:
@@ -137,11 +147,12 @@ def main() -> None:
     parser.add_argument("--every", nargs="+", type=int, default=list(EVERY), help="one row in so many is left")
     parser.add_argument("--out", type=Path, default=Path("out/steadiness.jsonl"))
     parser.add_argument("--score", action="store_true", help="only score what the file has")
+    parser.add_argument("--before", type=Path, default=Path(), help="FILE of an older version, to stand beside")
     parser.add_argument("--page", action="store_true", help="put the table into docs/hidden-effects.md")
     a = parser.parse_args()
     if not a.score:
         run(plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :], a.habits, a.every, a.out)
-    table = markdown(rows(a.out))
+    table = markdown(rows(a.out), rows(a.before))
     print(table)
     if a.page:
         publish(PAGE, "steadiness", table)

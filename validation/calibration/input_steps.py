@@ -31,6 +31,11 @@ class InputStep:
     share: Array
     hidden: str = ""
 
+    @property
+    def what(self) -> str:
+        """In words."""
+        return f"{self.hidden} between rows" if self.hidden else "input steps"
+
 
 def recorded_inputs(test: Test) -> tuple[Array, Mapping[str, Array]]:
     """Times (n,) s and inputs (n,) in their finest steps."""

@@ -353,11 +353,7 @@ def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Se
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    late = [
-        f"{s.hidden or 'input'} {'between rows' if s.hidden else 'steps'} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}"
-        for t in tests
-        for s in input_steps(t)
-    ]
+    late = [f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t in tests for s in input_steps(t)]
     return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
 
 

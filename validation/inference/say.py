@@ -16,6 +16,7 @@ from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit, InnerProduct
+from validation.calibration.model_error import total_sd
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect
@@ -471,11 +472,11 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
 
 
 def unseen_words(fit: Fit) -> str:
-    """Where what inputs were between two rows moves a record by more than it is otherwise uncertain; "" where nowhere."""
-    error, worst = fit.error, (1.0, "")
-    for s in fit.parts if error else ():
-        between = float(np.sqrt(np.mean(np.sum(error.of(s)[:, error.model_columns :] ** 2, axis=1))))  # type: ignore[union-attr]
-        share = between / s.weight
-        if share > worst[0]:
-            worst = share, f"; inputs change between rows of {s.test}: unseen, they move {s.channel} by {between:.1f} K"
+    """Where inputs between two rows move a record by more than it is otherwise uncertain; "" where they do not."""
+    worst = 1.0, ""
+    for s in fit.parts if fit.error else ():
+        between = total_sd(fit.error.of(s)[:, fit.error.model_columns :])  # type: ignore[union-attr]
+        if between > worst[0] * s.weight:
+            words = f"; inputs change between rows of {s.test}: unseen, they move {s.channel} by {between:.1f} K"
+            worst = between / s.weight, words
     return worst[1]

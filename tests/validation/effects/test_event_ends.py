@@ -86,7 +86,7 @@ def test_an_event_is_rare_where_it_is_short_and_at_no_level_of_an_input():
 
 
 def test_when_repeats_were_is_a_part_of_the_evidence():
-    """Two more stretches of 80 s in 5980 s: anywhere to half a minute, and half to half as long again, whatever the rows."""
+    """Two more stretches of 80 s in 5980 s: anywhere to half a minute, and half to half as long again."""
     spans = [(1000.0, 1080.0), (2400.0, 2480.0), (4000.0, 4080.0)]
     case = bench((("noon", tuple(spans)),), 5.0)
     lids = [effect(f"convection.constant@body in {Event.of({'noon': x}).name}") for x in (spans, spans[:1])]
