@@ -95,14 +95,7 @@ def test_what_has_changed_is_another_verdict_or_lead_but_not_other_ends():
 
 def test_the_table_counts_each_case_against_its_whole_record():
     label = {"group": "nothing", "truth": [], "right": [], "twins": []}
-    a = {
-        "case": "x",
-        "verdict": "adequate",
-        "groups": [],
-        "odds": [],
-        "candidates": {},
-        "label": label,
-        "p_nothing": 0.9,
-    }
-    rows = [{**a, "habit": "whole", "every": 1}, {**a, "habit": "means", "every": 2, "p_nothing": 0.7}]
-    assert "| one in 2 | 0 of 1 | 1 |" in markdown(rows)
+    a = {"case": "x", "verdict": "adequate", "groups": [], "odds": [], "candidates": {}, "label": label}
+    rows = [{**a, "habit": h, "every": n, "p_nothing": p} for h, n, p in (("whole", 1, 0.9), ("means", 2, 0.7))]
+    assert "| one in 2 | 0 of 1 | 1 of 1 |" in markdown(rows)
+    assert "| one in 2 | 0 of 1 before, 0 of 1 now |" in markdown(rows, rows)

@@ -474,8 +474,10 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
 def unseen_words(fit: Fit) -> str:
     """Where inputs between two rows move a record by more than it is otherwise uncertain; "" where they do not."""
     worst = 1.0, ""
-    for s in fit.parts if fit.error else ():
-        between = total_sd(fit.error.of(s)[:, fit.error.model_columns :])  # type: ignore[union-attr]
+    if fit.error is None:
+        return ""
+    for s in fit.parts:
+        between = total_sd(fit.error.of(s)[:, fit.error.model_columns :])
         if between > worst[0] * s.weight:
             words = f"; inputs change between rows of {s.test}: unseen, they move {s.channel} by {between:.1f} K"
             worst = between / s.weight, words
