@@ -95,6 +95,8 @@ def quantities_of(name: str) -> list[str]:
         if not inside[q] and any(w[-SHORTEST:] in terms for w in words if len(w) > 1)
     }
     quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
+    if quantities == ["water_flow"] and WORDS["air"] & {*words}:
+        return ["air_flow"]
     return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
 
 
