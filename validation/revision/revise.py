@@ -160,6 +160,7 @@ def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress
     """
     each = [n for text in ([names] if isinstance(names, str) else names) for n in text.split(TOGETHER)]
     new = [effect(name, scene_of(case)) for name in dict.fromkeys(each)]
+    new.sort(key=lambda one: one.changes_others)  # an effect acts on what those before it brought
     for one in new:
         inside(one, case)
         if one.name in {e.name for e in case.model.effects}:
