@@ -39,6 +39,7 @@ from validation.revision.acceptance import (
     fold_prediction,
     folds,
     middle_instant,
+    own_tests,
     prediction_checks,
     squares,
     telling_tests,
@@ -250,10 +251,12 @@ def _effect_checks(
     telling = telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)
+    own = own_tests(bare, [e.name for e in case.model.effects])
+    every = folds(tests, telling, middle, own)
     if (at := (middle, *telling)) not in predictions:
-        predictions[at] = [fold_prediction(bare, fold, values) for fold in folds(tests, telling, middle)]
-    after = [fold_prediction(fit, x, parameter_values(fit.network, new.values)) for x in folds(tests, telling, middle)]
-    checks = prediction_checks(predictions[at], after, telling)
+        predictions[at] = [fold_prediction(bare, fold, values) for fold in every]
+    after = [fold_prediction(fit, fold, parameter_values(fit.network, new.values)) for fold in every]
+    checks = prediction_checks(predictions[at], after, telling, tuple(own))
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
 
 
@@ -290,7 +293,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
-    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, ())]
+    own = own_tests(fit, [e.name for e in case.model.effects if e.name in fit.unknowns.names])
+    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, (), own=own)]
     for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)
