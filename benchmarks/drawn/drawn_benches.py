@@ -4,9 +4,9 @@
 
 Every case is drawn anew (sizes, losses, films, noise, inputs) with one cause that the model does not have. It is right
 where `diagnose` names it and `add` accepts it: the test of the fan; the lid with begin and end within two samples. Of
-air that follows the speed, part of which was away in one test, `improve` has to add both and no other event. A probe
-that sat elsewhere is nothing that a model should explain: right is any verdict but *adequate* whose sentence
-names the sensor or one of its tests.
+air that follows the speed, part of which was away in one test, `improve` has to add both, and nothing for a while in
+another test or place. A probe that sat elsewhere is nothing that a model should explain: right is any verdict but
+*adequate* whose sentence names the sensor or one of its tests.
 """
 
 from __future__ import annotations
@@ -178,7 +178,8 @@ def blocked(rng: np.random.Generator) -> str:
     added = [effect(e.name) for e in done.case.model.effects]
     for_a_while = [e for e in added if isinstance(e, During)]
     follows = any("speed" in e.needs or "speed_rpm" in e.name for e in added)
-    if follows and [(e.base.name, e.tests) for e in for_a_while] == [("blockage@shell", (which,))]:
+    where = {(e.base.place, e.tests) for e in for_a_while}  # beside it a film: what blocks a face blocks all its films
+    if follows and any(e.base.kind == "blockage" for e in for_a_while) and where == {("shell", (which,))}:
         return "right"
     return f"{share:.0%} away in {which}; {', '.join(e.name for e in added) or 'nothing'}; {done.why}"
 
