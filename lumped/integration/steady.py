@@ -71,9 +71,9 @@ def steady(
         why = "a node nothing holds, or thermal runaway"
         raise NoSolution(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], scratch.D
-    reach = Reach(core.terms)
-    reach.see(z[None, :])
-    reach.tell(core.names)
+    reach = Reach(core)
+    reach.see(z[None, :], core.forcing, np.zeros(1, np.int64))
+    reach.tell()
     y, dy = [r.at(z) for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)
 
