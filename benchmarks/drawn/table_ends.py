@@ -102,7 +102,7 @@ def main() -> int:
     found = ends(every_table(sorted(file.stem for file in MACHINES.glob("*.toml"))), parser.parse_args().points)
     for name, (points, outside, silent, wrong) in sorted(found.items()):
         print(
-            f"{name:25} {points:6} points, {outside:5} outside, {silent:3} of these in silence, {wrong:3} wrongly told"
+            f"{name:25} {points:6} points, {outside:5} outside, {silent:3} of these in silence, {wrong:3} told inside"
         )
     return int(any(silent or wrong for _, _, silent, wrong in found.values()))
 
