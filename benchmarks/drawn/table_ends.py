@@ -101,9 +101,7 @@ def main() -> int:
     parser.add_argument("--points", type=int, default=200)
     found = ends(every_table(sorted(file.stem for file in MACHINES.glob("*.toml"))), parser.parse_args().points)
     for name, (points, outside, silent, wrong) in sorted(found.items()):
-        print(
-            f"{name:25} {points:6} points, {outside:5} outside, {silent:3} of these in silence, {wrong:3} told inside"
-        )
+        print(f"{name:25} {points:6} points, {outside:5} outside, {silent:3} of these silent, {wrong:3} told inside")
     return int(any(silent or wrong for _, _, silent, wrong in found.values()))
 
 
@@ -218,6 +216,7 @@ def of_machine(name: str) -> None:
     if around.gap is not None:
         air.gap_film(around.gap, around.usual_rpm)
     for jacket in around.cooling.feeds if around.cooling else ():
+        assert around.cooling
         jackets.jacket_film(machine, jacket, around.cooling)
     for way in around.ways.ducts if around.ways else ():
         face_films("poles", way, around)

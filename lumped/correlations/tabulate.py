@@ -8,7 +8,7 @@ import numpy as np
 
 from lumped.correlations.info import Info, domain
 from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, USUAL_RISE_K, FilmTable, Table
-from lumped.transfer.ranges import within_silence
+from lumped.transfer.ranges import Domain, within_silence
 
 # A fifth apart: between two a film of the power 1/4 is straight to 0.1 %.
 STILL_AIR_K = tuple(float(d) for d in np.concatenate([[0.0], np.geomspace(0.1, 300.0, 48)]))
@@ -27,6 +27,8 @@ def film_tabulated(
     with within_silence():
         h = tuple(float(at(T, d)[0]) for T in films for d in grid)
         holds = domain(lambda T, d: at(T, d)[1], films, (USUAL_C, USUAL_RISE_K), grid[1], grid[-1])
+        if not holds.degC or not holds.degC[0] <= USUAL_C <= holds.degC[-1]:  # a size for which it is not meant
+            holds = Domain(", ".join(at(USUAL_C, USUAL_RISE_K)[1].words))
         return FilmTable(grid, h, holds)
 
 

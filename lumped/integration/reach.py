@@ -133,8 +133,7 @@ class Reach:
                 if outside:
                     out_of_range(f"{names[e]}: {what.format(extreme)} outside {low:g} to {high:g}")
         for e, (_, *point) in self.largest.items():
-            beyond, size, degC = (np.array([x]) for x in point)
-            self._keep(self._domain(e), "low", e, beyond, size, degC)
+            self._keep(self._domain(e), "low", e, *(np.array([x]) for x in point))
         for e, _, size, degC in self.furthest.values():
             table = self.core.tables[e]
             assert isinstance(table, FilmTable | StreamTable)

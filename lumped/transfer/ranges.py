@@ -61,13 +61,13 @@ class Domain:
 
     def ends(self, degC: Array | float) -> tuple[Array, Array]:
         """The least and the largest at temperatures of the fluid."""
-        return np.interp(degC, self.degC, self.low), np.interp(degC, self.degC, self.high)
+        low, high = (np.asarray(np.interp(degC, self.degC, x)) for x in (self.low, self.high))
+        return low, high
 
     def beside(self, degC: float, fluid: str) -> str:
         """How a temperature of the fluid lies outside, with value and range; else nothing."""
         if not self.degC:
             return self.what
         low, high = self.degC[0], self.degC[-1]
-        return (
-            "" if low <= degC <= high else f"its {fluid} at {degC:.4g} degC outside {low:g} to {high:g} ({self.what})"
-        )
+        what = f"its {fluid} at {degC:.4g} degC outside {low:.4g} to {high:.4g} ({self.what})"
+        return "" if low <= degC <= high else what
