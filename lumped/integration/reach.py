@@ -140,6 +140,13 @@ class Reach:
             out_of_range(f"{names[e]}: {table.left(size, degC, 1.0 if self._alone(e) else 0.5)}")
 
 
+def tell_reach(core: Compiled, z: Array) -> None:
+    """What a network at rest left, at its temperatures z (n + nb,)."""
+    reach = Reach(core)
+    reach.see(z[None, :], core.forcing, np.zeros(1, np.int64))
+    reach.tell()
+
+
 def _largest(forcing: Forcing, column: int, knot: Ints) -> Array:
     """|factor| in the interval before each knot: at its ends and in the middle."""
     last, first = forcing.factor[knot, column], forcing.factor[np.maximum(knot - 1, 0), column]
