@@ -9,7 +9,7 @@ from functools import partial
 
 from lumped.transfer.ranges import Domain, out_of_range
 
-TRIED = 12  # sizes between the least and the largest, where a range may lie
+SIZES = 12  # sizes between the least and the largest, where a range may lie
 HALVINGS = 8  # of a step between temperatures: 20 K to 0.1 K
 
 
@@ -57,14 +57,14 @@ def domain(
         return _span(partial(info, T), usual[1], least, most)
 
     every = list(degC)
-    spans = {T: found for T in every if (found := span(T))}
+    spans = {T: ends for T in every if (ends := span(T))}
     if not spans:
         one = info(*usual)
         return Domain(", ".join(one.words) or one.name, (), (), ())
     for inside, step in ((min(spans), -1), (max(spans), 1)):
-        beyond = every.index(inside) + step
-        if 0 <= beyond < len(every):
-            edge = _edge(span, inside, every[beyond])
+        outer = every.index(inside) + step
+        if 0 <= outer < len(every):
+            edge = _edge(span, inside, every[outer])
             spans[edge] = span(edge) or spans[inside]
     low, high = zip(*(spans[T] for T in sorted(spans)), strict=True)
     return Domain(info(*usual).name, tuple(sorted(spans)), low, high)
@@ -72,8 +72,8 @@ def domain(
 
 def _span(info: Callable[[float], Info], usual: float, least: float, most: float) -> tuple[float, float] | None:
     """The sizes around the usual one, or around the first other that is in range; to 1 %."""
-    tried = (usual, *(least * (most / least) ** (k / TRIED) for k in range(TRIED + 1)))
-    inside = next((size for size in tried if not info(size).outside), None)
+    sizes = (usual, *(least * (most / least) ** (k / SIZES) for k in range(SIZES + 1)))
+    inside = next((size for size in sizes if not info(size).outside), None)
     if inside is None:
         return None
     low = _last(info, inside, least)

@@ -26,10 +26,10 @@ class Span(NamedTuple):
 
 
 class Furthest(NamedTuple):
-    """Of a term, and beyond 1 if it lies outside: what its correlation follows, and its fluid's temperature (degC)."""
+    """Of a term, with an excess above 1 where it lies outside: what its correlation follows, and its fluid's temperature (degC)."""
 
     term: int
-    beyond: float
+    excess: float
     size: float
     degC: float
 
@@ -42,15 +42,15 @@ class Reach:
 
     def __init__(self, core: Compiled) -> None:
         self.core, self.terms = core, core.terms
-        spans, asked = dict[Any, int](), dict[Any, int]()
+        spans, domains = dict[Any, int](), dict[Any, int]()
         for e in np.flatnonzero(self.terms.m != 0.0)[::-1].tolist():
             sides = tuple(self.terms.part[e, [HOT, COLD]].tolist())
             spans.update({(*sides, span): e for span in self._spans(e)})
             if (domain := self._domain(e)) is not None:
-                asked[(*sides, int(self.terms.part[e, PLACE]), domain)] = e
+                domains[(*sides, int(self.terms.part[e, PLACE]), domain)] = e
         # one for all films of a face that end at the same
         self.spans = [(e, span) for (*_, span), e in reversed(spans.items())]
-        self.asked = [(e, domain) for (*_, domain), e in reversed(asked.items())]
+        self.domains = [(e, domain) for (*_, domain), e in reversed(domains.items())]
         self.low, self.high = np.full(len(spans), np.inf), np.full(len(spans), -np.inf)
         self.furthest: dict[tuple[Domain | None, str], Furthest] = {}
         self.largest: dict[int, Furthest] = {}  # difference of still air: from rest every run begins at none
@@ -83,7 +83,7 @@ class Reach:
             hot, cold = self._row(e, HOT, z), self._row(e, COLD, z)
             value = span.times * (hot + cold) if span.times else np.abs(hot - cold)
             self.low[k], self.high[k] = min(self.low[k], value.min()), max(self.high[k], value.max())
-        for e, domain in self.asked:
+        for e, domain in self.domains:
             self._ask(e, domain, self._row(e, HOT, z), self._row(e, COLD, z), forcing, knot)
 
     def _ask(self, e: int, domain: Domain, hot: Array, cold: Array, forcing: Forcing, knot: Ints) -> None:
@@ -115,10 +115,10 @@ class Reach:
             largest = Furthest(e, float(low[k] / max(size[k], SMALL)), float(size[k]), float(T[k]))
             self.largest[e] = max(self.largest.get(e, INSIDE), largest, key=lambda point: point.size)
 
-    def _keep(self, domain: Domain | None, side: str, e: int, beyond: Array, size: Array, degC: Array) -> None:
-        if beyond.size and beyond.max() > self.furthest.get((domain, side), INSIDE).beyond:
-            k = int(np.argmax(beyond))
-            self.furthest[domain, side] = Furthest(e, float(beyond[k]), float(size[k]), float(degC[k]))
+    def _keep(self, domain: Domain | None, side: str, e: int, excess: Array, size: Array, degC: Array) -> None:
+        if excess.size and excess.max() > self.furthest.get((domain, side), INSIDE).excess:
+            k = int(np.argmax(excess))
+            self.furthest[domain, side] = Furthest(e, float(excess[k]), float(size[k]), float(degC[k]))
 
     def _row(self, e: int, side: int, z: Array) -> Any:
         T, row = self.terms, self.terms.part[e, side]
