@@ -26,7 +26,7 @@ class Span(NamedTuple):
 
 
 class Furthest(NamedTuple):
-    """Of a term, with an excess above 1 where it lies outside: what its correlation follows, and its fluid's temperature (degC)."""
+    """Of a term: what its correlation follows, and its fluid's temperature (degC); outside its excess is above 1."""
 
     term: int
     excess: float
