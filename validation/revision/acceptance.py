@@ -69,18 +69,18 @@ class FoldPrediction:
 
 
 def folds(
-    tests: Sequence[Test], telling: Sequence[str], middle: float | None = None, own: Mapping[str, float] = NOTHING
+    tests: Sequence[Test], telling: Sequence[str], middle: float | None = None, lone: Mapping[str, float] = NOTHING
 ) -> list[Fold]:
     """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
     telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
-    own : tests of which the model knows something that no other test tells, see `own_tests`: of these the later part
+    lone : tests that alone tell of something in the model, see `lone_tests`: of these the later part
     """
     halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
     out = []
     if not halved:  # else the other tests say nothing of the step, only of what it costs to fit one number more
         count = min(len(tests), MOST_FOLDS)
-        cut = {t.name: halves(t, own[t.name]) for t in tests if t.name in own}
+        cut = {t.name: halves(t, lone[t.name]) for t in tests if t.name in lone}
         for share in [tests[i::count] for i in range(count)]:
             fitted = [cut[t.name][0] if t in share else t for t in tests if t not in share or t.name in cut]
             out.append(Fold(tuple(fitted), tuple(cut[t.name][1] if t.name in cut else t for t in share)))
@@ -111,7 +111,7 @@ def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
     return [name for name, largest in size.items() if largest > FELT * max(size.values())]
 
 
-def own_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
+def lone_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
     """Tests that alone tell of some of the parameters, such as an event in one of them, and when (s) half is seen.
 
     Left out whole, such a test would be predicted without what the model knows of it.
@@ -124,7 +124,7 @@ def own_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
 
 
 def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
-    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has its own."""
+    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has a late one."""
     columns, parts = [fit.unknowns.names.index(name) for name in names], [s for s in fit.parts if s.test == test]
     time = np.concatenate([s.time for s in parts])
     size = np.concatenate([np.sum(s.J[:, columns] ** 2, axis=1) for s in parts])
@@ -194,19 +194,19 @@ def _log_density(
 
 
 def prediction_checks(
-    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str], own: Sequence[str] = ()
+    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str], lone: Sequence[str] = ()
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
     before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
-    own : tests of which the later part alone was left out
+    lone : tests of which the later part alone was left out
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
-    parts = f"; of {', '.join(own)} the later part, since only it tells what held in it" if own and not part else ""
+    parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
     return (

@@ -38,8 +38,8 @@ from validation.revision.acceptance import (
     fall,
     fold_prediction,
     folds,
+    lone_tests,
     middle_instant,
-    own_tests,
     prediction_checks,
     squares,
     telling_tests,
@@ -251,12 +251,12 @@ def _effect_checks(
     telling = telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)
-    own = own_tests(bare, [e.name for e in case.model.effects])
-    every = folds(tests, telling, middle, own)
+    lone = lone_tests(bare, [e.name for e in case.model.effects])
+    every = folds(tests, telling, middle, lone)
     if (at := (middle, *telling)) not in predictions:
         predictions[at] = [fold_prediction(bare, fold, values) for fold in every]
     after = [fold_prediction(fit, fold, parameter_values(fit.network, new.values)) for fold in every]
-    checks = prediction_checks(predictions[at], after, telling, tuple(own))
+    checks = prediction_checks(predictions[at], after, telling, tuple(lone))
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
 
 
@@ -299,8 +299,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
-    own = own_tests(fit, [e.name for e in case.model.effects if e.name in fit.unknowns.names])
-    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, (), own=own)]
+    lone = lone_tests(fit, [e.name for e in case.model.effects if e.name in fit.unknowns.names])
+    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, (), lone=lone)]
     for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)

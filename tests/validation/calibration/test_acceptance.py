@@ -220,7 +220,7 @@ def test_of_a_test_with_an_event_of_its_own_the_later_part_is_left_out():
     """Left out whole, it would be predicted without its event, and no step could be judged beside that error."""
     tests = [measured("one"), measured("two"), measured("three")]
     time = float(tests[1].time[50])
-    one, two, three = folds(tests, ["one", "two", "three"], own={"two": time})
+    one, two, three = folds(tests, ["one", "two", "three"], lone={"two": time})
     for fold, name in ((one, "one"), (three, "three")):
         assert [t.name for t in fold.predicted] == [name]
         assert name not in [t.name for t in fold.fitted]
