@@ -40,6 +40,7 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
+from measured.importing.relations import SAME, START_K, is_like_temperature, made_of_others
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -47,6 +48,9 @@ from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITC
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
+FIRST_ROWS = 5  # whose median a column starts at
+ALIKE_K = 3.0  # between sensors of a machine at rest
+FALLING = 0.05  # of its steps: no clock runs back as often
 STATES = 16  # whole numbers below it, under the name of a part alone
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
@@ -80,9 +84,10 @@ NUMBERED = "place by its number only"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
-NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
-LOUD = (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT, HARDLY, SEVERAL)  # of columns that are used
+BY_READINGS = "a temperature, by its readings alone"
+BY_HAND = "left out by hand"
+CERTAIN = ("a set point, not a reading", "a number that names a row", BY_HAND, "--set gives it")  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
@@ -113,7 +118,8 @@ class Guess:
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
-    every = _read(source, [guess(source, c, target) for c in source.cells if c not in clock])
+    every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
+    every = _starting_apart(source, _read(source, _made(source, every)))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
@@ -121,6 +127,47 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target))
+
+
+def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """With columns as temperatures whose readings are like those of the others, where no unit says what they are."""
+    hot = [g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])]
+    firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
+    starts = [float(np.median(v)) for v in firsts if v.size]
+    return [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
+
+
+def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
+    """A column by its readings; a doubt, where a word of its name says otherwise."""
+    label, untold = source.labels[g.column], g.doubt == UNTOLD
+    if g.quantity == "temperature" or source.units[g.column] or not (untold or starts):
+        return g
+    if not is_like_temperature(source.numbers(g.column), starts, START_K if untold else ALIKE_K):
+        return g
+    if untold or all(len(w) == 1 for w in tokens(label) if w in QUANTITY[g.quantity]):
+        return _placed(Guess(g.column, "temperature", "degC", why="readings", doubt=BY_READINGS), label, target)
+    return replace(g, doubt=f"or {BY_READINGS}")
+
+
+def _made(source: Source, every: list[Guess]) -> list[Guess]:
+    """Without what is a function of temperatures; where names of a copy are of two parts this is a doubt."""
+    hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
+    roles = {c: roles_of(source.labels[c])[:1] for c in hot}
+    order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
+    others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
+    made = made_of_others({c: in_memory(source, hot[c]) for c in order}, others)
+    out = []
+    for g in every:
+        why = made.get(g.column, "")
+        twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
+        apart = twin and roles.get(g.column) and roles[g.column] != roles[twin]
+        out.append(replace(g, doubt=why) if apart else g.without(why) if why else g)
+    return out
+
+
+def _is_plain(source: Source, g: Guess) -> bool:
+    """May its numbers be those of other columns, whatever it is called?"""
+    return source.is_numeric(g.column) and (g.used or not g.doubt or g.doubt == UNTOLD)
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
@@ -169,7 +216,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
     label, unit_text = source.labels[column], source.units[column]
-    unit = unit_of(unit_text)
+    unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
@@ -196,9 +243,36 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
 
+def _starting_apart(source: Source, every: list[Guess]) -> list[Guess]:
+    """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
+    starts = {
+        g.column: float(np.median(v[np.isfinite(v)][:FIRST_ROWS]))
+        for g in every
+        if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)
+        for v in [in_memory(source, g)]
+    }
+    usual = float(np.median([*starts.values()])) if starts else 0.0
+    odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
+    if (
+        len(starts) - len(odd) < max(3, 2 * len(odd))
+        or np.ptp([s for c, s in starts.items() if c not in odd]) > ALIKE_K
+    ):
+        return every
+    return [
+        replace(
+            g,
+            doubt=g.doubt
+            or f"starts at {starts[g.column]:.3g} degC, all others near {usual:.3g}: is it of this machine?",
+        )
+        if g.column in odd
+        else g
+        for g in every
+    ]
+
+
 def _left_out(source: Source, column: str) -> str:
     """Why a column is none that a model reads, "" where it may be one: a unit in its header is law."""
-    if is_second_clock(source, column):
+    if is_second_clock(source, column) and not _runs_back(source, column):
         return "a second clock, or a counter"
     if not source.is_numeric(column):
         return "words, not numbers" if np.size(source.cells[column]) and source.is_filled(column) else "empty"
@@ -257,6 +331,14 @@ def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
     return replace(g, unit="degF", doubt="no unit: degF by its values")
 
 
+def _runs_back(source: Source, column: str) -> bool:
+    """Is it too uneven for a clock: does it fall as often as readings do, and has it no unit of time?"""
+    if source.units[column] or not source.is_numeric(column):
+        return False
+    steps = np.diff(source.numbers(column))
+    return bool((steps < 0).mean() > FALLING)
+
+
 def _counts_on(source: Source, column: str) -> bool:
     """Does it rise in every row?"""
     values = source.numbers(column)
@@ -291,6 +373,12 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
 
 
+def _called_unit(label: str) -> str:
+    """The unit that is all of a name, as in a column "rpm" or "mA"; letters alone are rather of phases."""
+    unit = unit_of(label) if len(label) > 1 else ""
+    return unit if any(unit in QUANTITIES[q].units for q in FIRST) else ""
+
+
 def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     """Smooth readings of a file without names that can hardly be anything but temperatures."""
     values = source.numbers(column)
@@ -301,7 +389,7 @@ def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and np.unique(values).size > 0.1 * values.size
     if not (smooth and (absolute or celsius)):
         return "", "", ""
-    return "temperature", "values", f"{NAMELESS}: a temperature, by its values?"
+    return "temperature", "values", f"no name: {BY_READINGS}"
 
 
 def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, str]:
@@ -406,7 +494,7 @@ def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, tar
 def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
     """A column where the user puts it."""
     if not to:
-        return g.without("left out by hand")
+        return g.without(BY_HAND)
     if not source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
     if to in target.places or to in target.boundaries:

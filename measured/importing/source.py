@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import re
 import zipfile
 from collections import Counter
@@ -37,6 +38,7 @@ SCALED = re.compile(
     r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
 )  # x0.1 °C, 1/10 °C, 10 mA
 TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a register of whole numbers
+LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
@@ -235,6 +237,7 @@ def _source(
             scale = {c: converted(np.array(number(c)), quantity, unit) for unit, of in texts[n].items() for c in of}
             cells[n], texts[n] = [scale.get(c, c) for c in cells[n]], {MEMORY_UNIT[quantity]: []}
             notes = [*notes, f"{file.name}: units change within '{n}': it is read in {MEMORY_UNIT[quantity]}"]
+    split = {n: (n, "") if texts[n] and unit_of(split[n][1]) not in texts[n] else split[n] for n in cells}
     unit_texts = {n: units.get(n, "") or split[n][1] or next(iter(texts[n]), "") for n in cells}
     for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
         is_unit_column = header.lower().startswith(UNIT_NAMES)
@@ -243,8 +246,21 @@ def _source(
         if len(beside) == 1 and words and not unit_texts[before]:
             unit_texts[before] = words[0]
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
+    labels = _apart(labels)
     labels = {n: name if re.search(r"[^\W\d]", name := TAG.sub("", label)) else label for n, label in labels.items()}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
+
+
+def _apart(labels: Mapping[str, str]) -> dict[str, str]:
+    """Names of paths without the groups that all of them begin with, and the end that most of them share."""
+    paths = {n: re.split("/+", label) for n, label in labels.items() if "/" in label}
+    if len(paths) < LEAST_PATHS:
+        return dict(labels)
+    same = len(os.path.commonprefix([*paths.values()]))
+    last, count = Counter(path[-1] for path in paths.values()).most_common(1)[0]
+    paths = {n: path[min(same, len(path) - 1) :] for n, path in paths.items()}
+    shared = last if count > len(paths) / 3 else ""
+    return {**labels, **{n: "/".join(p[:-1] if p[-1] == shared and len(p) > 1 else p) for n, p in paths.items()}}
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:

@@ -9,7 +9,6 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from shlex import quote
 
 import numpy as np
 
@@ -18,20 +17,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
-from measured.importing.draft import Draft
-from measured.importing.guess import (
-    AXES,
-    CODES_ALONE,
-    ELSE,
-    LOUD,
-    NUMBERED,
-    OF_INSTRUMENT,
-    THAT_CAN_BE,
-    Array,
-    Guess,
-    in_memory,
-    is_whole,
-)
+from measured.importing.guess import AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -159,60 +145,6 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts)
 
 
-def unplaced(drafts: Sequence[Draft]) -> list[str]:
-    """What matters and was left out: a temperature of the winding, the only heat, a clock; of the first such test."""
-    out: dict[str, str] = {}
-    for draft in drafts:
-        columns = [(r.source, g) for r in draft.records for g in r.guesses]
-        left = [(s, g) for s, g in columns if not g.used and s.is_filled(g.column) and g.doubt not in ALONE]
-        hot_left = [(s, g) for s, g in left if g.quantity in ("", "temperature")]
-        hot_left = [(s, g) for s, g in hot_left if quantities_of(s.labels[g.column]) in ([], ["temperature"])]
-        wound = [g.column for s, g in hot_left if Role.WINDING in roles_of(s.labels[g.column])[:1]]
-        ohms = [g.column for _, g in left if g.quantity == "resistance"]
-        if not any(Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place):
-            if wound:
-                how = f"'{wound[0]}' looks like winding; --place {quote(f'{wound[0]}=PLACE')}"
-                out.setdefault("winding", f"the winding was not placed: {how}")
-            elif ohms:
-                how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
-                out.setdefault("winding", f"the winding was not placed: {how}")
-        for _, g in hot_left:
-            if any(doubt in g.doubt for doubt in LOST):
-                key = g.doubt if g.doubt == OF_INSTRUMENT else g.column
-                out.setdefault(key, f"'{g.column}' is left out: {g.doubt}")
-        if others := [g for _, g in hot_left if g.doubt.endswith("gives coolant already")]:
-            out.setdefault("outlet", f"'{others[0].column}' stays in the file as a check, and feeds nothing")
-        rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
-        if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
-            how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
-            out.setdefault("ambient", f"the room was not placed: {how}")
-        for doubt in LOUD:
-            if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
-                out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
-        if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
-            many = f"'{plain[0]}'" if len(plain) == 1 else f"'{plain[0]}' to '{plain[-1]}'"
-            how = f"{'is' if len(plain) == 1 else 'are'} placed by number only; --place {quote(f'{plain[0]}=PLACE')}"
-            out.setdefault(NUMBERED, f"{many} {how}")
-        odd = [g for _, g in columns if g.place and ELSE in g.doubt]
-        if odd and len(odd) == sum(bool(g.place) for _, g in columns):
-            out.setdefault("unit", f"'{odd[0].column}' {odd[0].doubt}")
-        hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
-        if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
-            out.setdefault("bearing", "no winding is measured, a bearing alone")
-        heats = [g for s, g in columns if g.feeds and g.quantity in (*HEATS, "torque", "voltage")]
-        warm = [g.column for s, g in left if set(quantities_of(s.labels[g.column])) & set(HEATS)]
-        if not heats and not draft.constants and warm:
-            out.setdefault("heat", f"the only heat was left out: '{warm[0]}'; --place {quote(f'{warm[0]}=INPUT')}")
-        elif not heats and not draft.constants:
-            out.setdefault("heat", "no column says what heats it")
-        doubts = [r.clock.doubt for r in draft.records if r.clock.doubt]
-        if doubts:
-            out.setdefault("clock", doubts[0])
-    return list(dict.fromkeys(out.values()))
-
-
-ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
-LOST = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 

@@ -20,13 +20,14 @@ from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
+from measured.importing.aloud import first_lines
 from measured.importing.case_files import folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
-from measured.importing.starter import FirstNetwork, of_machine, place_of, starter, unplaced
+from measured.importing.starter import FirstNetwork, of_machine, place_of, starter
 from measured.importing.target import Target, target_of
 from measured.recordings.invalid_readings import coded
 from thermoscope.commands.pairs import read_pairs
@@ -283,7 +284,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         "folder": str(folder),
         "invented_network": model.first is not None,
         "learnt_from": list(first.learnt) if model.first else [],
-        "warnings": unplaced(drafts),
+        "warnings": first_lines(drafts),
         "sample_s": settings.sample_s,
         "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],

@@ -1,0 +1,174 @@
+"""What the first lines say of a recording: all that was left out though it may matter, and all that is doubted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from shlex import quote
+
+import numpy as np
+
+from geom.arrays import Array
+from geom.description.roles import Role
+from measured.headers.words import quantities_of, roles_of
+from measured.importing.aligned import Recording
+from measured.importing.draft import ASSUMED_ROOM, Draft
+from measured.importing.guess import (
+    BY_READINGS,
+    CERTAIN,
+    CODES_ALONE,
+    ELSE,
+    NUMBERED,
+    OF_INSTRUMENT,
+    THAT_CAN_BE,
+    UNTOLD,
+    Guess,
+    in_memory,
+    is_whole,
+)
+from measured.importing.relations import COARSE, NOISE_K, misfit
+from measured.importing.source import Source
+from measured.importing.starter import HEATS, POWERS, rise
+
+Columns = Sequence[tuple[Recording, Guess]]
+NAMES = 4  # of columns, before the rest is counted
+LEAST_K = 1.0  # that a part has to warm by before what heats it can be told
+BETTER = 0.5  # of the misfit: another column explains the readings better
+EXPLAINS = 0.3  # of the rise: what is left beside a column that heats
+FEEDS = (*HEATS, "torque", "voltage")  # that may say what heats it
+SOON = ("", *FEEDS)  # quantities of columns left out that may
+NO_PART = "its name says no part of a machine"
+PLACED = (NO_PART, NUMBERED, BY_READINGS)
+ROOMS = ([Role.AMBIENT], [Role.COOLANT])
+
+
+def first_lines(drafts: Sequence[Draft]) -> list[str]:
+    """A sentence for each kind of doubt, of the first test that has it, the gravest first."""
+    out: dict[str, str] = {}
+    for draft in drafts:
+        columns = [(r, g) for r in draft.records for g in r.guesses]
+        left = [(r, g) for r, g in columns if not g.used and r.source.is_filled(g.column) and g.doubt not in CERTAIN]
+        for kind, words in (
+            *_winding(columns, left).items(),
+            *_heat(draft, columns, left).items(),
+            *_room(draft, left).items(),
+            *_lost(left).items(),
+            *_doubted(columns).items(),
+            *{f"clock of {r.name}": r.clock.doubt for r in draft.records if r.clock.doubt}.items(),
+        ):
+            out.setdefault(kind, words)
+    return list(dict.fromkeys(out.values()))
+
+
+def may_be_temperature(source: Source, g: Guess) -> bool:
+    """By its unit, or by a name without any."""
+    named = quantities_of(source.labels[g.column])
+    return g.quantity == "temperature" or (not g.quantity and bool(roles_of(source.labels[g.column])) and not named[1:])
+
+
+def _winding(columns: Columns, left: Columns) -> dict[str, str]:
+    hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
+    if any(Role.WINDING in roles or is_whole(g.column) for roles, g in hot):
+        return {}
+    lost = [g.column for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
+    lost = [g.column for r, g in left if g.column in lost and may_be_temperature(r.source, g)]
+    ohms = [g.column for _, g in left if g.quantity == "resistance"]
+    if lost:
+        words = f"'{lost[0]}' looks like winding; --place {quote(f'{lost[0]}=PLACE')}"
+    elif ohms:
+        words = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
+    elif all(not roles or roles[0] in (Role.AMBIENT, Role.COOLANT) for roles, _ in hot):
+        return {"winding": "no column is of a winding by its name"}
+    else:
+        return {"winding": "no winding is measured"}
+    return {"winding": f"the winding was not placed: {words}"}
+
+
+def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
+    """What heats is lacking, is a torque or a voltage alone, or explains the readings less well than another column."""
+    heats = [(r, g) for r, g in columns if g.feeds and g.quantity in FEEDS]
+    others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column)]
+    best, error = _best(draft, columns, others)
+    if draft.constants:
+        return {}
+    if not heats:
+        named = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
+        if named := named or ([best] if best and error < EXPLAINS else []):
+            return {"heat": f"the only heat was left out: '{named[0]}'; --place {quote(f'{named[0]}=INPUT')}"}
+        return {"heat": "no column says what heats it"}
+    column, ours = _best(draft, columns, heats)
+    if not any(g.quantity in HEATS for _, g in heats):
+        return {"heat": f"no current and no loss is recorded: '{heats[0][1].column}' alone tells of the heat"}
+    if best and error < BETTER * ours and error < EXPLAINS:
+        return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}=INPUT')}"}
+    return {}
+
+
+def _best(draft: Draft, columns: Columns, of: Columns) -> tuple[str, float]:
+    """The column that explains the hottest part best, and what it leaves of the rise; "" where none can be told."""
+    hot = [(r, g) for r, g in columns if g.place and roles_of(r.source.labels[g.column])[:1] not in ROOMS]
+    if not hot or not of:
+        return "", np.inf
+    record, hottest = max(hot, key=lambda one: rise(one[0].source, one[1]))
+    size = rise(record.source, hottest)
+    room = next((in_memory(r.source, g) for r, g in columns if g.place == "ambient" and r is record), None)
+    if size < LEAST_K:
+        return "", np.inf
+    above = in_memory(record.source, hottest) - (draft.boundaries.get("ambient", 0.0) if room is None else room)
+    left = {g.column: _unexplained(record, above, r, g) for r, g in of}
+    best = min(left, key=lambda c: left[c])
+    return best, max(left[best] - NOISE_K, 0.0) / size
+
+
+def _unexplained(record: Recording, above: Array, other: Recording, g: Guess) -> float:
+    """Misfit (K) of the response to a column."""
+    heat = other.source.numbers(g.column)
+    steps = np.diff(heat[np.isfinite(heat)])
+    if other is not record:
+        good = np.isfinite(heat) & np.isfinite(other.clock.seconds)
+        if good.sum() < COARSE:
+            return np.inf
+        heat = np.interp(record.clock.seconds, other.clock.seconds[good] + other.shift_s, heat[good])
+    if steps.size < COARSE or not (steps < 0).any():  # a counter follows everything that warms
+        return np.inf
+    return min(misfit(record.clock.seconds, above, heat, p) for p in {*POWERS.values()})
+
+
+def _room(draft: Draft, left: Columns) -> dict[str, str]:
+    """A room that was assumed, though a column may be it."""
+    notes = [note for note in draft.notes if ASSUMED_ROOM in note]
+    rooms = [g.column for r, g in left if g.quantity and roles_of(r.source.labels[g.column])[:1] == [Role.AMBIENT]]
+    if notes and rooms:
+        how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
+        return {"ambient": f"the room was not placed: {how}"}
+    return {"ambient": notes[0]} if notes else {}
+
+
+def _lost(left: Columns) -> dict[str, str]:
+    """Columns that may be temperatures, and those of which nothing is known."""
+    out: dict[str, list[str]] = {}
+    for r, g in left:
+        moves = r.source.is_numeric(g.column) and float(np.nanstd(r.source.numbers(g.column))) > 0.0
+        broken = any(words in g.doubt for words in (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT))
+        if broken or (g.quantity and may_be_temperature(r.source, g)) or (moves and g.doubt == UNTOLD):
+            out.setdefault(g.doubt, []).append(g.column)
+    checks = [doubt for doubt in out if doubt.endswith("gives coolant already")]
+    lost = {doubt: f"{_names(of)} left out: {doubt}" for doubt, of in out.items() if doubt not in checks}
+    outlets = {doubt: f"{_names(out[doubt])} kept as a check, and feeding nothing" for doubt in checks}
+    return outlets | lost
+
+
+def _doubted(columns: Columns) -> dict[str, str]:
+    """Columns that are used with a doubt."""
+    out: dict[str, list[str]] = {}
+    for r, g in columns:
+        label = r.source.labels[g.column]
+        if g.used and (g.doubt or (g.place and not roles_of(f"{label} {g.place}") and not is_whole(label))):
+            out.setdefault(ELSE if ELSE in g.doubt else g.doubt or NO_PART, []).append(g.column)
+    where = {doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if doubt in PLACED else "" for doubt, of in out.items()}
+    return {doubt: f"{_names(of)} used in doubt: {doubt}{where[doubt]}" for doubt, of in out.items()}
+
+
+def _names(columns: Sequence[str]) -> str:
+    """ "'a' is", "'a', 'b' and 3 more are"."""
+    more = f" and {len(columns) - NAMES} more" if len(columns) > NAMES else ""
+    return f"{', '.join(repr(c) for c in columns[:NAMES])}{more} {'is' if len(columns) == 1 else 'are'}"
