@@ -9,7 +9,7 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.roles import Role
-from measured.headers.words import quantities_of, roles_of
+from measured.headers.words import INLET, is_spoken, quantities_of, roles_of
 from measured.importing.aligned import Recording
 from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
@@ -17,6 +17,7 @@ from measured.importing.guess import (
     CERTAIN,
     CODES_ALONE,
     ELSE,
+    NO_UNIT,
     NUMBERED,
     OF_INSTRUMENT,
     THAT_CAN_BE,
@@ -27,16 +28,18 @@ from measured.importing.guess import (
 )
 from measured.importing.relations import COARSE, NOISE_K, misfit
 from measured.importing.source import Source
-from measured.importing.starter import HEATS, POWERS, rise
+from measured.importing.starter import HEATS, POWERS, STILL, rise
 
 Columns = Sequence[tuple[Recording, Guess]]
-NAMES = 4  # of columns, before the rest is counted
+NAMES = 8  # of columns, before the rest is counted
 LEAST_K = 1.0  # that a part has to warm by before what heats it can be told
 BETTER = 0.5  # of the misfit: another column explains the readings better
 EXPLAINS = 0.3  # of the rise: what is left beside a column that heats
 FEEDS = (*HEATS, "torque", "voltage")  # that may say what heats it
 SOON = ("", *FEEDS)  # quantities of columns left out that may
 NO_PART = "its name says no part of a machine"
+NO_UNIT_TAKEN = "is assumed"
+OUTLET = "it warms with the machine: an outlet?"
 PLACED = (NO_PART, NUMBERED, BY_READINGS)
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
 
@@ -46,7 +49,11 @@ def first_lines(drafts: Sequence[Draft]) -> list[str]:
     out: dict[str, str] = {}
     for draft in drafts:
         columns = [(r, g) for r in draft.records for g in r.guesses]
-        left = [(r, g) for r, g in columns if not g.used and r.source.is_filled(g.column) and g.doubt not in CERTAIN]
+        left = [
+            (r, g)
+            for r, g in columns
+            if not g.used and r.source.is_filled(g.column) and not g.doubt.startswith(CERTAIN)
+        ]
         for kind, words in (
             *_winding(columns, left).items(),
             *_heat(draft, columns, left).items(),
@@ -160,12 +167,18 @@ def _lost(left: Columns) -> dict[str, str]:
 def _doubted(columns: Columns) -> dict[str, str]:
     """Columns that are used with a doubt."""
     out: dict[str, list[str]] = {}
+    most = max((rise(r.source, g) for r, g in columns if g.place), default=0.0)
     for r, g in columns:
         label = r.source.labels[g.column]
-        if g.used and (g.doubt or (g.place and not roles_of(f"{label} {g.place}") and not is_whole(label))):
-            out.setdefault(ELSE if ELSE in g.doubt else g.doubt or NO_PART, []).append(g.column)
+        unknown = g.place and not roles_of(f"{label} {g.place}") and not is_whole(label)
+        warms = g.place == "coolant" and rise(r.source, g) > STILL * most and not is_spoken(label, INLET)
+        doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else OUTLET if warms else "")
+        if g.used and doubt:
+            out.setdefault(doubt, []).append(g.column)
+    units = [f"'{c}' is taken in {doubt.split()[2]}" for doubt in out if NO_UNIT_TAKEN in doubt for c in out[doubt]]
     where = {doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if doubt in PLACED else "" for doubt, of in out.items()}
-    return {doubt: f"{_names(of)} used in doubt: {doubt}{where[doubt]}" for doubt, of in out.items()}
+    words = {d: f"{_names(of)} used in doubt: {d}{where[d]}" for d, of in out.items() if NO_UNIT_TAKEN not in d}
+    return {**words, NO_UNIT: f"{NO_UNIT}: {', '.join(units)}"} if units else words
 
 
 def _names(columns: Sequence[str]) -> str:

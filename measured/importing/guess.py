@@ -40,7 +40,7 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
-from measured.importing.relations import SAME, START_K, is_like_temperature, made_of_others
+from measured.importing.relations import SAME, START_K, is_like_temperature, is_product, made_of_others
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -86,8 +86,18 @@ SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
 RELATIVE = "relative to a nominal"
 BY_READINGS = "a temperature, by its readings alone"
+FACTORS = ("current", "voltage", "torque", "speed")
+PASSES = "a product of other columns: it passes through"
+NO_UNIT = "no unit"
+MADE = "made of other columns"
 BY_HAND = "left out by hand"
-CERTAIN = ("a set point, not a reading", "a number that names a row", BY_HAND, "--set gives it")  # nothing is lost
+CERTAIN = (
+    "a set point, not a reading",
+    "a number that names a row",
+    BY_HAND,
+    MADE,
+    "--set gives it",
+)  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
@@ -126,6 +136,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
+    every = _products(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target))
 
 
@@ -161,8 +172,23 @@ def _made(source: Source, every: list[Guess]) -> list[Guess]:
         why = made.get(g.column, "")
         twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
         apart = twin and roles.get(g.column) and roles[g.column] != roles[twin]
-        out.append(replace(g, doubt=why) if apart else g.without(why) if why else g)
+        out.append(replace(g, doubt=why) if apart else g.without(f"{MADE}: {why}") if why else g)
     return out
+
+
+def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """Without powers that are products of what was recorded, where something turns: they pass through it."""
+    factors = {g.column: source.numbers(g.column) for g in every if g.feeds and g.quantity in FACTORS}
+    if not any(g.feeds and g.quantity == "speed" for g in every):
+        return every
+    return [
+        g.without(PASSES)
+        if g.quantity == "power"
+        and g.feeds not in target.inputs
+        and is_product(source.numbers(g.column), [*factors.values()])
+        else g
+        for g in every
+    ]
 
 
 def _is_plain(source: Source, g: Guess) -> bool:
@@ -185,7 +211,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
-        g.without("made of the reading beside it")
+        g.without(f"{MADE}: of the reading beside it")
         if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
         else g
         for g in every
@@ -368,8 +394,10 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
         return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not worded else ""
+    if label in target.places_by_header:  # told by its readings, or by hand
+        return "", "", ""
     place, _ = target.place_of(label)
-    alike = label in target.places_by_header or {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
+    alike = {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
     return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
 
 
@@ -411,7 +439,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         small = float(np.nanmax(np.abs(values))) <= 1.0
         return ("1" if small else "%"), "no unit: by its values"
     first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
-    return first_unit, f"no unit: {first_unit} is assumed"
+    return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:

@@ -77,6 +77,29 @@ def _is_copy(near: partial[bool], other: Array, name: str, any_unit: bool) -> bo
     return near(other, [name]) or (any_unit and any(near(a * other + b, [name], a) for a, b in SCALES))
 
 
+def is_equal(y: Array, other: Array) -> bool:
+    """The same numbers but for their last digits, over many of them."""
+    good = np.isfinite(y) & np.isfinite(other)
+    if good.sum() < COARSE:
+        return False
+    span, digit = float(np.ptp(y[good])), max(resolution(y[good]), resolution(other[good]))
+    return span > DIGITS * digit and float(np.abs(y - other)[good].max()) <= digit + FINE * span
+
+
+def is_product(y: Array, factors: Sequence[Array]) -> bool:
+    """Is it two of several columns times a constant?"""
+    for a, b in itertools.combinations(factors, 2):
+        good = np.isfinite(y) & np.isfinite(a * b)
+        size = float(np.sum((a * b)[good] ** 2))
+        if good.sum() < COARSE or not size > 0.0 or min(np.ptp(a[good]), np.ptp(b[good])) == 0.0:
+            continue
+        factor = float(np.sum((y * a * b)[good]) / size)
+        slack = resolution(y[good]) + factor * (np.abs(a) * resolution(b[good]) + np.abs(b) * resolution(a[good]))
+        if np.all((np.abs(y - factor * a * b) <= slack + FINE * float(np.ptp(y[good])))[good]):
+            return True
+    return False
+
+
 def _within(
     y: Array, own: float, digit: Mapping[str, float], other: Array, names: Sequence[str], factor: float = 1.0
 ) -> bool:

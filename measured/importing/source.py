@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
 import re
 import zipfile
 from collections import Counter
@@ -256,7 +255,7 @@ def _apart(labels: Mapping[str, str]) -> dict[str, str]:
     paths = {n: re.split("/+", label) for n, label in labels.items() if "/" in label}
     if len(paths) < LEAST_PATHS:
         return dict(labels)
-    same = len(os.path.commonprefix([*paths.values()]))
+    same = sum(1 for _ in itertools.takewhile(lambda level: len({*level}) == 1, zip(*paths.values(), strict=False)))
     last, count = Counter(path[-1] for path in paths.values()).most_common(1)[0]
     paths = {n: path[min(same, len(path) - 1) :] for n, path in paths.items()}
     shared = last if count > len(paths) / 3 else ""

@@ -198,7 +198,7 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     if quantity != "power":
         return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
     kinds = {g.quantity for _, g in columns if g.feeds}
-    lost = [(s, g) for s, g in candidates if LOSS & set(tokens(g.column))]
+    lost = [(s, g) for s, g in candidates if LOSS & {*tokens(s.labels[g.column])}]
     candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)
     return [(s, g) for s, g in candidates if not _passes(in_memory(s, g), "current" in kinds)]
 

@@ -32,7 +32,7 @@ from measured.importing.target import Target, target_of
 from measured.recordings.invalid_readings import coded
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
-from thermoscope.console.summary import Summary
+from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.parts import message as missing_extra
 
@@ -262,7 +262,8 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
 
     with folder_whole(folder) as partial:
         tell("writing the case")
-        write_case(partial, folder.name, model.put, drafts)
+        warnings = first_lines(drafts)
+        write_case(partial, folder.name, model.put, drafts, " ".join(sentences(warnings)))
         settings = read_settings(partial)
         with _as_recorded(partial, drafts):
             patients = [patient_of(entry) for entry in settings.tests]
@@ -284,7 +285,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         "folder": str(folder),
         "invented_network": model.first is not None,
         "learnt_from": list(first.learnt) if model.first else [],
-        "warnings": first_lines(drafts),
+        "warnings": warnings,
         "sample_s": settings.sample_s,
         "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
@@ -368,7 +369,7 @@ def new_case_summary(document: Mapping[str, Any]) -> Summary:
         f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
         "used. All of this is guessed: change it in tests/*.toml."
     )
-    sentence = " ".join([*(f"{w[0].upper()}{w[1:]}." for w in document["warnings"]), sentence])
+    sentence = " ".join([*sentences(document["warnings"]), sentence])
     table = Table.of(
         "", columns, "column | *goes to=place | *unit | quantity | *doubt", place=lambda c: _goes(c) or "left out"
     )
