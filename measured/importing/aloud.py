@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from shlex import quote
 
@@ -20,6 +21,7 @@ from measured.importing.guess import (
     NO_UNIT,
     NUMBERED,
     OF_INSTRUMENT,
+    OF_SENSOR,
     THAT_CAN_BE,
     UNTOLD,
     Guess,
@@ -38,9 +40,11 @@ EXPLAINS = 0.3  # of the rise: what is left beside a column that heats
 FEEDS = (*HEATS, "torque", "voltage")  # that may say what heats it
 SOON = ("", *FEEDS)  # quantities of columns left out that may
 NO_PART = "its name says no part of a machine"
-NO_UNIT_TAKEN = "is assumed"
+UNIT_TAKEN = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 OUTLET = "it warms with the machine: an outlet?"
 PLACED = (NO_PART, NUMBERED, BY_READINGS)
+STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
+BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
 
 
@@ -55,6 +59,7 @@ def first_lines(drafts: Sequence[Draft]) -> list[str]:
             if not g.used and r.source.is_filled(g.column) and not g.doubt.startswith(CERTAIN)
         ]
         for kind, words in (
+            *((doubt, words) for doubt, words in _lost(left).items() if doubt.endswith(BROKEN)),
             *_winding(columns, left).items(),
             *_heat(draft, columns, left).items(),
             *_room(draft, left).items(),
@@ -63,6 +68,9 @@ def first_lines(drafts: Sequence[Draft]) -> list[str]:
             *{f"clock of {r.name}": r.clock.doubt for r in draft.records if r.clock.doubt}.items(),
         ):
             out.setdefault(kind, words)
+    alike = sum(any(ASSUMED_ROOM in note for note in draft.notes) for draft in drafts)
+    if alike > 1 and "ambient" in out:
+        out["ambient"] += f"; {alike} tests alike"
     return list(dict.fromkeys(out.values()))
 
 
@@ -93,7 +101,7 @@ def _winding(columns: Columns, left: Columns) -> dict[str, str]:
 def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     """What heats is lacking, is a torque or a voltage alone, or explains the readings less well than another column."""
     heats = [(r, g) for r, g in columns if g.feeds and g.quantity in FEEDS]
-    others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column)]
+    others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column) and _may_heat(g)]
     best, error = _best(draft, columns, others)
     if draft.constants:
         return {}
@@ -108,6 +116,11 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     if best and error < BETTER * ours and error < EXPLAINS:
         return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}=INPUT')}"}
     return {}
+
+
+def _may_heat(g: Guess) -> bool:
+    """Was it left out for a reason that leaves it open whether it heats?"""
+    return bool(g.quantity) or g.doubt == UNTOLD or OF_SENSOR in g.doubt
 
 
 def _best(draft: Draft, columns: Columns, of: Columns) -> tuple[str, float]:
@@ -155,13 +168,17 @@ def _lost(left: Columns) -> dict[str, str]:
     out: dict[str, list[str]] = {}
     for r, g in left:
         moves = r.source.is_numeric(g.column) and float(np.nanstd(r.source.numbers(g.column))) > 0.0
-        broken = any(words in g.doubt for words in (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT))
-        if broken or (g.quantity and may_be_temperature(r.source, g)) or (moves and g.doubt == UNTOLD):
+        if (
+            g.doubt.endswith(BROKEN)
+            or (g.quantity and may_be_temperature(r.source, g))
+            or (moves and g.doubt == UNTOLD)
+        ):
             out.setdefault(g.doubt, []).append(g.column)
     checks = [doubt for doubt in out if doubt.endswith("gives coolant already")]
-    lost = {doubt: f"{_names(of)} left out: {doubt}" for doubt, of in out.items() if doubt not in checks}
-    outlets = {doubt: f"{_names(out[doubt])} kept as a check, and feeding nothing" for doubt in checks}
-    return outlets | lost
+    lost = {
+        d: f"{_names(of)} {'is' if len(of) == 1 else 'are'} left out: {d}" for d, of in out.items() if d not in checks
+    }
+    return lost | {d: f"{_names(out[d])} {STAY[len(out[d]) > 1]}" for d in checks}
 
 
 def _doubted(columns: Columns) -> dict[str, str]:
@@ -175,13 +192,14 @@ def _doubted(columns: Columns) -> dict[str, str]:
         doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else OUTLET if warms else "")
         if g.used and doubt:
             out.setdefault(doubt, []).append(g.column)
-    units = [f"'{c}' is taken in {doubt.split()[2]}" for doubt in out if NO_UNIT_TAKEN in doubt for c in out[doubt]]
+    taken = {doubt: match[1] for doubt in out if (match := UNIT_TAKEN.search(doubt))}
+    units = [f"'{c}' is taken in {unit}" for doubt, unit in taken.items() for c in out[doubt]]
     where = {doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if doubt in PLACED else "" for doubt, of in out.items()}
-    words = {d: f"{_names(of)} used in doubt: {d}{where[d]}" for d, of in out.items() if NO_UNIT_TAKEN not in d}
+    words = {d: f"{_names(of)}: {d}{where[d]}" for d, of in out.items() if d not in taken}
     return {**words, NO_UNIT: f"{NO_UNIT}: {', '.join(units)}"} if units else words
 
 
 def _names(columns: Sequence[str]) -> str:
-    """ "'a' is", "'a', 'b' and 3 more are"."""
+    """ "'a', 'b' and 3 more"."""
     more = f" and {len(columns) - NAMES} more" if len(columns) > NAMES else ""
-    return f"{', '.join(repr(c) for c in columns[:NAMES])}{more} {'is' if len(columns) == 1 else 'are'}"
+    return ", ".join(f"'{c}'" for c in columns[:NAMES]) + more

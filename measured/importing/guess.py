@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -90,6 +90,7 @@ FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
 NO_UNIT = "no unit"
 MADE = "made of other columns"
+OF_SENSOR = "of a sensor"
 BY_HAND = "left out by hand"
 CERTAIN = (
     "a set point, not a reading",
@@ -137,7 +138,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
     every = _products(source, every, target)
-    return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target))
+    return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
 
 def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Guess]:
@@ -161,17 +162,18 @@ def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) 
 
 
 def _made(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without what is a function of temperatures; where names of a copy are of two parts this is a doubt."""
+    """Without what is a function of temperatures; a copy under a name of its own is doubted."""
     hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
     roles = {c: roles_of(source.labels[c])[:1] for c in hot}
     order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
     others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
-    made = made_of_others({c: in_memory(source, hot[c]) for c in order}, others)
+    free = {*others} | {c for c in order if not source.units[c]}
+    made = made_of_others({c: in_memory(source, hot[c]) for c in order}, others, free)
     out = []
     for g in every:
         why = made.get(g.column, "")
         twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
-        apart = twin and roles.get(g.column) and roles[g.column] != roles[twin]
+        apart = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
         out.append(replace(g, doubt=why) if apart else g.without(f"{MADE}: {why}") if why else g)
     return out
 
@@ -193,7 +195,7 @@ def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]
 
 def _is_plain(source: Source, g: Guess) -> bool:
     """May its numbers be those of other columns, whatever it is called?"""
-    return source.is_numeric(g.column) and (g.used or not g.doubt or g.doubt == UNTOLD)
+    return source.is_numeric(g.column) and g.why != SUREST and (g.used or g.doubt in ("", UNTOLD))
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
@@ -279,10 +281,9 @@ def _starting_apart(source: Source, every: list[Guess]) -> list[Guess]:
     }
     usual = float(np.median([*starts.values()])) if starts else 0.0
     odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
-    if (
-        len(starts) - len(odd) < max(3, 2 * len(odd))
-        or np.ptp([s for c, s in starts.items() if c not in odd]) > ALIKE_K
-    ):
+    odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT]}
+    rest = [abs(start - usual) for c, start in starts.items() if c not in odd]
+    if len(rest) < max(len(odd) + 1, 3) or float(np.mean(rest)) > ALIKE_K / 2:
         return every
     return [
         replace(
@@ -308,7 +309,7 @@ def _left_out(source: Source, column: str) -> str:
     unit_text, label = source.units[column], source.labels[column]
     unit, quantities = unit_of(unit_text), quantities_of(label)
     if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
-        return f"in {unit}: of a sensor, no reading of its own"
+        return f"in {unit}: {OF_SENSOR}, no reading of its own"
     if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
@@ -468,13 +469,13 @@ def _fed(base: Guess, label: str, target: Target) -> Guess:
     return replace(base, feeds=name or QUANTITIES[base.quantity].feeds)
 
 
-def single(guesses: list[Guess], target: Target) -> list[Guess]:
+def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
 
     def order(g: Guess) -> tuple[bool, ...]:
-        words = set(tokens(g.column))
+        words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
@@ -491,7 +492,9 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif g.feeds and (g.feeds not in target.inputs or _of_part(g, owner[key])) and not is_setpoint(g.column):
+        elif (
+            g.feeds and (g.feeds not in target.inputs or _of_part(g, labels[owner[key]])) and not is_setpoint(g.column)
+        ):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")

@@ -7,7 +7,7 @@ span of many digits, is therefore no reading of its own.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -30,21 +30,29 @@ SCALES = ((1.8, 32.0), (1.0, 273.15), (10.0, 0.0), (0.1, 0.0))  # degF, K and te
 START_K = 8.0  # between columns of one machine at rest
 LIMITS = (-40.0, 250.0)  # degC of what has no unit
 STEP = 0.2  # of its span: a temperature does not jump by more from row to row
+DECIMALS = 5  # that loggers write
 COARSE = 12  # different values: fewer are a state or a step
 NOISE_K = 0.2  # of sensors: no misfit below it tells columns apart
 
 
 def resolution(values: Array) -> float:
-    """The last digit that a column shows."""
-    steps = np.diff(np.unique(values[np.isfinite(values)]))
-    steps = steps[steps > 1e-9 * max(float(np.ptp(steps)) if steps.size else 0.0, 1e-9)]
+    """The last digit that a column shows; of one in another unit the least step between readings."""
+    values = values[np.isfinite(values)]
+    for digits in range(DECIMALS):
+        scaled = values * 10.0**digits
+        if np.all(np.abs(scaled - np.round(scaled)) < 1e-6 * np.maximum(np.abs(scaled), 1.0)):
+            return 10.0**-digits
+    steps = np.diff(np.unique(values))
+    steps = steps[steps > 1e-9 * max(float(np.ptp(values)) if values.size else 0.0, 1e-9)]
     return float(steps.min()) if steps.size else 0.0
 
 
-def made_of_others(hot: Mapping[str, Array], others: Mapping[str, Array]) -> dict[str, str]:
+def made_of_others(hot: Mapping[str, Array], others: Mapping[str, Array], free: Container[str]) -> dict[str, str]:
     """Columns that are functions of temperatures, with the function.
 
     hot : temperatures in degC, those with names of parts first;  others : numbers of any kind, at the same rows
+
+    free : columns that may be in any unit
     """
     columns = {c: v for c, v in {**hot, **others}.items() if np.isfinite(v).sum() > COARSE}
     good = np.all([np.isfinite(v) for v in columns.values()], axis=0) if columns else np.zeros(1, bool)
@@ -60,7 +68,7 @@ def made_of_others(hot: Mapping[str, Array], others: Mapping[str, Array]) -> dic
         sources = {n: every[n] for n in wide if n in hot and n != c and n not in out}
         before = [n for n in sources if c in others or wide.index(n) < wide.index(c)]
         near = partial(_within, every[c], own, digit)
-        if copy := next((n for n in before if _is_copy(near, every[n], n, c in others)), ""):
+        if copy := next((n for n in before if _is_copy(near, every[n], n, c in free)), ""):
             out[c] = f"{SAME} '{copy}'"
         elif sources:
             ways = (_extreme(every[c], sources, digit[c], digit), _mean(every[c], sources, near))

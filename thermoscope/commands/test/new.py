@@ -24,7 +24,7 @@ from measured.importing.aloud import first_lines
 from measured.importing.case_files import folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
-from measured.importing.draft import Draft, test_name
+from measured.importing.draft import ASSUMED_ROOM, Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, of_machine, place_of, starter
@@ -421,7 +421,9 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
         remarks.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
     files = [Path(f["file"]).name for t in tests for f in t["files"]]
     alike: dict[str, list[str]] = {}
-    for note in dict.fromkeys(n for n in remarks if not any(w in n for w in document["warnings"])):
+    for note in dict.fromkeys(
+        n for n in remarks if ASSUMED_ROOM not in n and not any(w in n for w in document["warnings"])
+    ):
         of = next((file for file in files if note.startswith(f"{file}: ")), "")
         alike.setdefault(re.sub(r"[\d.]+", "", note.removeprefix(f"{of}: ")), []).append(note)
     more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}
