@@ -30,7 +30,7 @@ from measured.importing.guess import (
 )
 from measured.importing.relations import COARSE, NOISE_K, misfit
 from measured.importing.source import Source
-from measured.importing.starter import HEATS, POWERS, STILL, rise
+from measured.importing.starter import HEATS, MAIN, POWERS, STILL, rise
 
 Columns = Sequence[tuple[Recording, Guess]]
 NAMES = 8  # of columns, before the rest is counted
@@ -102,7 +102,8 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     """What heats is lacking, is a torque or a voltage alone, or explains the readings less well than another column."""
     heats = [(r, g) for r, g in columns if g.feeds and g.quantity in FEEDS]
     others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column) and _may_heat(g)]
-    best, error = _best(draft, columns, others)
+    main = [(r, g) for r, g in heats if g.feeds in MAIN.values()] or heats
+    best, error = _best(draft, columns, [*others, *(one for one in heats if one not in main)])
     if draft.constants:
         return {}
     if not heats:
@@ -110,7 +111,7 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
         if named := named or ([best] if best and error < EXPLAINS else []):
             return {"heat": f"the only heat was left out: '{named[0]}'; --place {quote(f'{named[0]}=INPUT')}"}
         return {"heat": "no column says what heats it"}
-    column, ours = _best(draft, columns, heats)
+    column, ours = _best(draft, columns, main)
     if not any(g.quantity in HEATS for _, g in heats):
         return {"heat": f"no current and no loss is recorded: '{heats[0][1].column}' alone tells of the heat"}
     if best and error < BETTER * ours and error < EXPLAINS:
