@@ -10,7 +10,7 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.roles import Role
-from measured.headers.words import INLET, is_spoken, quantities_of, roles_of
+from measured.headers.words import INLET, is_setpoint, is_spoken, quantities_of, roles_of
 from measured.importing.aligned import Recording
 from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
@@ -91,7 +91,7 @@ def _winding(columns: Columns, left: Columns) -> dict[str, str]:
         words = f"'{lost[0]}' looks like winding; --place {quote(f'{lost[0]}=PLACE')}"
     elif ohms:
         words = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
-    elif all(not roles or roles[0] in (Role.AMBIENT, Role.COOLANT) for roles, _ in hot):
+    elif any(not roles for roles, _ in hot):
         return {"winding": "no column is of a winding by its name"}
     else:
         return {"winding": "no winding is measured"}
@@ -168,6 +168,8 @@ def _lost(left: Columns) -> dict[str, str]:
     """Columns that may be temperatures, and those of which nothing is known."""
     out: dict[str, list[str]] = {}
     for r, g in left:
+        if is_setpoint(r.source.labels[g.column]):
+            continue
         moves = r.source.is_numeric(g.column) and float(np.nanstd(r.source.numbers(g.column))) > 0.0
         if (
             g.doubt.endswith(BROKEN)

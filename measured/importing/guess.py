@@ -274,14 +274,15 @@ def guess(source: Source, column: str, target: Target) -> Guess:
 def _starting_apart(source: Source, every: list[Guess]) -> list[Guess]:
     """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
     starts = {
-        g.column: float(np.median(v[np.isfinite(v)][:FIRST_ROWS]))
+        g.column: float(v[np.isfinite(v)][0])
         for g in every
         if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)
         for v in [in_memory(source, g)]
+        if np.isfinite(v).any()
     }
     usual = float(np.median([*starts.values()])) if starts else 0.0
     odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
-    odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT]}
+    odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT] or is_spoken(source.labels[c], INLET)}
     rest = [abs(start - usual) for c, start in starts.items() if c not in odd]
     if len(rest) < max(len(odd) + 1, 3) or float(np.mean(rest)) > ALIKE_K / 2:
         return every

@@ -29,6 +29,8 @@ STIRS = {"speed", "vehicle_speed", "air_flow", "water_flow"}  # what a share of 
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
+MOST = (2.0, 98.0)  # per cent of the readings between which they are no outliers
+COLD_K = 3.0  # by which a room may be warmer than the parts at the start
 SPREAD = 1.0  # prior of everything here, in powers of e
 
 
@@ -117,10 +119,21 @@ def of_machine(columns: Columns) -> Columns:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
     if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
         return columns
-    source, room = min(parts, key=lambda one: float(np.nanmean(in_memory(*one))))
-    if roles_of(source.labels[room.column]) or rise(source, room) > STILL * max(rise(*one) for one in parts):
+    still = [one for one in parts if not roles_of(one[0].labels[one[1].column]) and _is_still(one, parts)]
+    if not still:
         return columns
+    _, room = min(still, key=lambda one: float(np.nanmean(in_memory(*one))))
     return [(s, replace(g, place="ambient") if g.column == room.column else g) for s, g in columns]
+
+
+def _is_still(one: tuple[Source, Guess], parts: Columns) -> bool:
+    """Does it hardly change, and is it as cold as the others were when they began?"""
+    values = in_memory(*one)
+    span = float(np.ptp(np.nanpercentile(values, MOST)))
+    starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
+    return (
+        span <= STILL * max(rise(*part) for part in parts) and float(np.nanmean(values)) <= np.median(starts) + COLD_K
+    )
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
