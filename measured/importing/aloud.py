@@ -18,6 +18,7 @@ from measured.importing.guess import (
     CERTAIN,
     CODES_ALONE,
     ELSE,
+    FASTEST,
     NO_UNIT,
     NUMBERED,
     OF_INSTRUMENT,
@@ -42,7 +43,7 @@ SOON = ("", *FEEDS)  # quantities of columns left out that may
 NO_PART = "its name says no part of a machine"
 UNIT_TAKEN = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 OUTLET = "it warms with the machine: an outlet?"
-PLACED = (NO_PART, NUMBERED, BY_READINGS)
+PLACED = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
@@ -82,7 +83,7 @@ def may_be_temperature(source: Source, g: Guess) -> bool:
 
 def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
-    if any(Role.WINDING in roles or is_whole(g.column) for roles, g in hot):
+    if any(Role.WINDING in roles or is_whole(g.column) or FASTEST in g.doubt for roles, g in hot):
         return {}
     lost = [g.column for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
     lost = [g.column for r, g in left if g.column in lost and may_be_temperature(r.source, g)]
@@ -114,7 +115,8 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     column, ours = _best(draft, columns, main)
     if not any(g.quantity in HEATS for _, g in heats):
         return {"heat": f"no current and no loss is recorded: '{heats[0][1].column}' alone tells of the heat"}
-    if best and error < BETTER * ours and error < EXPLAINS:
+    lost = any(g.quantity == "power" for _, g in main)  # as was recorded
+    if best and not lost and error < BETTER * ours and error < EXPLAINS:
         return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}=INPUT')}"}
     return {}
 
@@ -197,7 +199,10 @@ def _doubted(columns: Columns) -> dict[str, str]:
             out.setdefault(doubt, []).append(g.column)
     taken = {doubt: match[1] for doubt in out if (match := UNIT_TAKEN.search(doubt))}
     units = [f"'{c}' is taken in {unit}" for doubt, unit in taken.items() for c in out[doubt]]
-    where = {doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if doubt in PLACED else "" for doubt, of in out.items()}
+    where = {
+        doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if any(words in doubt for words in PLACED) else ""
+        for doubt, of in out.items()
+    }
     words = {d: f"{_names(of)}: {d}{where[d]}" for d, of in out.items() if d not in taken}
     return {**words, NO_UNIT: f"{NO_UNIT}: {', '.join(units)}"} if units else words
 

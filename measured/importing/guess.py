@@ -40,7 +40,7 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
-from measured.importing.relations import SAME, START_K, is_like_temperature, is_product, made_of_others
+from measured.importing.relations import SAME, START_K, is_like_temperature, is_product, made_of_others, quickness
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -91,6 +91,9 @@ PASSES = "a product of other columns: it passes through"
 NO_UNIT = "no unit"
 MADE = "made of other columns"
 OF_SENSOR = "of a sensor"
+FASTEST = "follows the heat fastest: taken as the winding"
+QUICK = 0.6  # of the fastest: windings of the same machine
+PERCENT = 130.0  # of a load, at most
 BY_HAND = "left out by hand"
 CERTAIN = (
     "a set point, not a reading",
@@ -138,6 +141,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
     every = _products(source, every, target)
+    every = _quickest(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
 
@@ -176,6 +180,28 @@ def _made(source: Source, every: list[Guess]) -> list[Guess]:
         apart = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
         out.append(replace(g, doubt=why) if apart else g.without(f"{MADE}: {why}") if why else g)
     return out
+
+
+def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """With a doubt at the columns that follow the heat fastest, where none is of a winding by its name."""
+    hot = {
+        g.column: roles_of(source.labels[g.column]) for g in every if g.quantity == "temperature" and g.why != "values"
+    }
+    heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
+    if not heats or any(Role.WINDING in roles or is_whole(source.labels[c]) for c, roles in hot.items()):
+        return every
+    scores = {
+        g.column: quickness(in_memory(source, g), heats[0])
+        for g in every
+        if g.column in hot and not g.doubt.startswith(CERTAIN)
+    }
+    most = max(scores.values(), default=0.0)
+    quick = [c for c, score in scores.items() if score > QUICK * most > 0.0]
+    if any(hot[c] for c in quick):
+        return every
+    first = not target.places  # of a network that is to be made from the columns
+    doubts = {g.column: FASTEST if first or not g.doubt else f"{g.doubt}; {FASTEST}" for g in every}
+    return [replace(g, doubt=doubts[g.column]) if g.column in quick and (first or g.place) else g for g in every]
 
 
 def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]:
@@ -438,7 +464,10 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
     if unit:
         return unit, ""
     if quantity == "share":
-        small = float(np.nanmax(np.abs(values))) <= 1.0
+        most = float(np.nanmax(np.abs(values)))
+        small = most <= 1.0
+        if most > PERCENT:
+            return "%", f"goes to {most:g}, so in no percent: only its changes count"
         return ("1" if small else "%"), "no unit: by its values"
     first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"{NO_UNIT}: {first_unit} is assumed"

@@ -32,6 +32,7 @@ LIMITS = (-40.0, 250.0)  # degC of what has no unit
 STEP = 0.2  # of its span: a temperature does not jump by more from row to row
 DECIMALS = 5  # that loggers write
 COARSE = 12  # different values: fewer are a state or a step
+BLOCKS = 200  # of a record, over which readings are averaged
 NOISE_K = 0.2  # of sensors: no misfit below it tells columns apart
 
 
@@ -207,3 +208,20 @@ def misfit(seconds: Array, rise: Array, heat: Array, exponent: float) -> float:
     table = [lfilter([a], [1.0, a - 1.0], u / u.max()) for a in shares]
     table += [np.exp(np.log1p(-a) * np.arange(y.size)) for a in shares[LAGS // 2 :]]  # what it started with
     return float(nnls(np.array(table).T, y - min(float(y.min()), 0.0))[1] / np.sqrt(y.size))
+
+
+def quickness(values: Array, heat: Array) -> float:
+    """How fast a temperature begins to rise at the largest square of the heat, in K per block of rows.
+
+    By least squares on what it rises by, against the heat and what has risen so far.
+    """
+    good = np.isfinite(values) & np.isfinite(heat)
+    rows = max(1, int(good.sum()) // BLOCKS)
+    count = int(good.sum()) // rows
+    if count < COARSE:
+        return 0.0
+    y, u = (v[good][: rows * count].reshape(count, rows).mean(axis=1) for v in (values, heat**2))
+    if not float(np.ptp(u)) > 0.0:
+        return 0.0
+    table = np.column_stack([(u[1:] + u[:-1]) / 2.0 / u.max(), y[:-1], np.ones(count - 1)])
+    return float(np.linalg.lstsq(table, np.diff(y), rcond=None)[0][0])

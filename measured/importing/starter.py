@@ -16,8 +16,8 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
-from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
-from measured.importing.guess import AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
+from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
+from measured.importing.guess import AXES, FASTEST, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -57,6 +57,7 @@ class FirstNetwork:
 
     capacities : node -> (J/K, prior of its logarithm);  terms : links and losses;  watts : mean of all losses
     learnt : tests that its numbers were learnt from, none where they are orders of magnitude
+    wound : nodes of the winding by their readings
     """
 
     name: str
@@ -65,12 +66,14 @@ class FirstNetwork:
     terms: Sequence[FirstTerm]
     watts: float
     learnt: Sequence[str] = ()
+    wound: frozenset[str] = frozenset()
 
     def text(self) -> str:
         """As network.toml."""
         lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
         lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
         role_of = {node: next(iter(roles_of(node)), "") for node in self.capacities}
+        role_of |= dict.fromkeys(self.wound, Role.WINDING)
         whole = [node for node in role_of if is_whole(node)]
         if len(whole) == 1 and Role.WINDING not in role_of.values():  # "motor temperature" of drives
             role_of[whole[0]] = Role.WINDING
@@ -131,9 +134,8 @@ def _is_still(one: tuple[Source, Guess], parts: Columns) -> bool:
     values = in_memory(*one)
     span = float(np.ptp(np.nanpercentile(values, MOST)))
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
-    return (
-        span <= STILL * max(rise(*part) for part in parts) and float(np.nanmean(values)) <= np.median(starts) + COLD_K
-    )
+    cold = float(np.nanmean(values)) <= float(np.median(starts)) + COLD_K
+    return cold and span <= STILL * max(rise(*part) for part in parts)
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
@@ -154,8 +156,9 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     G = watts / max(*rises.values(), 1.0)
     inside = [FirstTerm(pair, 5 * G) for pair in itertools.pairwise(nodes)]
     outside = [FirstTerm((n, b), G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
+    wound = frozenset(place for _, g, place in hot if FASTEST in g.doubt)
     capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
-    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts)
+    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts, wound=wound)
 
 
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
@@ -205,14 +208,15 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     """Columns of a quantity that can be what heats, losses first.
 
     A power that is below zero passes through, as of a machine that brakes or a cell that is discharged; so does that of
-    a machine whose torque is recorded beside its current, unless it says that it is a loss.
+    a machine whose torque or power out is recorded beside its current, unless it says that it is a loss.
     """
     candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
         return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
     kinds = {g.quantity for _, g in columns if g.feeds}
     lost = [(s, g) for s, g in candidates if LOSS & {*tokens(s.labels[g.column])}]
-    candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)
+    comes_out = "torque" in kinds or any(COMES_OUT & {*tokens(s.labels[g.column])} for s, g in candidates)
+    candidates = lost or ([] if "current" in kinds and comes_out else candidates)
     return [(s, g) for s, g in candidates if not _passes(in_memory(s, g), "current" in kinds)]
 
 

@@ -10,6 +10,7 @@ from measured.importing.case_files import read_runs
 from measured.importing.draft import Draft
 from measured.importing.guess import guesses
 from measured.importing.relations import is_like_temperature, is_product, made_of_others, misfit
+from measured.importing.starter import heating
 from measured.importing.target import Target
 
 RNG = np.random.default_rng(7)
@@ -118,13 +119,29 @@ def test_what_is_warm_where_all_others_are_cold_is_doubted(tmp_path):
     assert g["Oil [°C]"].doubt == "starts at 38 degC, all others near 21: is it of this machine?"
 
 
+def test_of_columns_without_a_part_the_quickest_are_of_the_winding(tmp_path):
+    hot = {"Qa [°C]": W1, "Qb [°C]": FRAME, "Qc [°C]": W2, "T_room [°C]": ROOM, "I [A]": LOAD}
+    g = found(tmp_path, hot)
+    assert ["fastest" in g[c].doubt for c in hot] == [True, False, True, False, False]
+    g = found(tmp_path, {"T_winding [°C]": FRAME, **hot})
+    assert not any("fastest" in one.doubt for one in g.values())
+
+
+def test_powers_on_both_sides_of_a_machine_pass_through(tmp_path):
+    powers = {"P_in [W]": 40 * LOAD + 100, "P_out [W]": 30 * LOAD}
+    one = record(tmp_path, {"t [s]": T, "T_winding [°C]": W1, "I [A]": LOAD, **powers})
+    columns = [(one.source, g) for g in one.guesses]
+    assert heating(columns, "power") == []
+    assert [g.column for _, g in heating(columns, "current")] == ["I [A]"]
+
+
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
         ({"I_1 [A]": np.roll(LOAD, 400), "I_2 [A]": LOAD}, "'I_2 [A]' explains the readings better than"),
         ({"shunt [mV]": 5 * LOAD}, "the only heat was left out: 'shunt [mV]'"),
         ({"U [V]": 20 + LOAD}, "no current and no loss is recorded: 'U [V]' alone tells of the heat"),
-        ({"pwm": np.round(15 * LOAD)}, "'pwm': no unit: by its values"),
+        ({"pwm": np.round(20 * LOAD)}, "'pwm': goes to 180, so in no percent"),
         ({"I": LOAD}, "no unit: 'I' is taken in A"),
         (
             {"I [A]": LOAD, "Outlet water [°C]": sensor(900, 12)},
