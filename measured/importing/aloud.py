@@ -42,6 +42,7 @@ FEEDS = (*HEATS, "torque", "voltage")  # that may say what heats it
 SOON = ("", *FEEDS)  # quantities of columns left out that may
 NO_PART = "its name says no part of a machine"
 UNIT_TAKEN = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
+NO_INLET = "taken as the coolant that flows in, though its name says no inlet"
 OUTLET = "it warms with the machine: an outlet?"
 PLACED = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
@@ -193,8 +194,9 @@ def _doubted(columns: Columns) -> dict[str, str]:
     for r, g in columns:
         label = r.source.labels[g.column]
         unknown = g.place and not roles_of(f"{label} {g.place}") and not is_whole(label)
-        warms = g.place == "coolant" and rise(r.source, g) > STILL * most and not is_spoken(label, INLET)
-        doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else OUTLET if warms else "")
+        fluid = g.place == "coolant" and not is_spoken(label, INLET)
+        flows = (OUTLET if rise(r.source, g) > STILL * most else NO_INLET) if fluid else ""
+        doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else flows)
         if g.used and doubt:
             out.setdefault(doubt, []).append(g.column)
     taken = {doubt: match[1] for doubt in out if (match := UNIT_TAKEN.search(doubt))}

@@ -390,7 +390,7 @@ def _runs_back(source: Source, column: str) -> bool:
     if source.units[column] or not source.is_numeric(column):
         return False
     steps = np.diff(source.numbers(column))
-    return bool((steps < 0).mean() > FALLING)
+    return bool((steps < 0).sum() > FALLING * (steps != 0).sum())
 
 
 def _counts_on(source: Source, column: str) -> bool:
