@@ -41,10 +41,10 @@ EXPLAINS = 0.3  # of the rise: what is left beside a column that heats
 FEEDS = (*HEATS, "torque", "voltage")  # that may say what heats it
 SOON = ("", *FEEDS)  # quantities of columns left out that may
 NO_PART = "its name says no part of a machine"
-UNIT_TAKEN = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
+UNIT = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 NO_INLET = "taken as the coolant that flows in, though its name says no inlet"
 OUTLET = "it warms with the machine: an outlet?"
-PLACED = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
+PLACES = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
@@ -78,8 +78,10 @@ def first_lines(drafts: Sequence[Draft]) -> list[str]:
 
 def may_be_temperature(source: Source, g: Guess) -> bool:
     """By its unit, or by a name without any."""
-    named = quantities_of(source.labels[g.column])
-    return g.quantity == "temperature" or (not g.quantity and bool(roles_of(source.labels[g.column])) and not named[1:])
+    candidates = quantities_of(source.labels[g.column])
+    return g.quantity == "temperature" or (
+        not g.quantity and bool(roles_of(source.labels[g.column])) and not candidates[1:]
+    )
 
 
 def _winding(columns: Columns, left: Columns) -> dict[str, str]:
@@ -109,9 +111,9 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     if draft.constants:
         return {}
     if not heats:
-        named = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
-        if named := named or ([best] if best and error < EXPLAINS else []):
-            return {"heat": f"the only heat was left out: '{named[0]}'; --place {quote(f'{named[0]}=INPUT')}"}
+        candidates = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
+        if candidates := candidates or ([best] if best and error < EXPLAINS else []):
+            return {"heat": f"the only heat was left out: '{candidates[0]}'; --place {quote(f'{candidates[0]}=INPUT')}"}
         return {"heat": "no column says what heats it"}
     column, ours = _best(draft, columns, main)
     if not any(g.quantity in HEATS for _, g in heats):
@@ -199,13 +201,13 @@ def _doubted(columns: Columns) -> dict[str, str]:
         doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else flows)
         if g.used and doubt:
             out.setdefault(doubt, []).append(g.column)
-    taken = {doubt: match[1] for doubt in out if (match := UNIT_TAKEN.search(doubt))}
-    units = [f"'{c}' is taken in {unit}" for doubt, unit in taken.items() for c in out[doubt]]
+    units_of = {doubt: match[1] for doubt in out if (match := UNIT.search(doubt))}
+    units = [f"'{c}' is taken in {unit}" for doubt, unit in units_of.items() for c in out[doubt]]
     where = {
-        doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if any(words in doubt for words in PLACED) else ""
+        doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if any(words in doubt for words in PLACES) else ""
         for doubt, of in out.items()
     }
-    words = {d: f"{_names(of)}: {d}{where[d]}" for d, of in out.items() if d not in taken}
+    words = {d: f"{_names(of)}: {d}{where[d]}" for d, of in out.items() if d not in units_of}
     return {**words, NO_UNIT: f"{NO_UNIT}: {', '.join(units)}"} if units else words
 
 

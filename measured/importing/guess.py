@@ -40,7 +40,7 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
-from measured.importing.relations import SAME, START_K, is_like_temperature, is_product, made_of_others, quickness
+from measured.importing.relations import SAME, START_K, functional_relations, is_like_temperature, is_product, quickness
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -89,17 +89,17 @@ BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
 NO_UNIT = "no unit"
-MADE = "made of other columns"
+FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
 FASTEST = "follows the heat fastest: taken as the winding"
 QUICK = 0.6  # of the fastest: windings of the same machine
 PERCENT = 130.0  # of a load, at most
-BY_HAND = "left out by hand"
+MANUAL = "left out by hand"
 CERTAIN = (
     "a set point, not a reading",
     "a number that names a row",
-    BY_HAND,
-    MADE,
+    MANUAL,
+    FUNCTION,
     "--set gives it",
 )  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
@@ -133,7 +133,7 @@ class Guess:
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
-    every = _starting_apart(source, _read(source, _made(source, every)))
+    every = _cold_start_outliers(source, _read(source, _without_functions(source, every)))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
@@ -165,20 +165,20 @@ def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) 
     return replace(g, doubt=f"or {BY_READINGS}")
 
 
-def _made(source: Source, every: list[Guess]) -> list[Guess]:
+def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     """Without what is a function of temperatures; a copy under a name of its own is doubted."""
     hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
     roles = {c: roles_of(source.labels[c])[:1] for c in hot}
     order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
     others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
     free = {*others} | {c for c in order if not source.units[c]}
-    made = made_of_others({c: in_memory(source, hot[c]) for c in order}, others, free)
+    functions = functional_relations({c: in_memory(source, hot[c]) for c in order}, others, free)
     out = []
     for g in every:
-        why = made.get(g.column, "")
+        why = functions.get(g.column, "")
         twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
-        apart = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
-        out.append(replace(g, doubt=why) if apart else g.without(f"{MADE}: {why}") if why else g)
+        distinct = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
+        out.append(replace(g, doubt=why) if distinct else g.without(f"{FUNCTION}: {why}") if why else g)
     return out
 
 
@@ -239,7 +239,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
-        g.without(f"{MADE}: of the reading beside it")
+        g.without(f"{FUNCTION}: of the reading beside it")
         if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
         else g
         for g in every
@@ -297,7 +297,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
 
-def _starting_apart(source: Source, every: list[Guess]) -> list[Guess]:
+def _cold_start_outliers(source: Source, every: list[Guess]) -> list[Guess]:
     """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
     starts = {
         g.column: float(v[np.isfinite(v)][0])
@@ -555,7 +555,7 @@ def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, tar
 def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
     """A column where the user puts it."""
     if not to:
-        return g.without(BY_HAND)
+        return g.without(MANUAL)
     if not source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
     if to in target.places or to in target.boundaries:

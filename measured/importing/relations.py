@@ -1,7 +1,7 @@
 """What readings say of each other: which column was made of others, which could be a temperature, and what heats.
 
-Independent sensors have noise of their own. A column that equals a function of others to within the last digit, over a
-span of many digits, is therefore no reading of its own.
+Each sensor has noise that no other has. A column that equals a function of others to within the last digit, over a
+span of many digits, was therefore computed.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def resolution(values: Array) -> float:
     return float(steps.min()) if steps.size else 0.0
 
 
-def made_of_others(hot: Mapping[str, Array], others: Mapping[str, Array], free: Container[str]) -> dict[str, str]:
+def functional_relations(hot: Mapping[str, Array], others: Mapping[str, Array], free: Container[str]) -> dict[str, str]:
     """Columns that are functions of temperatures, with the function.
 
     hot : temperatures in degC, those with names of parts first;  others : numbers of any kind, at the same rows
@@ -65,16 +65,16 @@ def made_of_others(hot: Mapping[str, Array], others: Mapping[str, Array], free: 
     wide = [c for c in every if float(np.ptp(every[c])) > DIGITS * digit[c] > 0.0]
     out: dict[str, str] = {}
     for c in wide:
-        own = digit[c] / 2 + FINE * float(np.ptp(every[c]))
+        margin = digit[c] / 2 + FINE * float(np.ptp(every[c]))
         sources = {n: every[n] for n in wide if n in hot and n != c and n not in out}
         before = [n for n in sources if c in others or wide.index(n) < wide.index(c)]
-        near = partial(_within, every[c], own, digit)
+        near = partial(_within, every[c], margin, digit)
         if copy := next((n for n in before if _is_copy(near, every[n], n, c in free)), ""):
             out[c] = f"{SAME} '{copy}'"
         elif sources:
             ways = (_extreme(every[c], sources, digit[c], digit), _mean(every[c], sources, near))
-            if found := next(filter(None, ways), "") or _difference(every[c], sources, near):
-                out[c] = found
+            if words := next(filter(None, ways), "") or _difference(every[c], sources, near):
+                out[c] = words
     for c, n in itertools.permutations([c for c in wide if c in hot and c not in out], 2):
         if c not in out and n not in out and _is_filtered(full[c], full[n], 1.5 * max(digit[c], digit[n])):
             out[c] = f"'{n}', filtered"
@@ -110,17 +110,17 @@ def is_product(y: Array, factors: Sequence[Array]) -> bool:
 
 
 def _within(
-    y: Array, own: float, digit: Mapping[str, float], other: Array, names: Sequence[str], factor: float = 1.0
+    y: Array, margin: float, digit: Mapping[str, float], other: Array, names: Sequence[str], factor: float = 1.0
 ) -> bool:
     """Equal to within the last digits of both?"""
-    return bool(np.max(np.abs(y - other)) <= own + factor * max(digit[n] for n in names) / 2)
+    return bool(np.max(np.abs(y - other)) <= margin + factor * max(digit[n] for n in names) / 2)
 
 
-def _extreme(y: Array, others: Mapping[str, Array], own: float, digit: Mapping[str, float]) -> str:
+def _extreme(y: Array, others: Mapping[str, Array], margin: float, digit: Mapping[str, float]) -> str:
     """The largest or the least of several columns, each of which is it for a while."""
     for name, sign in (("largest", 1.0), ("least", -1.0)):
         slack = {n: sign * (y - v) for n, v in others.items()}
-        limits = {n: (own + digit[n]) / 2 + 1e-9 for n in others}
+        limits = {n: (margin + digit[n]) / 2 + 1e-9 for n in others}
         within = [n for n, gap in slack.items() if float(gap.min()) >= -limits[n]]
         if len(within) < 2 or not np.all(np.min([slack[n] - limits[n] for n in within], axis=0) <= 0.0):
             continue
@@ -143,8 +143,8 @@ def _mean(y: Array, others: Mapping[str, Array], near: partial[bool]) -> str:
         return ""
     mean = np.mean([others[n] for n in part], axis=0)
     tolerance = APART * float(np.abs(y - mean).max())
-    apart = all(float(np.abs(others[n] - y).max()) > tolerance for n in part)
-    return f"the mean of {_names(part)}" if near(mean, part) and apart else ""
+    differ = all(float(np.abs(others[n] - y).max()) > tolerance for n in part)
+    return f"the mean of {_names(part)}" if near(mean, part) and differ else ""
 
 
 def _difference(y: Array, sources: Mapping[str, Array], near: partial[bool]) -> str:
@@ -182,10 +182,10 @@ def _names(columns: Sequence[str]) -> str:
     return ", ".join(f"'{c}'" for c in columns[:3]) + (f" and {len(columns) - 3} more" if len(columns) > 3 else "")
 
 
-def is_like_temperature(values: Array, starts: Sequence[float], apart_K: float = START_K) -> bool:
+def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = START_K) -> bool:
     """Does it start where temperatures of the same recording start, in many small steps?
 
-    starts : of those that are known (degC); without any a room's are taken;  apart_K : from them
+    starts : of those that are known (degC); without any a room's are taken;  band_K : from them
     """
     values = values[np.isfinite(values)]
     if values.size < COARSE or np.unique(values).size < COARSE or not (values % 1).any():
@@ -193,7 +193,7 @@ def is_like_temperature(values: Array, starts: Sequence[float], apart_K: float =
     low, high = (min(starts), max(starts)) if starts else (10.0, 35.0)
     smooth = float(np.max(np.abs(np.diff(values)))) < STEP * float(np.ptp(values)) + 1.0
     inside = LIMITS[0] < float(values.min()) and float(values.max()) < LIMITS[1]
-    return smooth and inside and low - apart_K < float(np.median(values[:5])) < high + apart_K
+    return smooth and inside and low - band_K < float(np.median(values[:5])) < high + band_K
 
 
 def misfit(seconds: Array, rise: Array, heat: Array, exponent: float) -> float:

@@ -245,12 +245,12 @@ def _source(
         if len(beside) == 1 and words and not unit_texts[before]:
             unit_texts[before] = words[0]
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
-    labels = _apart(labels)
+    labels = _without_groups(labels)
     labels = {n: name if re.search(r"[^\W\d]", name := TAG.sub("", label)) else label for n, label in labels.items()}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
 
-def _apart(labels: Mapping[str, str]) -> dict[str, str]:
+def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
     """Names of paths without the groups that all of them begin with, and the end that most of them share."""
     paths = {n: re.split("/+", label) for n, label in labels.items() if "/" in label}
     if len(paths) < LEAST_PATHS:
@@ -258,8 +258,8 @@ def _apart(labels: Mapping[str, str]) -> dict[str, str]:
     same = sum(1 for _ in itertools.takewhile(lambda level: len({*level}) == 1, zip(*paths.values(), strict=False)))
     last, count = Counter(path[-1] for path in paths.values()).most_common(1)[0]
     paths = {n: path[min(same, len(path) - 1) :] for n, path in paths.items()}
-    shared = last if count > len(paths) / 3 else ""
-    return {**labels, **{n: "/".join(p[:-1] if p[-1] == shared and len(p) > 1 else p) for n, p in paths.items()}}
+    ending = last if count > len(paths) / 3 else ""
+    return {**labels, **{n: "/".join(p[:-1] if p[-1] == ending and len(p) > 1 else p) for n, p in paths.items()}}
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:

@@ -9,7 +9,7 @@ from measured.importing.aloud import first_lines
 from measured.importing.case_files import read_runs
 from measured.importing.draft import Draft
 from measured.importing.guess import guesses
-from measured.importing.relations import is_like_temperature, is_product, made_of_others, misfit
+from measured.importing.relations import functional_relations, is_like_temperature, is_product, misfit
 from measured.importing.starter import heating
 from measured.importing.target import Target
 
@@ -32,8 +32,8 @@ EVEN = np.convolve(W1, np.ones(12) / 12)[: T.size]
 
 def test_sensors_of_one_machine_are_none_of_each_other():
     """Nor are whole degrees, which are equal too often to say anything."""
-    assert made_of_others(SENSORS, {}, ()) == {}
-    assert made_of_others({c: np.round(v) for c, v in SENSORS.items()}, {}, ()) == {}
+    assert functional_relations(SENSORS, {}, ()) == {}
+    assert functional_relations({c: np.round(v) for c, v in SENSORS.items()}, {}, ()) == {}
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_sensors_of_one_machine_are_none_of_each_other():
     ],
 )
 def test_a_column_made_of_others_is_told_with_its_function(column, words):
-    assert made_of_others({**SENSORS, "made": np.round(column, 2)}, {}, {"made"})["made"] == words
+    assert functional_relations({**SENSORS, "made": np.round(column, 2)}, {}, {"made"})["made"] == words
 
 
 def test_what_starts_and_moves_as_temperatures_do():
@@ -79,51 +79,51 @@ def record(tmp_path, columns, name="a.csv"):
     )
 
 
-def found(tmp_path, columns):
+def by_column(tmp_path, columns):
     return {g.column: g for g in record(tmp_path, {"t [s]": T, **columns}).guesses}
 
 
 def test_a_name_that_nobody_knows_over_readings_like_those_of_others(tmp_path):
-    g = found(tmp_path, {"T_winding [°C]": W1, "Qwzrt": FRAME, "Flow 2": sensor(900, 3.0), "I [A]": LOAD})
+    g = by_column(tmp_path, {"T_winding [°C]": W1, "Qwzrt": FRAME, "Flow 2": sensor(900, 3.0), "I [A]": LOAD})
     assert (g["Qwzrt"].quantity, g["Qwzrt"].doubt) == ("temperature", "a temperature, by its readings alone")
     assert g["Flow 2"].doubt.endswith("or a temperature, by its readings alone")
 
 
 def test_units_in_cells_are_law_and_a_name_may_be_a_unit(tmp_path):
-    g = found(tmp_path, {"stator winding W": [f"{v} °C" for v in W1], "mA": 1000 * LOAD, "T_room [°C]": ROOM})
+    g = by_column(tmp_path, {"stator winding W": [f"{v} °C" for v in W1], "mA": 1000 * LOAD, "T_room [°C]": ROOM})
     assert (g["stator winding W"].quantity, g["mA"].unit) == ("temperature", "mA")
 
 
 def test_a_current_by_its_last_letter_that_is_a_mean_of_temperatures(tmp_path):
-    g = found(tmp_path, {"T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_m_A": (W1 + FRAME) / 2, "I [A]": LOAD})
+    g = by_column(tmp_path, {"T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_m_A": (W1 + FRAME) / 2, "I [A]": LOAD})
     assert not g["T_m_A"].used
     assert g["I [A]"].feeds == "current_A"
 
 
 def test_groups_that_all_names_begin_with_say_nothing(tmp_path):
     names = [f"Root Model/Meas/{name}/Out1[°C]" for name in ("T_winding", "T_Observer_winding", "T_room")]
-    g = found(tmp_path, {**dict(zip(names, (W1, 0.97 * W1 + 0.5, ROOM))), "Root Model/Meas/I/Out1[A]": LOAD})
+    g = by_column(tmp_path, {**dict(zip(names, (W1, 0.97 * W1 + 0.5, ROOM))), "Root Model/Meas/I/Out1[A]": LOAD})
     assert [g[name].doubt for name in names] == ["", "modelled, not read", ""]
 
 
 def test_a_loss_that_is_what_goes_in_less_what_comes_out(tmp_path):
     out, lost = 30 * LOAD, np.round(4 * LOAD**2 + 1)
-    g = found(tmp_path, {"P_in [W]": out + lost, "P_shaft [W]": out, "P_v [W]": lost, "T_winding [°C]": W1})
+    g = by_column(tmp_path, {"P_in [W]": out + lost, "P_shaft [W]": out, "P_v [W]": lost, "T_winding [°C]": W1})
     assert g["P_v [W]"].feeds == "power_W"
     assert len(g) == 4
 
 
 def test_what_is_warm_where_all_others_are_cold_is_doubted(tmp_path):
     hot = sensor(900, 2.0, start=38.0)
-    g = found(tmp_path, {"Oil [°C]": hot, "T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_room [°C]": ROOM})
+    g = by_column(tmp_path, {"Oil [°C]": hot, "T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_room [°C]": ROOM})
     assert g["Oil [°C]"].doubt == "starts at 38 degC, all others near 21: is it of this machine?"
 
 
 def test_of_columns_without_a_part_the_quickest_are_of_the_winding(tmp_path):
     hot = {"Qa [°C]": W1, "Qb [°C]": FRAME, "Qc [°C]": W2, "T_room [°C]": ROOM, "I [A]": LOAD}
-    g = found(tmp_path, hot)
+    g = by_column(tmp_path, hot)
     assert ["fastest" in g[c].doubt for c in hot] == [True, False, True, False, False]
-    g = found(tmp_path, {"T_winding [°C]": FRAME, **hot})
+    g = by_column(tmp_path, {"T_winding [°C]": FRAME, **hot})
     assert not any("fastest" in one.doubt for one in g.values())
 
 
@@ -152,11 +152,11 @@ def test_powers_on_both_sides_of_a_machine_pass_through(tmp_path):
 def test_the_first_lines_name_what_may_matter(tmp_path, columns, words):
     one = record(tmp_path, {"t [s]": T, "T_winding [°C]": W1, "T_room [°C]": ROOM, **columns})
     places = {"T_winding [°C]": "winding", "T_room [°C]": "ambient", "Outlet water [°C]": "coolant"}
-    placed = [
+    columns_at_places = [
         g if g.feeds or g.column not in places else type(g)(g.column, "temperature", "degC", places[g.column])
         for g in one.guesses
     ]
-    lines = first_lines([Draft("a", (Recording(one.source, one.clock, placed),))])
+    lines = first_lines([Draft("a", (Recording(one.source, one.clock, columns_at_places),))])
     assert any(line.startswith(words) for line in lines), lines
 
 
