@@ -19,7 +19,7 @@ from geom.arrays import Array
 SAME = "the same readings as"
 ROWS = 4000  # that are enough to tell a relation
 DIGITS = 40.0  # of the last digits, that a column has to span before an equality says anything
-APART = 3.0  # tolerances by which sensors must differ somewhere
+GAP = 3.0  # tolerances by which sensors must differ somewhere
 EQUAL = 0.05  # between weights of a mean
 CALM = 0.7  # noise of a filtered column over that of its sensor
 WINDOWS = range(2, 241)  # rows of a moving average
@@ -142,7 +142,7 @@ def _mean(y: Array, others: Mapping[str, Array], near: partial[bool]) -> str:
     if len(part) < 2 or np.ptp(shares) > EQUAL or abs(shares.sum() - 1.0) > EQUAL:
         return ""
     mean = np.mean([others[n] for n in part], axis=0)
-    tolerance = APART * float(np.abs(y - mean).max())
+    tolerance = GAP * float(np.abs(y - mean).max())
     differ = all(float(np.abs(others[n] - y).max()) > tolerance for n in part)
     return f"the mean of {_names(part)}" if near(mean, part) and differ else ""
 
