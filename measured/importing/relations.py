@@ -17,6 +17,7 @@ from scipy.signal import lfilter
 from geom.arrays import Array
 
 SAME = "the same readings as"
+MOST = 50_000  # rows in which a filtered column is looked for
 ROWS = 4000  # that are enough to tell a relation
 DIGITS = 40.0  # of the last digits, that a column has to span before an equality says anything
 GAP = 3.0  # tolerances by which sensors must differ somewhere
@@ -59,8 +60,9 @@ def functional_relations(hot: Mapping[str, Array], others: Mapping[str, Array], 
     good = np.all([np.isfinite(v) for v in columns.values()], axis=0) if columns else np.zeros(1, bool)
     if good.sum() < COARSE:
         return {}
-    full = {c: v[good] for c, v in columns.items()}
-    every = {c: v[:: max(1, v.size // ROWS)] for c, v in full.items()}
+    rows = np.flatnonzero(good)
+    every = {c: v[rows[:: max(1, rows.size // ROWS)]] for c, v in columns.items()}
+    full = {c: v[rows[:MOST]] for c, v in columns.items() if c in hot}
     digit = {c: resolution(v) for c, v in every.items()}
     wide = [c for c in every if float(np.ptp(every[c])) > DIGITS * digit[c] > 0.0]
     out: dict[str, str] = {}

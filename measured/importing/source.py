@@ -39,6 +39,7 @@ SCALED = re.compile(
 TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a register of whole numbers
 LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
+HOURS = re.compile(r"(?:[01]?\d|2[0-4])\s*[hH]\s*[0-5]\d")  # 10h05, by hand in French
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -263,8 +264,13 @@ def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
-    """Times of day that are written as dates are, 09.14.05: a year that changes from row to row is a second."""
-    if isinstance(cells, np.ndarray) or not all(isinstance(c, str) and POINTED.fullmatch(c.strip()) for c in cells[:9]):
+    """Times of day that are written as 10h05, or as dates are, 09.14.05: a year that changes from row to row is a
+    second."""
+    if isinstance(cells, np.ndarray) or not all(isinstance(c, str) for c in cells):
+        return cells
+    if all(HOURS.fullmatch(c.strip()) for c in cells):
+        return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
+    if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):
         return cells
     seconds = {str(c)[-2:] for c in cells}
     return [str(c).replace(".", ":") for c in cells] if len(seconds) > 2 else cells

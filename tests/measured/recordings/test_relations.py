@@ -167,3 +167,9 @@ def test_a_clock_with_a_zone_beside_one_without(tmp_path):
     seconds, how = shift(first, other)
     assert seconds == 0.0
     assert "the whole hours are guessed" in how
+
+
+def test_hours_and_minutes_as_written_by_hand_in_french(tmp_path):
+    stamps = [f"{10 + k // 60}h{k % 60:02d}" for k in range(100)]
+    one = record(tmp_path, {"heure": stamps, "T bobine [°C]": W1[:100], "I [A]": LOAD[:100]})
+    assert one.clock.seconds == pytest.approx(60.0 * np.arange(100))

@@ -110,6 +110,17 @@ def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, wor
     assert words in " ".join(capsys.readouterr().out.split()).partition(": 1 test")[0]
 
 
+def test_a_comparison_repeats_the_doubts_until_they_leave_the_case(tmp_path, capsys):
+    folder, _ = written(tmp_path, table("t [s],I,T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    case = folder.settings.path / "case.toml"
+    assert capsys.readouterr().out.startswith(doubt := "No unit: 'I' is taken in A.")
+    compare_command(str(case.parent), None)
+    assert capsys.readouterr().out.startswith(doubt)
+    case.write_text("\n".join(line for line in case.read_text().splitlines() if not line.startswith("guesses")))
+    compare_command(str(case.parent), None)
+    assert doubt not in capsys.readouterr().out
+
+
 def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path, capsys):
     folder, _ = written(tmp_path, table("t [s],I [A],T_Lager [°C],T_room [°C]", S["t"], S["I"], S["B"], S["A"]))
     capsys.readouterr()
