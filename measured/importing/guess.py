@@ -190,14 +190,12 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
     if not heats or any(Role.WINDING in roles or is_whole(source.labels[c]) for c, roles in hot.items()):
         return every
-    scores = {
-        g.column: quickness(in_memory(source, g), heats[0])
-        for g in every
-        if g.column in hot and not g.doubt.startswith(CERTAIN)
-    }
+    edges = ([Role.AMBIENT], [Role.COOLANT])
+    parts = [g for g in every if hot.get(g.column, edges[0])[:1] not in edges and not g.doubt.startswith(CERTAIN)]
+    scores = {g.column: quickness(in_memory(source, g), heats[0]) for g in parts}
     most = max(scores.values(), default=0.0)
     quick = [c for c, score in scores.items() if score > QUICK * most > 0.0]
-    if any(hot[c] for c in quick):
+    if len(quick) == len(scores) or any(hot[c] for c in quick):
         return every
     first = not target.places  # of a network that is to be made from the columns
     doubts = {g.column: FASTEST if first or not g.doubt else f"{g.doubt}; {FASTEST}" for g in every}

@@ -82,7 +82,7 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         ("I [A],T_winding [°C],room [°C]", "IWA", "No time column: rows 1 s apart are assumed (--period SECONDS)."),
         ("Time,T_winding [°C],I [A]", "tWI", "No unit of 'Time': seconds are assumed, 5 s from row to row."),
         ("t [s],I [A],T_winding [°C],T_CELL [°C]", "tIWA", "'T_CELL [°C]': hardly warms: taken as the room."),
-        ("t [s],I [A],T1 [°C],TC 2 [°C]", "tIWH", "'T1 [°C]', 'TC 2 [°C]': place by its number only; --place"),
+        ("t [s],I [A],T1 [°C],TC 2 [°C]", "tIWH", "'TC 2 [°C]': place by its number only; --place"),
         ("t [s],I [A],Ch 1 [°C],room [°C]", "tIWA", "'Ch 1 [°C]': place by its number only; --place"),
         (
             "t [s],Current [% of nominal],T_winding [°C]",
