@@ -191,7 +191,8 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     if not heats or any(Role.WINDING in roles or is_whole(source.labels[c]) for c, roles in hot.items()):
         return every
     edges = ([Role.AMBIENT], [Role.COOLANT])
-    parts = [g for g in every if hot.get(g.column, edges[0])[:1] not in edges and not g.doubt.startswith(CERTAIN)]
+    parts = [g for g in every if hot.get(g.column, edges[0])[:1] not in edges]
+    parts = [g for g in parts if not g.doubt.startswith((*CERTAIN, OF_INSTRUMENT))]
     scores = {g.column: quickness(in_memory(source, g), heats[0]) for g in parts}
     most = max(scores.values(), default=0.0)
     quick = [c for c, score in scores.items() if score > QUICK * most > 0.0]
