@@ -111,7 +111,7 @@ def roles_of(name: str) -> list[Role]:
     hits = {}
     for role, terms in ROLES.items():
         at = [
-            (w in OUTER or role is Role.TEST_BED, w not in terms, i)
+            (w in OUTER or role is Role.TEST_BED, w not in terms, i, -_end(w, terms))
             for i, w in enumerate(words)
             if w in terms or _inside(w, terms)
         ]
@@ -145,6 +145,11 @@ def is_spoken(name: str, terms: frozenset[str]) -> bool:
     """Does one of some words stand in a name?  Signs that are words may stand inside others."""
     signs = [term for term in terms if term[0] >= IDEOGRAPHS]
     return any(word in terms or any(sign in word for sign in signs) for word in tokens(name))
+
+
+def _end(word: str, words: frozenset[str]) -> int:
+    """Where the last of some words ends inside another: of a compound the last names it."""
+    return max((word.rfind(k) + len(k) for k in words if len(k) >= SHORTEST and k in word), default=0)
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:
