@@ -37,7 +37,7 @@ def entry(function: Callable[..., Any]) -> Any:
 
 
 def _loaded(cache: Any, signature: Any, target: Any) -> Any:
-    """What is cached for a signature, without all that numba can compile: to list that takes longer than a small run."""
+    """What is cached for a signature, without all that numba can compile: listing that takes longer than a run."""
     rtsys.initialize(target)
     with cache._guard_against_spurious_io_errors():
         return cache._load_overload(signature, target)

@@ -34,7 +34,7 @@ FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: bel
 def fleet_document(
     case: str, names: Sequence[Path], like: str | None, cluster: str | None, tell: Progress
 ) -> dict[str, Any]:
-    """like : the test of the case whose sheet the recordings have, else the first that fits;  cluster : address of a Dask scheduler"""
+    """like : the test whose sheet the recordings have, else the first that fits;  cluster : of a Dask scheduler"""
     files, folder = recordings(names), open_case(case, tell)
     sheets = {e.name: e.sheet for e in folder.settings.tests}
     if like is not None and like not in sheets:
