@@ -52,12 +52,7 @@ def test_what_a_command_prints_stands_under_it_and_fits_a_screen(commands, print
 
 
 @pytest.mark.parametrize(
-    ("picture", "chunk"),
-    [
-        ("road-test.png", "words"),
-        ("road-test.gif", "comment"),
-        ("workbench-added.png", "errors"),
-    ],
+    ("picture", "chunk"), [("road-test.png", "words"), ("road-test.gif", "comment"), ("workbench-added.png", "errors")]
 )
 def test_pictures_tell_the_errors_of_the_text(picture, chunk):
     """What a picture's script wrote into it: of the held-out test, before and after."""

@@ -65,8 +65,8 @@ class Patient:
 def first_readings(p: Patient) -> dict[str, float]:
     """Column -> what its first readings say (degC), where one is among the first rows or within the first seconds."""
     rows = max(FIRST, int(np.sum(p.samples.time <= START_S)))
-    begun = {n: v for n, v in p.temperatures.items() if np.isfinite(v[:rows]).any()}
-    return {n: float(np.median(v[np.isfinite(v)][:FIRST])) for n, v in begun.items()}
+    early = {n: v for n, v in p.temperatures.items() if np.isfinite(v[:rows]).any()}
+    return {n: float(np.median(v[np.isfinite(v)][:FIRST])) for n, v in early.items()}
 
 
 def _units(p: Patient) -> Iterator[Finding]:

@@ -233,8 +233,8 @@ def _of_every_test(case: Case, values: Mapping[str, float] | None, error_of: Cal
         rows[test.name] = _with_sensors(network, test, error, case.model.values) if sensors_fitted else error
 
     def comparison() -> Comparison:
-        known = tuple(rows[test.name] for test in case.tests if test.name in rows)
-        return Comparison(case.name, case.model.revision, effects, known, case.model.network.identities)
+        some = tuple(rows[test.name] for test in case.tests if test.name in rows)
+        return Comparison(case.name, case.model.revision, effects, some, case.model.network.identities)
 
     try:
         run_by_run(look, case.tests, network.size)

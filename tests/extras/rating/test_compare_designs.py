@@ -72,9 +72,7 @@ def test_a_picture_has_a_name_that_ends_in_png(thermoscope):
 @pytest.mark.nightly
 def test_two_motors_side_by_side(thermoscope):
     """The longer stack loses less heat per volume; what surrounds them is the same."""
-    found = thermoscope(
-        *("use", "compare-designs", FREE, "pmsm-m2-no-base", "--limit", "winding=130", "--json", "-")
-    )
+    found = thermoscope(*("use", "compare-designs", FREE, "pmsm-m2-no-base", "--limit", "winding=130", "--json", "-"))
     assert found.code == 0, found.err
     long, short = found.document["designs"]
     assert sum(long["masses_kg"].values()) > sum(short["masses_kg"].values())
