@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimis
 from validation.comparison.linearisation import Segment, segments
 from validation.parameters.unknowns import to_value
 
+NOTHING: Mapping[str, float] = MappingProxyType({})
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits
@@ -66,17 +68,22 @@ class FoldPrediction:
     count: int
 
 
-def folds(tests: Sequence[Test], telling: Sequence[str], middle: float | None = None) -> list[Fold]:
+def folds(
+    tests: Sequence[Test], telling: Sequence[str], middle: float | None = None, own: Mapping[str, float] = NOTHING
+) -> list[Fold]:
     """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
     telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
+    own : tests of which the model knows something that no other test tells, see `own_tests`: of these the later part
     """
     halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
     out = []
     if not halved:  # else the other tests say nothing of the step, only of what it costs to fit one number more
         count = min(len(tests), MOST_FOLDS)
-        shares = [tests[i::count] for i in range(count)]
-        out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
+        cut = {t.name: halves(t, own[t.name]) for t in tests if t.name in own}
+        for share in [tests[i::count] for i in range(count)]:
+            fitted = [cut[t.name][0] if t in share else t for t in tests if t not in share or t.name in cut]
+            out.append(Fold(tuple(fitted), tuple(cut[t.name][1] if t.name in cut else t for t in share)))
     for test in (t for t in tests if t.name == halved):
         first, second = halves(test, middle)
         out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
@@ -102,6 +109,18 @@ def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
     for s in fit.parts:
         size[s.test] = max(size.get(s.test, 0.0), float(np.max(np.abs(s.J[:, columns]), initial=0.0)))
     return [name for name, largest in size.items() if largest > FELT * max(size.values())]
+
+
+def own_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
+    """Tests that alone tell of some of the parameters, such as an event in one of them, and when (s) half is seen.
+
+    Left out whole, such a test would be predicted without what the model knows of it.
+    """
+    alone: dict[str, list[str]] = {}
+    for name in names:
+        if len(telling := telling_tests(fit, [name])) == 1:
+            alone.setdefault(telling[0], []).append(name)
+    return {test: middle_instant(fit, some, test) for test, some in alone.items()}
 
 
 def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
@@ -175,18 +194,20 @@ def _log_density(
 
 
 def prediction_checks(
-    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str]
+    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str], own: Sequence[str] = ()
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
     before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
+    own : tests of which the later part alone was left out
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
-    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"
+    parts = f"; of {', '.join(own)} the later part, since only it tells what held in it" if own and not part else ""
+    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
     return (
         Check("left out", sum(nats) > 0.0 and now <= was, sum(nats), 0.0, words, part),
