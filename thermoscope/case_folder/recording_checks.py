@@ -63,8 +63,8 @@ class Patient:
 
 
 def first_readings(p: Patient) -> dict[str, float]:
-    """Column -> what its first readings say (degC), where one is among the first rows or within the first seconds."""
-    rows = max(FIRST, int(np.sum(p.samples.time <= START_S)))
+    """Column -> what its first readings say (degC), where one is as early as a start has to be."""
+    rows = int(np.sum(p.samples.time <= START_S))
     early = {n: v for n, v in p.temperatures.items() if np.isfinite(v[:rows]).any()}
     return {n: float(np.median(v[np.isfinite(v)][:FIRST])) for n, v in early.items()}
 
