@@ -153,11 +153,14 @@ def calibrate(
     return _revised(case, case.model, "calibrate", None, roles, progress, profiled, search)
 
 
-def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress) -> Revision:
+def add(
+    case: Case, names: str | Sequence[str], progress: Progress = no_progress, before: Comparison | None = None
+) -> Revision:
     """Add effect 'kind@place', or several that need each other, and calibrate on all tests but the held-out ones.
 
     names : of one string "a + b" too.  What was never calibrated is calibrated first: an effect is compared with the
         best model without it.
+    before : of the model as it stands, where it was compared
     """
     each = [n for text in ([names] if isinstance(names, str) else names) for n in text.split(TOGETHER)]
     new = [effect(name, scene_of(case)) for name in dict.fromkeys(each)]
@@ -171,9 +174,9 @@ def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress
     if not case.model.values:
         progress("calibrating without the effect")
         bare = calibrate(case, TRAINING, progress).model
-        case = replace(case, model=replace(bare, revision=case.model.revision))
+        case, before = replace(case, model=replace(bare, revision=case.model.revision)), None
     model = replace(case.model, effects=(*case.model.effects, *(AddedEffect(one.kind, one.place) for one in new)))
-    return _revised(case, model, "add", TOGETHER.join(one.name for one in new), TRAINING, progress)
+    return _revised(case, model, "add", TOGETHER.join(one.name for one in new), TRAINING, progress, before=before)
 
 
 def inside(one: Effect, case: Case) -> None:
@@ -206,10 +209,11 @@ def _revised(
     progress: Progress,
     profiled: Sequence[str] = (),
     search: Search | None = None,
+    before: Comparison | None = None,
 ) -> Revision:
     if broken := broken_channels(case.tests):
-        case = replace(case, tests=without(case.tests, broken))
-    before = errors(case)
+        case, before = replace(case, tests=without(case.tests, broken)), None
+    before = before or errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
         raise InputError(
