@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
+from importlib.machinery import SourceFileLoader
 from inspect import cleandoc
 from keyword import iskeyword
 from pathlib import Path
@@ -88,7 +89,8 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
 def _help_alone(module: str, name: str) -> Callable[[], None]:
     """A stand-in that says what the command says of itself; the module is read, not loaded."""
     file = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
-    program = compile(file.read_text(encoding="utf-8"), str(file), "exec")
+    program = SourceFileLoader(module, str(file)).get_code(module)  # its bytecode, where that was kept
+    assert program is not None
     function = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
 
     def stand_in() -> None:

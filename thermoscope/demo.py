@@ -69,7 +69,7 @@ def demo(
         picture(misses(folder, out), "after an hour on the road, what the model misses")
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     fit = old_way(folder)
-    stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.comparison.document()))
+    stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.errors.document()))
     headline("5  What is missing?")
     with limited_lines(LONGER):
         with progress() as tell:

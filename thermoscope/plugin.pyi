@@ -50,6 +50,7 @@ from lumped.integration.compiled import (
     state_units as state_units,
 )
 from lumped.integration.ensemble import dask_cluster as dask_cluster
+from lumped.integration.reach import tell_reach as tell_reach
 from lumped.integration.runaway import grows as grows
 from lumped.integration.signals import Signals as Signals
 from lumped.integration.simulate import Stand as Stand, initial_state as initial_state

@@ -182,13 +182,13 @@ def free_network_check(case: Case, records: Sequence[RecordError], fit: Fit) -> 
 
 
 def refit_check(before: Fit, after: Fit, name: str) -> Check:
-    """Of the tests in which the model with what is named is worse than without."""
+    """Of the tests in which the model with what is named is worse than without, and off by more than the readings."""
     tests = list(dict.fromkeys(s.test for s in before.parts))
     worse = []
     for test in tests:
         old, new = ([s for s in fit.parts if s.test == test] for fit in (before, after))
         u = float(np.sqrt(np.mean([s.sigma_K**2 for s in old])))
-        if rmse(new) > rmse(old) + SHOWS * u:
+        if rmse(new) > max(rmse(old) + SHOWS * u, u):
             worse.append(f"{test} {rmse(old):.2f} -> {rmse(new):.2f} K")
     words = f"with {name} no test is worse"
     if worse:

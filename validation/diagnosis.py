@@ -74,6 +74,7 @@ from validation.inference.say import (
     record_doubts,
     remainder,
     sentence,
+    unseen_words,
     unsteady_words,
 )
 from validation.noise import Noise
@@ -242,7 +243,8 @@ def tabulate(
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
     left = remainder(posterior, choice, single)
-    words = sentence(verdict, posterior, choice, rows, pulls, broken, left) + unsteady_words(posterior, choice)
+    words = sentence(verdict, posterior, choice, rows, pulls, broken, left)
+    words += unsteady_words(posterior, choice) + unseen_words(e.fit)
     return Diagnosis(
         verdict=verdict,
         words="; ".join(filter(None, [PRELIMINARY * preliminary, scope.words(case.odds), words])),

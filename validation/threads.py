@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from itertools import chain
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
+from geom.arrays import Array
 from validation.counting import counted
 
+WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 R = TypeVar("R")
 T = TypeVar("T")
+
+
+class Timed(Protocol):
+    """A test, or a record.  time : (n,) s"""
+
+    @property
+    def time(self) -> Array: ...
+
+
+S = TypeVar("S", bound=Timed)
 
 
 def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[T], float] | None = None) -> list[R]:
@@ -25,6 +37,17 @@ def side_by_side(work: Callable[[T], R], pieces: Iterable[T], length: Callable[[
     order = sorted(range(len(every)), key=lambda i: -length(every[i])) if length else range(len(every))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         futures = {i: pool.submit(work, every[i]) for i in order}
-        for _ in counted("", chain([None], as_completed(futures.values())), len(every) + 1):  # as it begins, too
-            pass
+        try:
+            for _ in counted("", chain([None], as_completed(futures.values())), len(every) + 1):  # as it begins, too
+                pass
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)  # what runs is waited for, what has not begun is not
+            raise
         return [futures[i].result() for i in range(len(every))]
+
+
+def run_by_run(work: Callable[[S], R], runs: Sequence[S], states: int) -> list[R]:
+    """The same for runs of a network of so many states: the longest first, short ones one after the other."""
+    if len(runs) < 2 or len(runs[0].time) * states < WORTH_A_THREAD:
+        return [work(run) for run in runs]
+    return side_by_side(work, runs, lambda run: len(run.time))

@@ -20,6 +20,7 @@ LARGEST = 3e6  # bytes
 
 
 def draw(case: Path, gif: Path) -> None:
+    """The film, with the error before and after as a comment: a test compares it with the text."""
     folder = load_case(case)
     assert folder.built is not None
     test, earlier = by_interest(folder)[0], before_last(folder)
@@ -44,7 +45,16 @@ def draw(case: Path, gif: Path) -> None:
         frames_per_second=PER_SECOND,
         tell=lambda k: print(f"\r{k}", end=""),
     )
+    before, after = folder.history.last.rmse_K[test.name]
+    gif.write_bytes(commented(gif.read_bytes(), f"{before:.2f} K, {after:.2f} K"))
     assert gif.stat().st_size <= LARGEST, f"{gif.stat().st_size / 1e6:.1f} MB"
+
+
+def commented(gif: bytes, words: str) -> bytes:
+    """A GIF with a comment of less than 256 letters, after its first table of colours."""
+    colours = 3 << (gif[10] & 7) + 1 if gif[10] & 128 else 0
+    text, at = words.encode(), 13 + colours
+    return gif[:at] + bytes([0x21, 0xFE, len(text)]) + text + b"\0" + gif[at:]
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 from playwright.sync_api import Frame, Page, sync_playwright
 
 HERE = Path(__file__).resolve().parent
@@ -42,7 +44,10 @@ class Walk:
         self.page.wait_for_timeout(2500)
         self.page.wait_for_selector("#preparing", state="detached")
         machine(self.page)
-        self.page.screenshot(path=self.folder / f"workbench-{name}.png")
+        png, info = self.folder / f"workbench-{name}.png", PngInfo()
+        self.page.screenshot(path=png)
+        info.add_itxt("errors", self.page.inner_text("#errors"))  # for a test that compares it with the text
+        Image.open(png).convert("RGB").save(png, optimize=True, pnginfo=info)
         self.begun = time.perf_counter()
 
     def tab_to(self, button: str) -> None:

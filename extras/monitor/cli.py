@@ -19,7 +19,7 @@ def watch(
     case: Case,
     follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A recording, or - for rows from a pipe.")],
     sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
-    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
     out: Out = None,
     json: Json = None,
 ) -> int:
@@ -63,7 +63,7 @@ def watch(
 def fleet(
     case: Case,
     recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
-    like: Annotated[str | None, typer.Option(metavar="TEST", help="Columns as in this test; else the first.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
     json: Json = None,
 ) -> int:

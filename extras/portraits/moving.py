@@ -57,7 +57,7 @@ def moving(
         for data, rows in painted:
             data.point_data["T"] = rows @ values
         pulses.show(row, number / frames_per_second)
-        scene.headline(p, words, LIGHT)
+        scene.headline(p, words, LIGHT, max(map(len, titles)))
         picture = Image.fromarray(np.asarray(p.screenshot(return_img=True)))
         small = picture.resize((width, width * RENDER_SIZE[1] // RENDER_SIZE[0]), Image.Resampling.LANCZOS)
         pictures.append(np.asarray(small))

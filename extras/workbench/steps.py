@@ -73,8 +73,11 @@ def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[R
 
     if action == "calibrate":
         result = revise.calibrate(folder.case, progress=tell)
+    elif action == "add":
+        before = None if folder.stored is None else folder.stored.comparison
+        result = revise.add(folder.case, effect, tell, before)
     else:
-        result = {"add": revise.add, "remove": revise.remove}[action](folder.case, effect, progress=tell)
+        result = revise.remove(folder.case, effect, tell)
     revision = recorded(result, evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
     look = appearance(after, tell)

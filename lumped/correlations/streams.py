@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from geom.errors import InputError
-from lumped.correlations.info import Info
+from lumped.correlations.info import Info, domain
 from lumped.transfer.laws import FILMS, FIRST_C, FULL_UNITS, STEP_K, Array, StreamTable, Table
 from lumped.transfer.properties import TABULATED_C, Fluid
-from lumped.transfer.ranges import within_silence
+from lumped.transfer.ranges import Domain, within_silence
 from lumped.transfer.streamed import Streamed
 
 Moving = Callable[[float, Fluid], tuple[float, Info]]
@@ -36,9 +37,9 @@ def streamed(
     value: float = 1.0,
     stretch: float = 0.0,
 ) -> Streamed:
-    """value times a film over |input|, which warns beyond the range of its correlation.
+    """value times a film over |input|, with the domain of its correlation.
 
-    film : of |input| and fluid;  usual : of |input|, above 0;  degC : usual temperature, at which the range is checked
+    film : of |input| and fluid;  usual : of |input|, above 0;  degC : usual temperature
     liquid : whether the fluid's own temperature counts, else that of the film;  stretch : see StreamTable
     """
     with within_silence():
@@ -49,18 +50,15 @@ def streamed(
         fluids = [fluid(T) for T in temperatures]
         reference = fluid(degC).nu
         shift = [math.log(x.nu / reference) for x in fluids]
-        tops = [_top(film, x, usual) for x in (fluids[0], fluid(degC), fluids[-1])]
-        high = math.log(REACH * usual)
-        high = max(high, math.log(tops[0]) - shift[0], math.log(tops[1]), math.log(tops[2]) - shift[-1])
+        holds = _domain(film, fluid, (degC, usual), [ends[0], *some, ends[1]])
+        high = math.log(max((REACH * usual, *holds.high)))
         states, low = list(zip(fluids, shift, strict=True)), math.log(LEAST * usual)
         number = _numbers(film, states, low, math.log(usual), high)
         each = [_film(film, x, s, y, low) for x, s in states for y in number]
     times = 1.0 if liquid else 2.0
     totals = tuple(times * T for T in temperatures)
     table = StreamTable(of, usual, times * degC, totals, tuple(shift), tuple(number), tuple(each), stretch)
-    with within_silence():
-        least, name = _end(film, fluid(degC), usual, LEAST, high=False), film(usual, fluid(degC))[1].name
-    return Streamed(value, table, tops[1], name, liquid, least if least > LEAST * usual else 0.0)
+    return Streamed(value, replace(table, domain=holds), liquid)
 
 
 def liquid_range(liquid: Callable[[float], Fluid]) -> tuple[float, float]:
@@ -92,25 +90,16 @@ def _film(film: Moving, fluid: Fluid, shift: float, number: float, low: float) -
     return float(film(math.exp(number + shift) if number > low else 0.0, fluid)[0])
 
 
-def _top(film: Moving, fluid: Fluid, usual: float) -> float:
-    """The largest |input| inside the correlation's range, up to MOST times the usual one."""
-    return _end(film, fluid, usual, MOST, high=True)
+def _domain(film: Moving, fluid: Callable[[float], Fluid], usual: tuple[float, float], degC: Sequence[float]) -> Domain:
+    """Over |input| as at the usual viscosity: a Reynolds number's range is then alike at all temperatures."""
+    at, size = usual
+    thin = fluid(at).nu
 
+    def info(T: float, alike: float) -> Info:
+        here = fluid(T)
+        return film(alike * here.nu / thin, here)[1]
 
-def _end(film: Moving, fluid: Fluid, usual: float, times: float, high: bool) -> float:
-    """The last |input| from the usual one to `times` that at which what grows with it is in the correlation's range."""
-
-    def outside(share: float) -> bool:
-        info = film(share * usual, fluid)[1]
-        return any((info.numbers[k] > info.limits[k][1]) is high for k in info.outside)
-
-    inside, gone = 1.0, times
-    if not outside(gone):
-        return gone * usual
-    while max(inside / gone, gone / inside) > 1.01:
-        middle = math.sqrt(inside * gone)
-        inside, gone = (inside, middle) if outside(middle) else (middle, gone)
-    return inside * usual
+    return domain(info, degC, usual, LEAST * size, MOST * size)
 
 
 def _limit(fluid: Callable[[float], Fluid], inside: float, step: float) -> float:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, partial
 
 from geom.plugins import plugins
-from lumped.correlations import Info, film_tabulated, tabulated
+from lumped.correlations import Info, film_tabulated
 from lumped.correlations.streams import Moving, streamed
 from lumped.schemas.reader import Table
 from lumped.transfer.coolant import NAMES, Coolant, coolant
-from lumped.transfer.laws import FILMS, USUAL_RISE_K, FilmTable, Fixed, Law
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.streamed import Streamed
 
 Still = Callable[[float, float], tuple[float, Info]]
 Film = Callable[[float], tuple[float, Info]]  # of |input|
 Of = Callable[[float], Fluid]
-USUAL_C = 20.0  # of a room
 TABLED = 4.0  # of the fastest that is expected: tables reach five times as far (streams.REACH)
 
 
@@ -32,11 +32,11 @@ def natural_film(table: Table) -> tuple[FilmTable, float]:
     table says `fluid_degC`, are those of surfaces in air of that temperature."""
     surfaces = {**still_surfaces(), **plugins("still_air")}
     film, factor = surfaces[table.word("surface", None, surfaces)](table, film_air(table)), table.number("factor", 1.0)
-    film(USUAL_C + USUAL_RISE_K, USUAL_C)  # a size beyond its correlation is said once; its table is made in silence
     if "fluid_degC" not in table:
         return film_tabulated(film), factor
-    curve = tabulated(film, fluid_temperature=table.number("fluid_degC"))
-    return FilmTable(curve.difference, curve.value * FILMS), factor
+    cold = table.number("fluid_degC")
+    follows = film_tabulated(lambda surface, ambient: film(cold + surface - ambient, cold))
+    return replace(follows, value=follows.value[: len(follows.difference)] * FILMS), factor
 
 
 def film_air(table: Table) -> Callable[[float], Fluid]:

@@ -20,6 +20,7 @@ from lumped.numerics.dense import Structure
 from lumped.numerics.kernel import Control, Rows
 from lumped.numerics.tangents import Tangents
 from lumped.numerics.terms import BENDS, DYNAMIC, STIFF, Forcing, Terms
+from lumped.transfer.laws import TemperatureLaw
 
 HOTTEST = 3000.0  # degC: beyond, no part of a machine exists
 FINER = 100.0  # as exact: next to nothing is left of the error then, in 5 times the steps
@@ -56,6 +57,7 @@ class Compiled:
     """What the kernel takes: capacities, constant matrix, terms (named by `names`), what drives them, ...
 
     order (n,) : in which the states are best eliminated;  structure : of an LU in that order
+    tables : the temperature laws of the terms
     """
 
     C: Array
@@ -68,6 +70,7 @@ class Compiled:
     control: Control
     order: Ints
     structure: Structure
+    tables: tuple[TemperatureLaw, ...]
 
     @property
     def stiff(self) -> Mask:
@@ -196,6 +199,7 @@ def compiled(
         pack_rows(rows, network.size),
         control(network, every, m, factors, precision),
         *every.elimination(m != 0.0),
+        tuple(p.law.temperature for p in patterns),
     )
 
 

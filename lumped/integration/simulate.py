@@ -212,7 +212,7 @@ class _Course:
         self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
         self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
         self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
-        self.reach, self.steps = Reach(core.terms), list[Steps]()
+        self.reach, self.steps = Reach(core), list[Steps]()
         self.path: list[Array] | None = None
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
@@ -257,7 +257,7 @@ class _Course:
         self.steps_done += count
         self.steps.append(Steps(X.knot[:count] + first, X.share[:count].copy(), X.kind[:count].copy()))
         if not self.tangents and count:
-            self.reach.see(X.x[:count])
+            self.reach.see(X.x[:count], forcing, X.knot[:count])
         if self.path is not None:
             self.path.append(ends(X, count)[:, self.place[: core.C.size]])
         if self.tangents:
@@ -277,8 +277,9 @@ class _Course:
     def run(self) -> Run:
         """What came of it."""
         if not self.tangents:  # of a fit, whose every run would say so
-            self.reach.see(self.both.z[:1, :-1])
-            self.reach.tell(self.named.names)
+            last = np.array([self.core.forcing.time.size - 1])
+            self.reach.see(self.both.z[:1, :-1], self.core.forcing, last)
+            self.reach.tell()
         clock = self.position.clock
         x, D = self.both.z[0, self.place[: self.core.C.size]], self.moved[1].D[self.place, : self.tangents]
         end = Stand(x, D, float(clock[NEXT]), float(clock[LOW]))

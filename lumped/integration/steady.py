@@ -12,7 +12,7 @@ from geom.errors import NoSolution
 from geom.table import Table, TableResult
 from geom.text import table
 from lumped.integration.compiled import compiled
-from lumped.integration.reach import Reach
+from lumped.integration.reach import tell_reach
 from lumped.integration.record import Record
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics.stages import stages, work
@@ -71,9 +71,7 @@ def steady(
         why = "a node nothing holds, or thermal runaway"
         raise NoSolution(f"{network.title} does not come to rest: {why}")
     z, dz = both.z[0, :-1], scratch.D
-    reach = Reach(core.terms)
-    reach.see(z[None, :])
-    reach.tell(core.names)
+    tell_reach(core, z)
     y, dy = [r.at(z) for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)
 

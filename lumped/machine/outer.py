@@ -148,8 +148,8 @@ def still_air(outer: Outer) -> FilmTable:
     size = outer.size
 
     def plate(surface: float, air: float) -> tuple[float, Info]:
-        up, info = mcadams_plate(size, surface, air, upward=True)
-        return 0.5 * (up + mcadams_plate(size, surface, air, upward=False)[0]), info
+        down, info = mcadams_plate(size, surface, air, upward=False)  # the narrower range of both
+        return 0.5 * (down + mcadams_plate(size, surface, air, upward=True)[0]), info
 
     of: dict[str, Callable[[float, float], tuple[float, Info]]] = {
         SURFACES[0]: lambda s, a: churchill_chu_cylinder(size, s, a),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from geom.description.roles import Identity, Role
-from lumped.model.network import Link, Network, Place
+from lumped.model.network import Link, Network, Place, Source
 from lumped.model.once import once
 
 AXLE = frozenset({Role.BEARING, Role.SHAFT})
@@ -143,6 +143,16 @@ def part_of(network: Network, place: str) -> str:
 def model_links(network: Network) -> list[Link]:
     """Links that no effect has added."""
     return [link for link in network.links if not link.origin]
+
+
+def standing_links(network: Network) -> list[Link]:
+    """Links of the network's own, and those of effects that are in the model: none of an effect on trial."""
+    return [link for link in network.links if not link.origin or link.origin in network.adopted]
+
+
+def standing_sources(network: Network) -> list[Source]:
+    """Losses of the network's own, and those of effects that are in the model."""
+    return [source for source in network.sources if not source.origin or source.origin in network.adopted]
 
 
 def cell(network: Network, place: str) -> bool:

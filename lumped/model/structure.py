@@ -163,6 +163,7 @@ class Structure:
     settles_s : time constant (s) of the whole, roughly; with C it says how large a missing path usually is
     declared : what parts, nodes, fluids and boundaries are said to be, by name
     quantities : input -> what it measures ("speed");  signals : quantity -> the input of the machine's own
+    adopted : effects that are in the model, so that others act on what these brought
     file : where it was read from; "" of a network that no file declares
     """
 
@@ -180,6 +181,7 @@ class Structure:
     declared: Mapping[str, Identity] = field(default_factory=dict)
     quantities: Mapping[str, str] = field(default_factory=dict)
     signals: Mapping[str, str] = field(default_factory=dict)
+    adopted: frozenset[str] = frozenset()
     file: str = field(default="", compare=False)
 
     @property

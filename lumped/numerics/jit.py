@@ -8,10 +8,12 @@ code holds all inner functions: it is stale when any of their files has changed,
 """
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from numba import njit
+from numba.core.runtime import rtsys
 
 _OPTIONS: dict[str, Any] = {
     "nogil": True,
@@ -27,9 +29,18 @@ _NEWEST = max(path.stat().st_mtime_ns for path in Path(__file__).parent.glob("*.
 def entry(function: Callable[..., Any]) -> Any:
     """Compiled and cached until its own file, or any of this folder, changes."""
     compiled = njit(**_OPTIONS, cache=True)(function)
-    if (file := getattr(compiled._cache, "_cache_file", None)) is not None:
+    cache = compiled._cache
+    if (file := getattr(cache, "_cache_file", None)) is not None:
         file._source_stamp = (file._source_stamp, _NEWEST)
+        cache.load_overload = partial(_loaded, cache)
     return compiled
+
+
+def _loaded(cache: Any, signature: Any, target: Any) -> Any:
+    """What is cached for a signature, without all that numba can compile: listing that takes longer than a run."""
+    rtsys.initialize(target)
+    with cache._guard_against_spurious_io_errors():
+        return cache._load_overload(signature, target)
 
 
 _HIDDEN = {**_OPTIONS, "no_cpython_wrapper": True}

@@ -13,7 +13,7 @@ from lumped.schemas.schema import meaning
 
 SHORT = 60  # characters of a wrong value that a message repeats
 # Keys whose words are sentences or ways to files; all others are names.
-FREE = ("description", "source", "why", "reason", "file", "sheet", "machine", "network", "columns_of")
+FREE = ("description", "guesses", "source", "why", "reason", "file", "sheet", "machine", "network", "columns_of")
 
 
 def suggestion(word: str, words: Iterable[str], before: str = "known") -> str:

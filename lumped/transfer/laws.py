@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from geom.arrays import Array, Ints
+from lumped.transfer.ranges import Domain
 
 Inputs = Mapping[str, Array]
 
@@ -79,10 +80,30 @@ class FilmTable(TemperatureLaw):
     """Piecewise linear in |hot - cold| and in the film temperature (hot + cold) / 2, held flat outside.
 
     difference : (nd,) K, increasing from 0;  value : (FILMS * nd,), one film temperature after the other
+    domain : of its correlation, over the film temperature and |hot - cold|
     """
 
     difference: tuple[float, ...]
     value: tuple[float, ...]
+    domain: Domain | None = None
+
+    @property
+    def films(self) -> tuple[float, float]:
+        """The film temperatures (degC) at which it begins and ends."""
+        return FIRST_C, FIRST_C + STEP_K * (FILMS - 1)
+
+    @property
+    def follows(self) -> bool:
+        """Whether its air has the properties of its temperature, else of one."""
+        return bool(np.ptp(np.reshape(self.value, (FILMS, -1)), axis=0).any())
+
+    def left(self, size: float, degC: float, _: float) -> str:
+        """How |hot - cold| (K) and a film temperature lie outside the correlation, with value and range."""
+        assert self.domain is not None
+        if words := self.domain.beside(degC, "film"):
+            return words
+        low, high = map(float, self.domain.ends(degC))
+        return f"{self.domain.what}: {size:.4g} K beside its air outside {low:.4g} to {high:.4g}"
 
     def at(self, difference: float, total: Array | float) -> Array:
         """The law at hot - cold (K) and hot + cold (degC)."""
@@ -108,6 +129,7 @@ class StreamTable(TemperatureLaw):
     stretch : of a film onto what leaves an upwind cell, the wetted area over the heat capacity rate of an input of 1
         (m2 K/W); with N = h stretch / |input| the value is then h (exp(N) - 1) / N, exact for walls of one temperature.
         Beyond FULL_UNITS the coolant leaves as warm as its walls; where it all but stands the value is h again.
+    domain : of the correlation, over its fluid's temperature and |input| at the viscosity of `degC`
     still : film of still air on the same face; the value is then what blown air adds to it, (h^n + still^n)^(1/n) -
         still with n = exponent (Churchill 1977)
     """
@@ -122,6 +144,7 @@ class StreamTable(TemperatureLaw):
     stretch: float = 0.0
     still: FilmTable | None = None
     exponent: float = 3.0
+    domain: Domain | None = None
 
     def level(self, inputs: Inputs) -> Array | float:
         return self.at(self.size(inputs), self.degC)
@@ -129,6 +152,22 @@ class StreamTable(TemperatureLaw):
     def size(self, inputs: Inputs) -> Array | float:
         """|input|"""
         return self.usual if self.of is None else np.abs(np.asarray(inputs[self.of], float))
+
+    def ends(self, degC: Array | float, share: float) -> tuple[Array, Array]:
+        """The least and the largest |input| of the correlation at temperatures of its fluid: of `total`, a share."""
+        assert self.domain is not None
+        thicker = np.exp(np.interp(np.asarray(degC) / share, self.total, self.shift))
+        low, high = self.domain.ends(degC)
+        return low * thicker, high * thicker
+
+    def left(self, size: float, degC: float, share: float) -> str:
+        """How an |input| and a temperature lie outside the correlation, with value and range; else nothing."""
+        assert self.domain is not None
+        if words := self.domain.beside(degC, "coolant" if share == 1.0 else "film"):
+            return words
+        low, high = map(float, self.ends(degC, share))
+        at = f"{self.domain.what}: {self.of or 'flow'} = {size:.4g} at {degC:.4g} degC"
+        return "" if low <= size <= high else f"{at} outside {low:.4g} to {high:.4g}"
 
     def at(self, size: Array | float, total: Array | float, difference: float = USUAL_RISE_K) -> Array:
         """The law at |input|, hot + cold (degC) and hot - cold (K)."""
@@ -227,7 +266,6 @@ class AtUsualTemperature(Wrapped):
     temperature: TemperatureLaw = CONSTANT
 
     def factor(self, inputs: Inputs) -> Array | float:
-        self.base.factor(inputs)
         return self.base.size(inputs)
 
 

@@ -7,6 +7,11 @@ import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+from geom.arrays import Array
 
 _thread = threading.local()
 
@@ -38,3 +43,31 @@ def within_silence() -> Iterator[None]:
         yield
     finally:
         _thread.silent = before
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Where a correlation is in the range of its source.
+
+    degC : rising temperatures of its fluid, from the first to the last that it is for; none: it holds nowhere
+    low, high : at each of them, the least and the largest of what it follows; straight in between
+    what : the correlation; of one that holds nowhere its own words
+    """
+
+    what: str
+    degC: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+
+    def ends(self, degC: Array | float) -> tuple[Array, Array]:
+        """The least and the largest at temperatures of the fluid."""
+        low, high = (np.asarray(np.interp(degC, self.degC, x)) for x in (self.low, self.high))
+        return low, high
+
+    def beside(self, degC: float, fluid: str) -> str:
+        """How a temperature of the fluid lies outside, with value and range; else nothing."""
+        if not self.degC:
+            return self.what
+        low, high = self.degC[0], self.degC[-1]
+        what = f"its {fluid} at {degC:.4g} degC outside {low:.4g} to {high:.4g} ({self.what})"
+        return "" if low <= degC <= high else what

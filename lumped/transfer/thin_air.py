@@ -53,7 +53,7 @@ class Slowed(Wrapped):
 def thin_film(law: Law, rho: float, moving: Collection[str]) -> Law:
     """A film in air of `rho` times its density.  moving : the inputs that move air"""
     if isinstance(law, Streamed):
-        return replace(law, table=_thin_table(law.table, rho), top=law.top / rho)
+        return replace(law, table=_thin_table(law.table, rho))
     if isinstance(law, Wrapped):
         inner = replace(law, base=thin_film(law.base, rho, moving))
         return replace(inner, temperature=_thin(law.temperature, rho)) if isinstance(inner, WithTemperature) else inner
@@ -74,13 +74,22 @@ def thin_stream(law: Law, rho: float) -> Law:
 def _thin(law: TemperatureLaw, rho: float) -> TemperatureLaw:
     if isinstance(law, StreamTable):
         return _thin_table(law, rho)
-    if isinstance(law, FilmTable) or (isinstance(law, Table) and law.difference[0] >= 0.0):
-        return replace(law, difference=tuple(d / rho**2 for d in law.difference))
+    if isinstance(law, FilmTable):
+        return _thin_film(law, rho)
+    if isinstance(law, Table) and law.difference[0] >= 0.0:
+        return replace(law, difference=_over(law.difference, rho**2))
     return law
 
 
+def _thin_film(law: FilmTable, rho: float) -> FilmTable:
+    holds = law.domain and replace(law.domain, low=_over(law.domain.low, rho**2), high=_over(law.domain.high, rho**2))
+    return replace(law, difference=_over(law.difference, rho**2), domain=holds)
+
+
+def _over(values: tuple[float, ...], by: float) -> tuple[float, ...]:
+    return tuple(x / by for x in values)
+
+
 def _thin_table(law: StreamTable, rho: float) -> StreamTable:
-    still = (
-        None if law.still is None else replace(law.still, difference=tuple(d / rho**2 for d in law.still.difference))
-    )
+    still = law.still and _thin_film(law.still, rho)
     return replace(law, shift=tuple(s - math.log(rho) for s in law.shift), still=still)

@@ -48,6 +48,7 @@ LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
 OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
+END_OF_SHAFT = re.compile(r"(?<![A-Za-z])(?:N?DE|[AB]S)(?![A-Za-z])")  # drive and non-drive end, or A-Seite and B-Seite
 DESIRED = re.compile(r"(?<=[^\W\d])(?:[_ ][Dd]es|Des)(?=\s*(?:$|[\\(\[]))")  # last: in French it is an article
 AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:current|strom)[_ .]?(d|q)(?![a-z])")
 
@@ -95,6 +96,8 @@ def quantities_of(name: str) -> list[str]:
         if not inside[q] and any(w[-SHORTEST:] in terms for w in words if len(w) > 1)
     }
     quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
+    if quantities == ["water_flow"] and WORDS["air"] & {*words}:
+        return ["air_flow"]
     return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
 
 
@@ -108,7 +111,7 @@ def roles_of(name: str) -> list[Role]:
     hits = {}
     for role, terms in ROLES.items():
         at = [
-            (w in OUTER or role is Role.TEST_BED, w not in terms, i)
+            (w in OUTER or role is Role.TEST_BED, w not in terms, i, -_end(w, terms))
             for i, w in enumerate(words)
             if w in terms or _inside(w, terms)
         ]
@@ -118,6 +121,8 @@ def roles_of(name: str) -> list[Role]:
         return [Role.WINDING]
     if not hits and OUTSIDE.search(name):
         return [Role.AMBIENT]
+    if not hits and END_OF_SHAFT.search(name):
+        return [Role.BEARING]
     return sorted(hits, key=lambda role: hits[role])
 
 
@@ -140,6 +145,11 @@ def is_spoken(name: str, terms: frozenset[str]) -> bool:
     """Does one of some words stand in a name?  Signs that are words may stand inside others."""
     signs = [term for term in terms if term[0] >= IDEOGRAPHS]
     return any(word in terms or any(sign in word for sign in signs) for word in tokens(name))
+
+
+def _end(word: str, words: frozenset[str]) -> int:
+    """Where the last of some words ends inside another: of a compound the last names it."""
+    return max((word.rfind(k) + len(k) for k in words if len(k) >= SHORTEST and k in word), default=0)
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:

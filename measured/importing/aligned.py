@@ -9,7 +9,7 @@ import numpy as np
 
 from geom.errors import InputError
 from measured.headers.words import RUNS, tokens
-from measured.importing.clock import Clock
+from measured.importing.clock import HOUR_S, ZONELESS, Clock
 from measured.importing.guess import Guess
 from measured.importing.long_table import HOLD
 from measured.importing.source import Source, signature
@@ -52,9 +52,13 @@ class Recording:
 def shift(first: Recording, other: Recording) -> tuple[float, str]:
     """Seconds to add to the other's clock, and by what. InputError for clocks that never overlap or show no onset."""
     if first.clock.start is not None and other.clock.start is not None:
-        shift_s = other.clock.start - first.clock.start
+        shift_s, how = other.clock.start - first.clock.start, "both clocks show dates"
+        if (ZONELESS in first.clock.words) != (ZONELESS in other.clock.words):
+            hours = [shift_s + HOUR_S * n for n in range(-14, 15)]
+            shift_s = max([shift_s, *hours], key=lambda s: (_overlap(first, other, s), -abs(s)))
+            how += ", of which one has no zone: the whole hours are guessed"
         _overlapping(first, other, shift_s)
-        return shift_s, "both clocks show dates"
+        return shift_s, how
     near, shift_s = 2 * max(first.step_s, other.step_s), other.clock.at_s - first.clock.at_s
     runs = any(RUNS & {*tokens(name)} for name in signature(first.source) & signature(other.source))
     if abs(shift_s) <= near and (runs or first.clock.at_s > 10 * near):  # of one board, or of rows that tell the runs
@@ -116,6 +120,11 @@ def longest_part(
     start, stop, column = gaps[0]
     what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
+
+
+def _overlap(first: Recording, other: Recording, shift_s: float) -> float:
+    """For how long (s) both run."""
+    return min(first.clock.end_s, shift_s + other.clock.end_s) - max(0.0, shift_s)
 
 
 def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:

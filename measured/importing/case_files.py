@@ -26,6 +26,7 @@ from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, toke
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
+from measured.importing.relations import is_equal
 from measured.importing.source import Source, over_room, read_source, read_sources, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
@@ -86,14 +87,18 @@ def _unwound_by_termination() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def write_case(folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft]) -> None:
-    """model : puts the machine or network into the folder and returns its line of case.toml."""
+def write_case(
+    folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft], doubts: str = ""
+) -> None:
+    """model : puts the machine or network into the folder and returns its line of case.toml;  doubts : to be repeated
+    until the user takes them out."""
     lines = [
         "# Written by thermoscope test new. Every line may be changed.",
         "[case]",
         f"name = {toml_value(name)}",
         model(folder),
         f"sample_s = {sample_of(drafts):g}",
+        *[f"guesses = {toml_value(doubts)}   # compare repeats it: take out what you have checked"] * bool(doubts),
         "",
     ]
     for draft, role, names in zip(drafts, roles(len(drafts)), sensor_names(drafts), strict=True):
@@ -131,10 +136,12 @@ def with_loss(source: Source) -> Source:
     heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
     if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
         return source
-    name = "loss {} - {}".format(*ends)
+    loss = source.numbers(ends[0]) - source.numbers(ends[1])
+    equal = [c for c in words if c not in ends and is_equal(source.numbers(c), loss)]
+    name = equal[0] if equal else "loss {} - {}".format(*ends)
     note = f"{source.file.name}: '{name}' is of all between them; what each part loses is not recorded"
-    cells = {**source.cells, name: source.numbers(ends[0]) - source.numbers(ends[1])}
-    labels, notes = {**source.labels, name: name}, (*source.notes, note)
+    cells, notes = {**source.cells, name: source.cells[name] if equal else loss}, (*source.notes, note)
+    labels = {**source.labels, name: f"loss {name}" if equal else name}
     return replace(source, cells=cells, labels=labels, units={**units, name: units[ends[0]]}, notes=notes, values={})
 
 

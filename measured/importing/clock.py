@@ -49,6 +49,7 @@ COUNTS = (
     ((5.5e17, 7e17), 1e-7, "ticks of 100 ns"),
 )
 TIME_UNITS = {**{u: f for u, (f, _) in QUANTITIES["time"].units.items()}, "us": 1e-6, "ns": 1e-9, "day": DAY_S}
+ZONELESS = "without a zone"
 SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
 LEAST = 3  # rows with a time
@@ -375,7 +376,7 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     doubt = f"is it {order.rstrip(', ')}?" if unclear and several else ""
     lost = len([c for c in cells if str(c or "").strip()]) - len(read)
     doubt = doubt or (f"{lost} of {len(cells)} times could not be read" if lost > (1 - SHARE) * len(cells) else "")
-    clock = _since_first(seconds, columns, f"dates, {order}{'with' if zone else 'without'} a zone")
+    clock = _since_first(seconds, columns, f"dates, {order}{'with a zone' if zone else ZONELESS}")
     return replace(clock, doubt=doubt)
 
 

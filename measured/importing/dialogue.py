@@ -11,7 +11,7 @@ from geom.text import visible
 from lumped.schemas.reader import suggestion
 from measured.headers.cells import number, unit_of
 from measured.headers.words import is_setpoint
-from measured.importing.draft import Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
+from measured.importing.draft import ASSUMED_ROOM, Draft, coldest_start, missing_boundaries, missing_inputs, squares_of
 from measured.importing.guess import Guess
 from measured.importing.source import Source
 from measured.importing.target import Target
@@ -93,10 +93,7 @@ class Dialogue:
             text = self._number(f"{draft.name}: temperature of {name} (degC)?", f"{usual:g}")
             values[name] = usual if text is None else text
             if text is None:
-                notes.append(
-                    f"{name} was not recorded: {usual:g} degC is assumed, the coldest sensor at the start "
-                    f"(--set {name}=VALUE)"
-                )
+                notes.append(f"{name} was not recorded: {usual:g} degC {ASSUMED_ROOM} (--set {name}=VALUE)")
         return replace(draft, boundaries=values, notes=tuple(notes))
 
     def _with_inputs(self, draft: Draft) -> Draft:

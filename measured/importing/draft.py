@@ -17,6 +17,7 @@ from measured.importing.target import Target
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
 LONGEST_STEP_S = 86400.0  # of an analysis
 NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
+ASSUMED_ROOM = "is assumed, the coldest sensor at the start"
 STILL = 5  # readings whose median a column starts from
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,6 +40,7 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
+from measured.importing.relations import SAME, START_K, functional_relations, is_like_temperature, is_product, quickness
 from measured.importing.source import Source
 from measured.importing.target import Target
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -47,6 +48,9 @@ from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITC
 
 KELVIN = (200.0, 500.0)  # medians of temperatures in K of a machine; in degC a machine of 200 is past its insulation
 ALIKE_F = 4.0  # degF between sensors of a machine at rest
+FIRST_ROWS = 5  # whose median a column starts at
+ALIKE_K = 3.0  # between sensors of a machine at rest
+FALLING = 0.05  # of its steps: no clock runs back as often
 STATES = 16  # whole numbers below it, under the name of a part alone
 UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
@@ -80,9 +84,24 @@ NUMBERED = "place by its number only"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
-NAMELESS = "no name"
 RELATIVE = "relative to a nominal"
-LOUD = (UNKNOWN, RELATIVE, IN_HEADER, NAMELESS, DEMAND, OF_INSTRUMENT, HARDLY, SEVERAL)  # of columns that are used
+BY_READINGS = "a temperature, by its readings alone"
+FACTORS = ("current", "voltage", "torque", "speed")
+PASSES = "a product of other columns: it passes through"
+NO_UNIT = "no unit"
+FUNCTION = "made of other columns"
+OF_SENSOR = "of a sensor"
+FASTEST = "follows the heat fastest: taken as the winding"
+QUICK = 0.6  # of the fastest: windings of the same machine
+PERCENT = 130.0  # of a load, at most
+MANUAL = "left out by hand"
+CERTAIN = (
+    "a set point, not a reading",
+    "a number that names a row",
+    MANUAL,
+    FUNCTION,
+    "--set gives it",
+)  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
@@ -113,14 +132,95 @@ class Guess:
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
-    every = _read(source, [guess(source, c, target) for c in source.cells if c not in clock])
+    every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
+    every = _cold_start_outliers(source, _read(source, _without_functions(source, every)))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target))
+    every = _products(source, every, target)
+    every = _quickest(source, every, target)
+    return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
+
+
+def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """With columns as temperatures whose readings are like those of the others, where no unit says what they are."""
+    hot = [g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])]
+    firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
+    starts = [float(np.median(v)) for v in firsts if v.size]
+    return [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
+
+
+def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
+    """A column by its readings; a doubt, where a word of its name says otherwise."""
+    label, untold = source.labels[g.column], g.doubt == UNTOLD
+    if g.quantity == "temperature" or source.units[g.column] or not (untold or starts):
+        return g
+    if not is_like_temperature(source.numbers(g.column), starts, START_K if untold else ALIKE_K):
+        return g
+    if untold or all(len(w) == 1 for w in tokens(label) if w in QUANTITY[g.quantity]):
+        return _placed(Guess(g.column, "temperature", "degC", why="readings", doubt=BY_READINGS), label, target)
+    return replace(g, doubt=f"or {BY_READINGS}")
+
+
+def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
+    """Without what is a function of temperatures; a copy under a name of its own is doubted."""
+    hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
+    roles = {c: roles_of(source.labels[c])[:1] for c in hot}
+    order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
+    others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
+    free = {*others} | {c for c in order if not source.units[c]}
+    functions = functional_relations({c: in_memory(source, hot[c]) for c in order}, others, free)
+    out = []
+    for g in every:
+        why = functions.get(g.column, "")
+        twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
+        distinct = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
+        out.append(replace(g, doubt=why) if distinct else g.without(f"{FUNCTION}: {why}") if why else g)
+    return out
+
+
+def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """With a doubt at the columns that follow the heat fastest, where none is of a winding by its name."""
+    hot = {
+        g.column: roles_of(source.labels[g.column]) for g in every if g.quantity == "temperature" and g.why != "values"
+    }
+    heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
+    if not heats or any(Role.WINDING in roles or is_whole(source.labels[c]) for c, roles in hot.items()):
+        return every
+    edges = ([Role.AMBIENT], [Role.COOLANT])
+    parts = [g for g in every if hot.get(g.column, edges[0])[:1] not in edges]
+    parts = [g for g in parts if not g.doubt.startswith((*CERTAIN, OF_INSTRUMENT))]
+    scores = {g.column: quickness(in_memory(source, g), heats[0]) for g in parts}
+    most = max(scores.values(), default=0.0)
+    quick = [c for c, score in scores.items() if score > QUICK * most > 0.0]
+    if len(quick) == len(scores) or any(hot[c] for c in quick):
+        return every
+    first = not target.places  # of a network that is to be made from the columns
+    doubts = {g.column: FASTEST if first or not g.doubt else f"{g.doubt}; {FASTEST}" for g in every}
+    return [replace(g, doubt=doubts[g.column]) if g.column in quick and (first or g.place) else g for g in every]
+
+
+def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """Without powers that are products of what was recorded, where something turns: they pass through it."""
+    factors = {g.column: source.numbers(g.column) for g in every if g.feeds and g.quantity in FACTORS}
+    if not any(g.feeds and g.quantity == "speed" for g in every):
+        return every
+    return [
+        g.without(PASSES)
+        if g.quantity == "power"
+        and g.feeds not in target.inputs
+        and is_product(source.numbers(g.column), [*factors.values()])
+        else g
+        for g in every
+    ]
+
+
+def _is_plain(source: Source, g: Guess) -> bool:
+    """May its numbers be those of other columns, whatever it is called?"""
+    return source.is_numeric(g.column) and g.why != SUREST and (g.used or g.doubt in ("", UNTOLD))
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
@@ -138,7 +238,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
-        g.without("made of the reading beside it")
+        g.without(f"{FUNCTION}: of the reading beside it")
         if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
         else g
         for g in every
@@ -169,7 +269,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
     label, unit_text = source.labels[column], source.units[column]
-    unit = unit_of(unit_text)
+    unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
@@ -196,9 +296,36 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
 
+def _cold_start_outliers(source: Source, every: list[Guess]) -> list[Guess]:
+    """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
+    starts = {
+        g.column: float(v[np.isfinite(v)][0])
+        for g in every
+        if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)
+        for v in [in_memory(source, g)]
+        if np.isfinite(v).any()
+    }
+    usual = float(np.median([*starts.values()])) if starts else 0.0
+    odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
+    odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT] or is_spoken(source.labels[c], INLET)}
+    rest = [abs(start - usual) for c, start in starts.items() if c not in odd]
+    if len(rest) < max(len(odd) + 1, 3) or float(np.mean(rest)) > ALIKE_K / 2:
+        return every
+    return [
+        replace(
+            g,
+            doubt=g.doubt
+            or f"starts at {starts[g.column]:.3g} degC, all others near {usual:.3g}: is it of this machine?",
+        )
+        if g.column in odd
+        else g
+        for g in every
+    ]
+
+
 def _left_out(source: Source, column: str) -> str:
     """Why a column is none that a model reads, "" where it may be one: a unit in its header is law."""
-    if is_second_clock(source, column):
+    if is_second_clock(source, column) and not _runs_back(source, column):
         return "a second clock, or a counter"
     if not source.is_numeric(column):
         return "words, not numbers" if np.size(source.cells[column]) and source.is_filled(column) else "empty"
@@ -208,7 +335,7 @@ def _left_out(source: Source, column: str) -> str:
     unit_text, label = source.units[column], source.labels[column]
     unit, quantities = unit_of(unit_text), quantities_of(label)
     if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
-        return f"in {unit}: of a sensor, no reading of its own"
+        return f"in {unit}: {OF_SENSOR}, no reading of its own"
     if unit_text and not unit:
         return f"its unit '{unit_text}' is of nothing a model reads"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
@@ -257,6 +384,14 @@ def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
     return replace(g, unit="degF", doubt="no unit: degF by its values")
 
 
+def _runs_back(source: Source, column: str) -> bool:
+    """Is it too uneven for a clock: does it fall as often as readings do, and has it no unit of time?"""
+    if source.units[column] or not source.is_numeric(column):
+        return False
+    steps = np.diff(source.numbers(column))
+    return bool((steps < 0).sum() > FALLING * (steps != 0).sum())
+
+
 def _counts_on(source: Source, column: str) -> bool:
     """Does it rise in every row?"""
     values = source.numbers(column)
@@ -286,9 +421,17 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
         return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not worded else ""
+    if label in target.places_by_header:  # told by its readings, or by hand
+        return "", "", ""
     place, _ = target.place_of(label)
-    alike = label in target.places_by_header or {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
+    alike = {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
     return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
+
+
+def _called_unit(label: str) -> str:
+    """The unit that is all of a name, as in a column "rpm" or "mA"; letters alone are rather of phases."""
+    unit = unit_of(label) if len(label) > 1 else ""
+    return unit if any(unit in QUANTITIES[q].units for q in FIRST) else ""
 
 
 def _by_values(source: Source, column: str) -> tuple[str, str, str]:
@@ -301,7 +444,7 @@ def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and np.unique(values).size > 0.1 * values.size
     if not (smooth and (absolute or celsius)):
         return "", "", ""
-    return "temperature", "values", f"{NAMELESS}: a temperature, by its values?"
+    return "temperature", "values", f"no name: {BY_READINGS}"
 
 
 def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, str]:
@@ -320,10 +463,13 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
     if unit:
         return unit, ""
     if quantity == "share":
-        small = float(np.nanmax(np.abs(values))) <= 1.0
+        most = float(np.nanmax(np.abs(values)))
+        small = most <= 1.0
+        if most > PERCENT:
+            return "%", f"goes to {most:g}, so in no percent: only its changes count"
         return ("1" if small else "%"), "no unit: by its values"
     first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
-    return first_unit, f"no unit: {first_unit} is assumed"
+    return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:
@@ -352,13 +498,13 @@ def _fed(base: Guess, label: str, target: Target) -> Guess:
     return replace(base, feeds=name or QUANTITIES[base.quantity].feeds)
 
 
-def single(guesses: list[Guess], target: Target) -> list[Guess]:
+def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> list[Guess]:
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
 
     def order(g: Guess) -> tuple[bool, ...]:
-        words = set(tokens(g.column))
+        words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
@@ -375,7 +521,9 @@ def single(guesses: list[Guess], target: Target) -> list[Guess]:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif g.feeds and (g.feeds not in target.inputs or _of_part(g, owner[key])) and not is_setpoint(g.column):
+        elif (
+            g.feeds and (g.feeds not in target.inputs or _of_part(g, labels[owner[key]])) and not is_setpoint(g.column)
+        ):
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
@@ -406,7 +554,7 @@ def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, tar
 def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
     """A column where the user puts it."""
     if not to:
-        return g.without("left out by hand")
+        return g.without(MANUAL)
     if not source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
     if to in target.places or to in target.boundaries:

@@ -37,7 +37,9 @@ SCALED = re.compile(
     r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
 )  # x0.1 °C, 1/10 °C, 10 mA
 TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a register of whole numbers
+LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
+HOURS = re.compile(r"(?:[01]?\d|2[0-4])\s*[hH]\s*[0-5]\d")  # 10h05, by hand in French
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -235,6 +237,7 @@ def _source(
             scale = {c: converted(np.array(number(c)), quantity, unit) for unit, of in texts[n].items() for c in of}
             cells[n], texts[n] = [scale.get(c, c) for c in cells[n]], {MEMORY_UNIT[quantity]: []}
             notes = [*notes, f"{file.name}: units change within '{n}': it is read in {MEMORY_UNIT[quantity]}"]
+    split = {n: (n, "") if texts[n] and unit_of(split[n][1]) not in texts[n] else split[n] for n in cells}
     unit_texts = {n: units.get(n, "") or split[n][1] or next(iter(texts[n]), "") for n in cells}
     for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
         is_unit_column = header.lower().startswith(UNIT_NAMES)
@@ -243,13 +246,31 @@ def _source(
         if len(beside) == 1 and words and not unit_texts[before]:
             unit_texts[before] = words[0]
     labels = {n: n if units.get(n, "") else split[n][0] or n for n in cells}
+    labels = _without_groups(labels)
     labels = {n: name if re.search(r"[^\W\d]", name := TAG.sub("", label)) else label for n, label in labels.items()}
     return Source(cells, unit_texts, start, tuple(notes), file=file, labels=labels)
 
 
+def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
+    """Names of paths without the groups that all of them begin with, and the end that most of them share."""
+    paths = {n: re.split("/+", label) for n, label in labels.items() if "/" in label}
+    if len(paths) < LEAST_PATHS:
+        return dict(labels)
+    same = sum(1 for _ in itertools.takewhile(lambda level: len({*level}) == 1, zip(*paths.values(), strict=False)))
+    last, count = Counter(path[-1] for path in paths.values()).most_common(1)[0]
+    paths = {n: path[min(same, len(path) - 1) :] for n, path in paths.items()}
+    ending = last if count > len(paths) / 3 else ""
+    return {**labels, **{n: "/".join(p[:-1] if p[-1] == ending and len(p) > 1 else p) for n, p in paths.items()}}
+
+
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
-    """Times of day that are written as dates are, 09.14.05: a year that changes from row to row is a second."""
-    if isinstance(cells, np.ndarray) or not all(isinstance(c, str) and POINTED.fullmatch(c.strip()) for c in cells[:9]):
+    """Times of day that are written as 10h05, or as dates are, 09.14.05: a year that changes from row to row is a
+    second."""
+    if isinstance(cells, np.ndarray) or not all(isinstance(c, str) for c in cells):
+        return cells
+    if all(HOURS.fullmatch(c.strip()) for c in cells):
+        return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
+    if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):
         return cells
     seconds = {str(c)[-2:] for c in cells}
     return [str(c).replace(".", ":") for c in cells] if len(seconds) > 2 else cells

@@ -9,7 +9,6 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from shlex import quote
 
 import numpy as np
 
@@ -17,21 +16,8 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
-from measured.headers.words import CHANNELS, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
-from measured.importing.draft import Draft
-from measured.importing.guess import (
-    AXES,
-    CODES_ALONE,
-    ELSE,
-    LOUD,
-    NUMBERED,
-    OF_INSTRUMENT,
-    THAT_CAN_BE,
-    Array,
-    Guess,
-    in_memory,
-    is_whole,
-)
+from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
+from measured.importing.guess import AXES, FASTEST, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -43,6 +29,8 @@ STIRS = {"speed", "vehicle_speed", "air_flow", "water_flow"}  # what a share of 
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
+MOST = (2.0, 98.0)  # per cent of the readings between which they are no outliers
+COLD_K = 3.0  # by which a room may be warmer than the parts at the start
 SPREAD = 1.0  # prior of everything here, in powers of e
 
 
@@ -69,6 +57,7 @@ class FirstNetwork:
 
     capacities : node -> (J/K, prior of its logarithm);  terms : links and losses;  watts : mean of all losses
     learnt : tests that its numbers were learnt from, none where they are orders of magnitude
+    wound : nodes of the winding by their readings
     """
 
     name: str
@@ -77,12 +66,14 @@ class FirstNetwork:
     terms: Sequence[FirstTerm]
     watts: float
     learnt: Sequence[str] = ()
+    wound: frozenset[str] = frozenset()
 
     def text(self) -> str:
         """As network.toml."""
         lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
         lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
         role_of = {node: next(iter(roles_of(node)), "") for node in self.capacities}
+        role_of |= dict.fromkeys(self.wound, Role.WINDING)
         whole = [node for node in role_of if is_whole(node)]
         if len(whole) == 1 and Role.WINDING not in role_of.values():  # "motor temperature" of drives
             role_of[whole[0]] = Role.WINDING
@@ -131,10 +122,20 @@ def of_machine(columns: Columns) -> Columns:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
     if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
         return columns
-    source, room = min(parts, key=lambda one: float(np.nanmean(in_memory(*one))))
-    if roles_of(source.labels[room.column]) or rise(source, room) > STILL * max(rise(*one) for one in parts):
+    still = [one for one in parts if not roles_of(one[0].labels[one[1].column]) and _is_still(one, parts)]
+    if not still:
         return columns
+    _, room = min(still, key=lambda one: float(np.nanmean(in_memory(*one))))
     return [(s, replace(g, place="ambient") if g.column == room.column else g) for s, g in columns]
+
+
+def _is_still(one: tuple[Source, Guess], parts: Columns) -> bool:
+    """Does it hardly change, and is it as cold as the others were when they began?"""
+    values = in_memory(*one)
+    span = float(np.ptp(np.nanpercentile(values, MOST)))
+    starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
+    cold = float(np.nanmean(values)) <= float(np.median(starts)) + COLD_K
+    return cold and span <= STILL * max(rise(*part) for part in parts)
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
@@ -155,64 +156,11 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     G = watts / max(*rises.values(), 1.0)
     inside = [FirstTerm(pair, 5 * G) for pair in itertools.pairwise(nodes)]
     outside = [FirstTerm((n, b), G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
+    wound = frozenset(place for _, g, place in hot if FASTEST in g.doubt)
     capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
-    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts)
+    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts, wound=wound)
 
 
-def unplaced(drafts: Sequence[Draft]) -> list[str]:
-    """What matters and was left out: a temperature of the winding, the only heat, a clock; of the first such test."""
-    out: dict[str, str] = {}
-    for draft in drafts:
-        columns = [(r.source, g) for r in draft.records for g in r.guesses]
-        left = [(s, g) for s, g in columns if not g.used and s.is_filled(g.column) and g.doubt not in ALONE]
-        hot_left = [(s, g) for s, g in left if g.quantity in ("", "temperature")]
-        hot_left = [(s, g) for s, g in hot_left if quantities_of(s.labels[g.column]) in ([], ["temperature"])]
-        wound = [g.column for s, g in hot_left if Role.WINDING in roles_of(s.labels[g.column])[:1]]
-        ohms = [g.column for _, g in left if g.quantity == "resistance"]
-        if not any(Role.WINDING in roles_of(f"{s.labels[g.column]} {g.place}") for s, g in columns if g.place):
-            if wound:
-                how = f"'{wound[0]}' looks like winding; --place {quote(f'{wound[0]}=PLACE')}"
-                out.setdefault("winding", f"the winding was not placed: {how}")
-            elif ohms:
-                how = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
-                out.setdefault("winding", f"the winding was not placed: {how}")
-        for _, g in hot_left:
-            if any(doubt in g.doubt for doubt in LOST):
-                key = g.doubt if g.doubt == OF_INSTRUMENT else g.column
-                out.setdefault(key, f"'{g.column}' is left out: {g.doubt}")
-        if others := [g for _, g in hot_left if g.doubt.endswith("gives coolant already")]:
-            out.setdefault("outlet", f"'{others[0].column}' stays in the file as a check, and feeds nothing")
-        rooms = [g.column for s, g in hot_left if g.quantity and roles_of(s.labels[g.column])[:1] == [Role.AMBIENT]]
-        if rooms and any(note.startswith("ambient was not recorded") for note in draft.notes):
-            how = f"'{rooms[0]}' looks like the room; --place {quote(f'{rooms[0]}=ambient')}"
-            out.setdefault("ambient", f"the room was not placed: {how}")
-        for doubt in LOUD:
-            if loud := [g for _, g in columns if g.used and doubt in g.doubt]:
-                out.setdefault(doubt, f"'{loud[0].column}': {loud[0].doubt}")
-        if plain := [g.column for _, g in columns if NUMBERED in g.doubt]:
-            many = f"'{plain[0]}'" if len(plain) == 1 else f"'{plain[0]}' to '{plain[-1]}'"
-            how = f"{'is' if len(plain) == 1 else 'are'} placed by number only; --place {quote(f'{plain[0]}=PLACE')}"
-            out.setdefault(NUMBERED, f"{many} {how}")
-        odd = [g for _, g in columns if g.place and ELSE in g.doubt]
-        if odd and len(odd) == sum(bool(g.place) for _, g in columns):
-            out.setdefault("unit", f"'{odd[0].column}' {odd[0].doubt}")
-        hot = [roles_of(s.labels[g.column])[:1] for s, g in columns if g.place]
-        if [Role.BEARING] in hot and all(role in ([Role.BEARING], [Role.AMBIENT], [Role.COOLANT]) for role in hot):
-            out.setdefault("bearing", "no winding is measured, a bearing alone")
-        heats = [g for s, g in columns if g.feeds and g.quantity in (*HEATS, "torque", "voltage")]
-        warm = [g.column for s, g in left if set(quantities_of(s.labels[g.column])) & set(HEATS)]
-        if not heats and not draft.constants and warm:
-            out.setdefault("heat", f"the only heat was left out: '{warm[0]}'; --place {quote(f'{warm[0]}=INPUT')}")
-        elif not heats and not draft.constants:
-            out.setdefault("heat", "no column says what heats it")
-        doubts = [r.clock.doubt for r in draft.records if r.clock.doubt]
-        if doubts:
-            out.setdefault("clock", doubts[0])
-    return list(dict.fromkeys(out.values()))
-
-
-ALONE = ("a set point, not a reading", "a number that names a row", "left out by hand", "--set gives it")
-LOST = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 
@@ -260,14 +208,15 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     """Columns of a quantity that can be what heats, losses first.
 
     A power that is below zero passes through, as of a machine that brakes or a cell that is discharged; so does that of
-    a machine whose torque is recorded beside its current, unless it says that it is a loss.
+    a machine whose torque or power out is recorded beside its current, unless it says that it is a loss.
     """
     candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
         return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
     kinds = {g.quantity for _, g in columns if g.feeds}
-    lost = [(s, g) for s, g in candidates if LOSS & set(tokens(g.column))]
-    candidates = lost or ([] if {"torque", "current"} <= kinds else candidates)
+    lost = [(s, g) for s, g in candidates if LOSS & {*tokens(s.labels[g.column])}]
+    comes_out = "torque" in kinds or any(COMES_OUT & {*tokens(s.labels[g.column])} for s, g in candidates)
+    candidates = lost or ([] if "current" in kinds and comes_out else candidates)
     return [(s, g) for s, g in candidates if not _passes(in_memory(s, g), "current" in kinds)]
 
 

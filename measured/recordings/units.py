@@ -20,13 +20,19 @@ from geom.plugins import plugins
 from lumped.schemas.reader import excerpt, suggestion
 from measured.recordings.quantity import Quantity
 
+MASS = {"kg/s": 60.0, "kg/min": 1.0, "kg/h": 1 / 60, "g/s": 0.06}  # kg/min
+AIR = 1.2  # kg/m3, at 20 degC and sea level
+WATER = {m: (x, 0.0) for m, x in MASS.items()}  # of 1 kg/l: at 90 degC 4 % more volume, of half glycol 7 % less
 QUANTITIES: dict[str, Quantity] = {
     "temperature": Quantity({"degC": (1, 0), "K": (1, -ZERO_C), "degF": (5 / 9, -160 / 9)}),
     "current": Quantity({"A": (1, 0), "mA": (1e-3, 0), "kA": (1e3, 0)}, "current_A"),
     "speed": Quantity({"rpm": (1, 0), "1/min": (1, 0), "rad/s": (30 / pi, 0), "Hz": (60, 0)}, "speed_rpm"),
     "vehicle_speed": Quantity({"m/s": (1, 0), "km/h": (1 / 3.6, 0), "mph": (0.44704, 0)}, "vehicle_speed_mps"),
-    "air_flow": Quantity({"m3/h": (1, 0), "m3/s": (3600, 0), "l/s": (3.6, 0)}, "fan_flow_m3h"),
-    "water_flow": Quantity({"l/min": (1, 0), "L/min": (1, 0), "m3/h": (1000 / 60, 0)}, "flow_l_min"),
+    "air_flow": Quantity(
+        {"m3/h": (1, 0), "m3/s": (3600, 0), "l/s": (3.6, 0), **{m: (60 * x / AIR, 0) for m, x in MASS.items()}},
+        "fan_flow_m3h",
+    ),
+    "water_flow": Quantity({"l/min": (1, 0), "L/min": (1, 0), "m3/h": (1000 / 60, 0), **WATER}, "flow_l_min"),
     "torque": Quantity({"N*m": (1, 0), "Nm": (1, 0), "kN*m": (1e3, 0)}, "torque_Nm"),
     "power": Quantity({"W": (1, 0), "kW": (1e3, 0)}, "power_W"),
     "voltage": Quantity({"V": (1, 0), "mV": (1e-3, 0), "kV": (1e3, 0)}, "voltage_V"),

@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import operating_points
 import pytest
-from operating_points import ALLOWED, COOLANTS, streamed_laws, subjects, told, worst
+from drawn.table_ends import COOLANTS, ends, every_table
+from operating_points import ALLOWED, subjects, worst
 
 from lumped.transfer.ranges import within_silence
 
@@ -28,7 +29,9 @@ def test_no_circuit_and_no_declared_film_is_off_and_heat_closes(monkeypatch):
     monkeypatch.setattr(operating_points, "CIRCUITS", branches)
     with within_silence():
         found = worst(subjects(4, ["pmsm-m1-no-base"], [COOLANTS[1]]))
-    assert {"circuit, films", "circuit, shares of branches", "declared film"} <= {kind for kind, _ in found}
+    assert {"circuit, films", "circuit, shares of branches", "declared film", "still air"} <= {
+        kind for kind, _ in found
+    }
     assert max(off for off, _ in found.values()) < ALLOWED, found
     assert max(off for (kind, _), (off, _) in found.items() if kind.endswith("at rest")) < 1e-9
 
@@ -55,9 +58,9 @@ def test_a_coolant_is_followed_until_it_freezes(monkeypatch):
     assert worst((("films", ""), pair) for pair in kinds["films"])["films", ""] == (pytest.approx(0.0, abs=0.002), 1)
 
 
-def test_a_table_that_ends_says_so(monkeypatch, tmp_path):
-    (tmp_path / "series-dc-100kw.toml").touch()
-    monkeypatch.setattr(operating_points, "MACHINES", tmp_path)
-    laws = [law for law in streamed_laws() if hasattr(law, "top")]
-    assert len(laws) > 5
-    assert [law.what for law in laws if not told(law)] == []
+def test_what_leaves_the_range_of_a_correlation_is_told_and_nothing_else():
+    """Oil below 14 degC by its Prandtl number, fast streams by Reynolds' and small rises by Rayleigh's."""
+    found = ends(every_table(["tefc-industrial-radial", "series-dc-100kw-air"], [COOLANTS[3]]), 12)
+    assert {"duct_film", "schmidt_helical", "mcadams_plate", "elenbaas", "heiles", "taylor_film"} <= set(found)
+    assert sum(outside for _, outside, _, _ in found.values()) >= 20
+    assert [name for name, (_, _, silent, wrong) in found.items() if silent or wrong] == []

@@ -93,6 +93,17 @@ def test_milliseconds_in_one_test_are_found_by_its_rows(tmp_path):
     assert [f["test"] for f in found["doubts"] if "in the other tests" in f["what"]] == ["stand"]
 
 
+def test_a_sensor_that_is_read_later_only_says_nothing_of_the_start(tmp_path):
+    """A winding's resistance is read when it is hot: there are no first readings to start from."""
+    case = case_of(tmp_path)
+    changed(case, "stand", lambda table: table.__setitem__("T_winding", 60.0))
+    late = [f["what"] for f in asked(case)[1]["doubts"] if f["where"] == "T_winding" and "starts at" in f["what"]]
+    changed(case, "stand", lambda table: table.loc.__setitem__((slice(None, 3), "T_winding"), np.nan))
+    _, found = asked(case)
+    assert late
+    assert [f for f in found["doubts"] if f["where"] == "T_winding" and "starts at" in f["what"]] == []
+
+
 def test_two_names_for_one_recording(tmp_path):
     case = case_of(tmp_path)
     (case / "tests/town.csv").write_bytes((case / "tests/road.csv").read_bytes())

@@ -5,11 +5,14 @@ import sys
 
 SCRIPT = """
 import sys
+from dataclasses import replace
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 import thermoscope.kernels
 from lumped.integration.record import Record
 from lumped.integration.simulate import simulate
+from lumped.integration.balance import balance
+from lumped.model.network import Parameter
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed
 
@@ -22,7 +25,12 @@ two = bare_network("two", {"a": 10.0, "b": 20.0}, ("ambient",))
 links = [node_link(two, n, "film", n, "ambient", Fixed(2.0)) for n in ("a", "b")]
 two = two.extended(links, [node_source(two, "loss", "copper", {"a": 1.0}, Fixed(5.0))], ())
 air = {"ambient": np.full(5, 20.0)}
-simulate(two, Record(np.arange(5.0), {}, air, 20.0), rows=[two.place("a").mean], keep_states=True)
+hot = Parameter("film", (("a", 1.0),))
+two = replace(two, parameters=(hot,))
+record = Record(np.arange(5.0), {}, air, 20.0)
+for tangents in ((), two.parameters):
+    simulate(two, record, rows=[two.place("a").mean], tangents=tangents, keep_states=not tangents)
+balance(two, record)
 print(any(before.values()), before == loaded())
 """
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from geom.arrays import Array, Mask
 from geom.constants import ZERO_C
+from measured.recordings.readings import START_S
 from measured.recordings.sheet import Sheet
 from measured.recordings.tables import Samples
 
@@ -62,9 +63,10 @@ class Patient:
 
 
 def first_readings(p: Patient) -> dict[str, float]:
-    """Column -> what its first readings say (degC)."""
-    finite = {n: v[np.isfinite(v)] for n, v in p.temperatures.items()}
-    return {n: float(np.median(v[:FIRST])) for n, v in finite.items() if v.size}
+    """Column -> what its first readings say (degC), where one is as early as a start has to be."""
+    rows = int(np.sum(p.samples.time <= START_S))
+    early = {n: v for n, v in p.temperatures.items() if np.isfinite(v[:rows]).any()}
+    return {n: float(np.median(v[np.isfinite(v)][:FIRST])) for n, v in early.items()}
 
 
 def _units(p: Patient) -> Iterator[Finding]:

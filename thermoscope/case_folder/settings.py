@@ -40,6 +40,7 @@ class Settings:
     kinds : of effects that a diagnosis looks for, None for all;  starts, seed : of a calibration, see Search
     doubt : the table of doubt with the lines that the case widens
     odds : kind, "kind@place" or "sensors" -> what the odds of these effects are multiplied by, and why
+    guesses : what `test new` could not tell of the recordings
     """
 
     path: Path
@@ -57,6 +58,7 @@ class Settings:
     seed: int = 0
     doubt: Doubt = field(default_factory=lambda: USUAL)
     odds: Mapping[str, Odds] = field(default_factory=dict)
+    guesses: str = ""
 
     @property
     def out(self) -> Path:
@@ -88,6 +90,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     axial_m = head.number("axial_mm") / 1e3 if "axial_mm" in head else None
     if axial_m is not None and machine is None:
         raise head.error("axial_mm is of a machine's mesh, and this case has a network", "no axial_mm")
+    guesses = head.word("guesses", "")
     starts, seed = int(calibration.number("starts", 1)), int(calibration.number("seed", 0))
     kinds = _kinds(diagnosis)
     for table in (head, calibration, diagnosis):
@@ -111,6 +114,7 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
         seed,
         widened(doubt, f"{file} [doubt]"),
         odds,
+        guesses,
     )
 
 

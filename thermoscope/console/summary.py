@@ -42,6 +42,11 @@ class Summary:
     rest: Sequence[Table | str] = ()
 
 
+def sentences(words: Sequence[str]) -> list[str]:
+    """Each with a capital and a full stop."""
+    return [f"{w[0].upper()}{w[1:]}{'' if w[-1] in '.?' else '.'}" for w in words]
+
+
 @contextmanager
 def limited_lines(lines: int | None) -> Any:
     """Summaries in here have so many lines after their sentence; None for all there is, at any width."""

@@ -22,7 +22,7 @@ from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperat
 from measured.case import Channel, Test
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import lag, setting
-from validation.calibration.input_steps import InputStep, input_steps, recorded_inputs, with_steps
+from validation.calibration.input_steps import InputStep, input_steps, recorded_inputs, with_more, with_steps
 from validation.comparison.linearisation import Segment, largest_rise, segments
 from validation.comparison.predict import heat_model, record
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
@@ -353,9 +353,7 @@ def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Se
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    late = [
-        f"input steps near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t in tests for s in input_steps(t)
-    ]
+    late = [f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t in tests for s in input_steps(t)]
     return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
 
 
@@ -391,19 +389,21 @@ def of_steps(
     every = [(t.name == test.name, s) for t in tests for s in input_steps(t)]
     if not doubt["step in sample"]:
         return {s.channel: np.zeros((s.r.size, len(every))) for s in plain}
-    steps = [s for here, s in every if here]
+    steps = [s for here, s in every if here and not s.hidden]
     early = segments(network, [with_steps(test, steps)], values) if steps else plain
 
-    def moved(late: Sequence[InputStep]) -> list[Array]:
-        sd = doubt["step in sample"] * late[0].wider
-        new = segments(network, [with_steps(test, steps, late)], values)
-        return [sd * (a.r - b.r) for a, b in zip(early, new, strict=True)]
+    def changed(before: Sequence[Segment], now: Test) -> list[Array]:
+        new = segments(network, [now], values)
+        return [doubt["step in sample"] * (a.r - b.r) for a, b in zip(before, new, strict=True)]
 
-    whole = moved(steps) if steps else []
+    def column(s: InputStep) -> list[Array]:
+        return changed(plain, with_more(test, s)) if s.hidden else changed(early, with_steps(test, steps, [s]))
+
+    whole = changed(early, with_steps(test, steps, steps)) if steps else []
     small = FELT * np.sqrt(max(len(steps), 1))  # moved together, they do so much more than each by chance
     felt = any(np.sqrt(np.mean(x**2)) > small * s.model_K for x, s in zip(whole, plain, strict=False))
     nothing = [np.zeros_like(s.r) for s in plain]
-    columns = [moved([s]) if felt and here else nothing for here, s in every]
+    columns = [column(s) if felt and here else nothing for here, s in every]
     return {
         s.channel: np.column_stack([np.empty((s.r.size, 0)), *(c[i] for c in columns)]) for i, s in enumerate(plain)
     }

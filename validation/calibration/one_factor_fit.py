@@ -8,18 +8,18 @@ import numpy as np
 
 from geom.errors import InputError
 from measured.case import Case
-from validation.comparison.compare import Comparison, compare, errors, pooled
+from validation.comparison.compare import Comparison, errors, pooled
 
 RANGE = (0.25, 4.0)  # of a factor: beyond, the model has another fault than this one
 
 
 @dataclass(frozen=True)
 class OneFactorFit:
-    """One parameter moved, all others as they were: its factor, and the comparison that results."""
+    """One parameter moved, all others as they were: its factor, and the errors that result."""
 
     parameter: str
     factor: float
-    comparison: Comparison
+    errors: Comparison
 
 
 def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> OneFactorFit:
@@ -45,4 +45,4 @@ def one_factor_fit(case: Case, parameter: str, channel: str | None = None) -> On
         return pooled([c for t in tests for c in t.channels if channel in (None, c.channel)])
 
     best = minimize_scalar(error, bounds=tuple(np.log(RANGE)), method="bounded", options={"xatol": 0.01})
-    return OneFactorFit(parameter, float(np.exp(best.x)), compare(case, moved(float(best.x))))
+    return OneFactorFit(parameter, float(np.exp(best.x)), errors(case, moved(float(best.x))))

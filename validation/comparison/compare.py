@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,9 +18,9 @@ from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import start_target
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
-from validation.counting import counted
 from validation.parameters.unknowns import hidden_starts, measured, standing, start_name
 from validation.tables import comparison_tables
+from validation.threads import run_by_run
 
 Budget = Mapping[str, float]
 
@@ -207,7 +207,7 @@ def compare(
     def judged(network: Network, test: Test, now: Mapping[str, float]) -> TestError:
         return judged_error(network, test, now, case.doubt, None if budgets is None else budgets[test.name])
 
-    return _of_every_test(case, values, judged, counted("running the model", case.tests, len(case.tests)))
+    return _of_every_test(case, values, judged)
 
 
 class StoppedComparisonError(KeyboardInterrupt):
@@ -220,23 +220,24 @@ class StoppedComparisonError(KeyboardInterrupt):
 
 def errors(case: Case, values: Mapping[str, float] | None = None) -> Comparison:
     """The errors alone, for searches: nothing says whether they are within the uncertainty."""
-    return _of_every_test(case, values, test_error, case.tests)
+    return _of_every_test(case, values, test_error)
 
 
-def _of_every_test(
-    case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError], tests: Iterable[Test]
-) -> Comparison:
+def _of_every_test(case: Case, values: Mapping[str, float] | None, error_of: Callable[..., TestError]) -> Comparison:
     network, now = standing(case), physical(case, values)
-    effects, rows = tuple(e.name for e in case.model.effects), list[TestError]()
+    effects, rows = tuple(e.name for e in case.model.effects), dict[str, TestError]()
     sensors_fitted = values is None and len(now) < len(case.model.values)
 
+    def look(test: Test) -> None:
+        error = error_of(network, test, now)
+        rows[test.name] = _with_sensors(network, test, error, case.model.values) if sensors_fitted else error
+
     def comparison() -> Comparison:
-        return Comparison(case.name, case.model.revision, effects, tuple(rows), case.model.network.identities)
+        some = tuple(rows[test.name] for test in case.tests if test.name in rows)
+        return Comparison(case.name, case.model.revision, effects, some, case.model.network.identities)
 
     try:
-        for test in tests:
-            error = error_of(network, test, now)
-            rows.append(_with_sensors(network, test, error, case.model.values) if sensors_fitted else error)
+        run_by_run(look, case.tests, network.size)
     except KeyboardInterrupt:
         if rows:
             raise StoppedComparisonError(comparison()) from None

@@ -16,8 +16,8 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Network, Row
 from measured.case import Channel, Test
 from validation.comparison.predict import heat_model, record
-from validation.counting import counted
 from validation.parameters.unknowns import standing
+from validation.threads import run_by_run
 
 if TYPE_CHECKING:
     from lumped.build.pipeline import Built
@@ -57,8 +57,9 @@ def error_budgets(folder: OpenCase, records: Mapping[str, Record], progress: Pro
         progress("checking mesh and condensation")
         rated = cached_errors(folder.built, looks)
         rows |= hot_rows(network, rated)
-    each = counted("estimating the error of the time steps", records.items(), len(records))
-    return {name: _of_run(network, values, run, rows, rated) for name, run in each}
+    progress("estimating the error of the time steps")
+    each = run_by_run(lambda run: _of_run(network, values, run, rows, rated), list(records.values()), network.size)
+    return dict(zip(records, each, strict=True))
 
 
 def budgets_of(folder: OpenCase, tests: Sequence[Test]) -> dict[str, ErrorBudget]:

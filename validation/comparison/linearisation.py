@@ -15,11 +15,10 @@ from measured.case import Channel, Test
 from measured.doubt import USUAL
 from measured.sensors.blocks import INSTANTS, Blocks, groups
 from validation.comparison.predict import Watch
-from validation.threads import side_by_side
+from validation.threads import run_by_run
 
 NUMBERS = 2**22  # of a Jacobian looked at together: 34 MB, and some copies
 SHORTEST = 500  # samples of a stretch
-WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 
 
 @dataclass(frozen=True)
@@ -60,9 +59,7 @@ def segments(
     def look(test: Test) -> list[Segment]:
         return _of_test(network, test, values, tangents, instants, numbers)
 
-    if len(tests) < 2 or len(tests[0].time) * network.size < WORTH_A_THREAD:
-        return [s for test in tests for s in look(test)]
-    return [s for each in side_by_side(look, tests, lambda test: len(test.time)) for s in each]
+    return [s for each in run_by_run(look, tests, network.size) for s in each]
 
 
 def _of_test(

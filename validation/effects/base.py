@@ -87,6 +87,11 @@ class Effect(ABC):
         """Usual amplitudes that leave the tangent behind: the share that something loses where it only can lose."""
         return self.typical[:1] if self.mapping == "relative" and self.sign < 0 else ()
 
+    @property
+    def changes_others(self) -> bool:
+        """Does it change what other effects may have brought, rather than bring a link or loss of its own?"""
+        return self.mapping == "relative" or self.fault
+
     @classmethod
     def places(cls, scene: Scene) -> tuple[str, ...]:
         """Where it can sit on this network with these recordings."""

@@ -52,6 +52,10 @@ class During(Effect):
         return cls(f"{base.place}{IN}{condition}", base, condition)
 
     @property
+    def changes_others(self) -> bool:
+        return self.base.changes_others
+
+    @property
     def event(self) -> Event | None:
         """When it held, where that is not all of a test or what an input says."""
         return event(self.condition)

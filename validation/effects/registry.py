@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -92,6 +92,15 @@ def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
                     f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it",
                 )
     return condition
+
+
+def with_effects(network: Network, inside: Sequence[Effect], more: Sequence[Effect]) -> Network:
+    """The network with the effects of a model, each of which acts on what those before it brought, and with `more` that
+    are on trial and act on these, not on each other."""
+    larger = replace(network, declared=network.identities)
+    for one in inside:
+        larger = replace(one.extend(larger), adopted=larger.adopted | {one.name})
+    return replace(extended(larger, more), declared=network.declared)
 
 
 def extended(network: Network, effects: Iterable[Effect]) -> Network:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from validation.calibration.calibrate import CachedSegments, Fit
 from validation.calibration.model_error import ModelError
 from validation.effects.base import Effect
 from validation.effects.during import During
+from validation.effects.time_window import Event
 from validation.inference.contradiction import Contradiction
 from validation.inference.evidence import Evidence, continued, log_bayes
 from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
@@ -24,6 +26,7 @@ from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
 
 Group = tuple[int, ...]
+NO_TESTS: Mapping[str, Event] = MappingProxyType({})
 SURE = 1.0 - COSTS["abstain"].share / COSTS["wrong"].share  # probability from which a name costs less than a group
 EXPLAINS = 0.9  # of the evidence of heat of unknown cause: a law that is off by a third leaves it a tenth
 SAME = 0.5  # of the time in either of two events is in both: such are one
@@ -217,21 +220,27 @@ def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decisi
 
 def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> Decision:
     """The decision in which one event with ends a little apart is one thing: the first of them, or what is claimed."""
-    same: dict[int, int] = {}
+    same, whole = dict[int, int](), {t.name: Event.of({t.name: [(t.time[0], t.time[-1])]}) for t in e.tests}
     for k in (*claimed, *(k for g in decision.groups for k in g)):
-        same[k] = next((j for j in same.values() if is_same_event(e.effects[j], e.effects[k])), k)
+        same[k] = next((j for j in same.values() if is_same_event(e.effects[j], e.effects[k], whole)), k)
     groups = tuple(tuple(dict.fromkeys(same[k] for k in g)) for g in decision.groups)
     alone = decision.verdict == "group" and len(groups[0]) == 1 < len(decision.groups[0])
     return replace(decision, groups=groups, verdict="named" if alone else decision.verdict)
 
 
-def is_same_event(one: Effect, other: Effect) -> bool:
-    """Is it the same effect, for about the same while, though in one of them it was again?"""
-    if not (isinstance(one, During) and isinstance(other, During) and one.event and other.event):
+def is_same_event(one: Effect, other: Effect, whole: Mapping[str, Event] = NO_TESTS) -> bool:
+    """Is it the same effect, for about the same while, though in one of them it was again?
+
+    whole : test -> the event that lasts all of it, for what held in a test
+    """
+    if not (isinstance(one, During) and isinstance(other, During) and one.base == other.base):
         return one == other
-    a, b = one.event.repeats_at(other.event), other.event.repeats_at(one.event)
-    alike = (a if b == other.event else one.event).overlap(b if a == one.event else other.event)
-    return one.base == other.base and alike >= SAME
+    first, second = (x.event or whole.get(x.condition) for x in (one, other))
+    if first is None or second is None:
+        return one == other
+    a, b = first.repeats_at(second), second.repeats_at(first)
+    alike = (a if b == second else first).overlap(b if a == first else second)
+    return alike >= SAME
 
 
 def differs(choice: Decision, other: Decision) -> bool:

@@ -36,11 +36,12 @@ from validation.inference.evidence import Evidence, joined
 from validation.inference.hypotheses import (
     LENGTHS,
     REPORTED,
+    WHEN_S,
     Weighed,
     is_rare,
     probabilities,
     repeat_price,
-    stretch_count,
+    timing_step,
 )
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
 from validation.noise import Noise
@@ -48,9 +49,7 @@ from validation.noise import Noise
 Values = Mapping[str, float]
 Spans = Mapping[str, Sequence[Span]]
 GRID_POINTS = 15  # instants around each end
-COARSEST = (
-    4.0  # samples between instants that tell one stretch from another; what carries weight is timed to the sample
-)
+COARSEST = 4.0  # timing steps between instants that tell one stretch from another; what carries weight is timed closer
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 MOVES = 3  # of the ends and refitting with them: by then they stand within a sample
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
@@ -102,11 +101,12 @@ def timed_span(
     usual_s: float | None = None,
 ) -> TimedEvent:
     """Begin and end of one span: every two instants around them, each pair a difference of two steps; again around the
-    best of these, until the instants are about as close as samples.
+    best of these, until the instants are about as close as samples. All ends have one density per second, whatever the
+    rows: a stretch that is told from others to the second is as much more improbable than one told to the minute.
 
     usual_s : how long its repeats last, None for the first of them
     """
-    usual, step = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd, sample_step(test)
+    usual, step = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd, timing_step(test)
     while True:
         begins, ends = instants_around(test, span[0], reach_s), instants_around(test, span[1], reach_s)
         at = np.concatenate([begins, ends])
@@ -121,8 +121,15 @@ def timed_span(
         span, reach_s = (float(at[a[best]]), float(at[b[best]])), next_reach(reach_s)
         if reach_s <= COARSEST * step:
             break
-    count = stretch_count(test.time.size, None if usual_s is None else usual_s / step)
-    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best]) - np.log(count)))
+    length = float(np.ptp(test.time))
+    every = length * max(WHEN_S, 0.5 * length if usual_s is None else LENGTHS * usual_s)  # s^2, of begin and end
+    share = np.log(time_around(begins))[a] + np.log(time_around(ends))[b - begins.size] - np.log(every)
+    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best] + share)))
+
+
+def time_around(instants: Array) -> Array:
+    """Time (s) that each of some instants stands for."""
+    return np.gradient(instants) if instants.size > 1 else np.full(1, WHEN_S)
 
 
 def sample_step(test: Test) -> float:
@@ -226,11 +233,11 @@ def repeat_gain(scores: Score, i: int, every: Sequence[int]) -> float:
 
 
 def instants_around(test: Test, at: float, reach_s: float) -> Array:
-    """Instants (s) near an instant, whole steps from the record's begin on and inside of it.
+    """Instants (s) near an instant, whole timing steps from the record's begin on and inside of it.
 
     To a hundredth of a step at least: names of events hold them, and no reading knows more.
     """
-    t, step = test.time, sample_step(test)
+    t, step = test.time, timing_step(test)
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
     count = int(min(GRID_POINTS, round((high - low) / step) + 1))
     whole = t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step)
@@ -333,7 +340,7 @@ def closest_span(
     misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
         a part down to the room shows no tangent of being open longer
     """
-    while reach_s >= 0.5 * sample_step(test):
+    while reach_s >= 0.5 * timing_step(test):
         misfit, results = misfits(best, reach_s), dict[Span, float]()
 
         def misfit_of(
@@ -428,7 +435,7 @@ def further_spans(network: Network, test: Test, values: Values, effect: During, 
     """When else an effect held in a test, law and size as they are, one stretch after the other, as long as each gains
     more than the price of saying when; none where one only makes another longer."""
     assert effect.event is not None
-    lengths, step = [end - begin for begin, end in effect.event.every], sample_step(test)
+    lengths, step = [end - begin for begin, end in effect.event.every], timing_step(test)
     usual, spans = float(np.median(lengths)), list(effect.event.spans.get(test.name, ()))
     price, first_new = repeat_price(test, usual), len(spans)
 

@@ -33,6 +33,7 @@ Members = tuple[int, ...]
 LENGTHS = 0.5  # of its length, within which repeats of one event differ: a lid is opened for the same work
 RARE_TIME = 0.05  # of its tests that an event lasts at most: a few minutes of an hour; more is how the machine is
 FOLLOWS = 2.5  # deviations from an input's usual level, which eight repeats have by chance once in a hundred events
+WHEN_S = 30.0  # instants between which one stretch is told from another: nobody says closer when something was
 REPORTED = 0.05  # posterior probability from which a hypothesis is told in the first place
 
 
@@ -249,15 +250,20 @@ def singles_by_member(hypotheses: Iterable[Weighed]) -> Mapping[int, Weighed]:
     return {h.members[0]: h for h in hypotheses if len(h.members) == 1}
 
 
-def stretch_count(n: int, usual: float | None) -> float:
+def stretch_count(n: float, usual: float | None) -> float:
     """How many stretches there are among n instants; repeats of one that is as long as `usual` (in instants) last about
     as long, and begin anywhere."""
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
 
 
+def timing_step(test: Test) -> float:
+    """Time (s) between instants at which something may begin or end: rows where they are close, else WHEN_S."""
+    return min(float(np.median(np.diff(test.time))), WHEN_S)
+
+
 def repeat_price(test: Test, usual_s: float) -> float:
-    """What it costs (nats) to say when in a test a repeat was that lasts about so long (s)."""
-    return float(np.log(stretch_count(test.time.size, usual_s / float(np.median(np.diff(test.time))))))
+    """What it costs (nats) to say when in a test a repeat was that lasts about so long (s), whatever its rows."""
+    return float(np.log(stretch_count(float(np.ptp(test.time)) / WHEN_S + 1.0, usual_s / WHEN_S)))
 
 
 def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
@@ -273,7 +279,7 @@ def repeats_price(tests: Sequence[Test], occurrence: Event) -> float:
 def is_rare(tests: Sequence[Test], occurrence: Event) -> bool:
     """Is an event short, its repeats alike, and at no level of an input but by chance?  Else it is a law."""
     levels, here = dict[str, list[float]](), [t for t in tests if t.name in occurrence.spans]
-    lengths, slack = [b - a for a, b in occurrence.every], 2.0 * max(float(np.median(np.diff(t.time))) for t in here)
+    lengths, slack = [b - a for a, b in occurrence.every], 2.0 * max(timing_step(t) for t in here)
     alike = (1.0 - LENGTHS) * (max(lengths) - slack) <= (1.0 + LENGTHS) * (min(lengths) + slack)
     if not alike or sum(lengths) > RARE_TIME * sum(float(np.ptp(t.time)) for t in here):
         return False

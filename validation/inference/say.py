@@ -16,6 +16,7 @@ from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit, InnerProduct
+from validation.calibration.model_error import total_sd
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect
@@ -468,3 +469,16 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     if d.groups and d.groups == choice.groups:
         return f"; {claimed}every second reading alone cannot tell them apart"
     return f"; {claimed}every second reading alone says {other}"
+
+
+def unseen_words(fit: Fit) -> str:
+    """Where inputs between two rows move a record by more than it is otherwise uncertain; "" where they do not."""
+    worst = 1.0, ""
+    if fit.error is None:
+        return ""
+    for s in fit.parts:
+        between = total_sd(fit.error.of(s)[:, fit.error.model_columns :])
+        if between > worst[0] * s.weight:
+            words = f"; inputs change between rows of {s.test}: unseen, they move {s.channel} by {between:.1f} K"
+            worst = between / s.weight, words
+    return worst[1]

@@ -16,7 +16,7 @@ from measured.case import Case, Channel, Model, Reference, Test
 from measured.doubt import USUAL, Doubt, boundary_doubt
 from measured.sensors.operators import of_measurement, start_target
 from validation.effects.base import Effect, Scene
-from validation.effects.registry import effect, extended
+from validation.effects.registry import effect, with_effects
 from validation.effects.sensors.input_offset import Shift
 from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
@@ -166,7 +166,7 @@ def case_reference(case: Case) -> Reference:
     """What the model has stored, and of what it has not yet met what the tests that a fit may use say."""
     stored = case.model.reference or Reference()
     names = [e.name for e in case.model.effects]
-    new = reference_of(extended(case.model.network, effects_of(case)), case.usable, names)
+    new = reference_of(with_effects(case.model.network, effects_of(case), ()), case.usable, names)
     levels = stored.levels
     signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
     return replace(
@@ -275,7 +275,7 @@ def _grown(
 ) -> tuple[Network, tuple[str, ...]]:
     """The network with effects, form and measurement nuisances; the names of what gives laws another form."""
     inside = effects_of(case)
-    network, added = extended(case.model.network, (*inside, *more)), {e.name for e in inside}
+    network, added = with_effects(case.model.network, inside, more), {e.name for e in inside}
     sizes = effect_sizes(network, {e.name for e in more} - added, case.usable)
     reference = replace(reference, sizes={**reference.sizes, **sizes})
     network = at_level(network, added.union(e.name for e in more), reference)

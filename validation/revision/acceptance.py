@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimis
 from validation.comparison.linearisation import Segment, segments
 from validation.parameters.unknowns import to_value
 
+NOTHING: Mapping[str, float] = MappingProxyType({})
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits
@@ -66,17 +68,22 @@ class FoldPrediction:
     count: int
 
 
-def folds(tests: Sequence[Test], telling: Sequence[str], middle: float | None = None) -> list[Fold]:
+def folds(
+    tests: Sequence[Test], telling: Sequence[str], middle: float | None = None, lone: Mapping[str, float] = NOTHING
+) -> list[Fold]:
     """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
     telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
+    lone : tests that alone tell of something in the model, see `lone_tests`: of these the later part
     """
     halved = telling[0] if len(telling) == 1 else tests[0].name if len(tests) == 1 else ""
     out = []
     if not halved:  # else the other tests say nothing of the step, only of what it costs to fit one number more
         count = min(len(tests), MOST_FOLDS)
-        shares = [tests[i::count] for i in range(count)]
-        out = [Fold(tuple(t for t in tests if t not in share), tuple(share)) for share in shares]
+        cut = {t.name: halves(t, lone[t.name]) for t in tests if t.name in lone}
+        for share in [tests[i::count] for i in range(count)]:
+            fitted = [cut[t.name][0] if t in share else t for t in tests if t not in share or t.name in cut]
+            out.append(Fold(tuple(fitted), tuple(cut[t.name][1] if t.name in cut else t for t in share)))
     for test in (t for t in tests if t.name == halved):
         first, second = halves(test, middle)
         out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
@@ -104,8 +111,20 @@ def telling_tests(fit: Fit, names: Sequence[str]) -> list[str]:
     return [name for name, largest in size.items() if largest > FELT * max(size.values())]
 
 
+def lone_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
+    """Tests that alone tell of some of the parameters, such as an event in one of them, and when (s) half is seen.
+
+    Left out whole, such a test would be predicted without what the model knows of it.
+    """
+    alone: dict[str, list[str]] = {}
+    for name in names:
+        if len(telling := telling_tests(fit, [name])) == 1:
+            alone.setdefault(telling[0], []).append(name)
+    return {test: middle_instant(fit, some, test) for test, some in alone.items()}
+
+
 def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
-    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has its own."""
+    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has a late one."""
     columns, parts = [fit.unknowns.names.index(name) for name in names], [s for s in fit.parts if s.test == test]
     time = np.concatenate([s.time for s in parts])
     size = np.concatenate([np.sum(s.J[:, columns] ** 2, axis=1) for s in parts])
@@ -175,18 +194,20 @@ def _log_density(
 
 
 def prediction_checks(
-    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str]
+    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str], lone: Sequence[str] = ()
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
     before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
+    lone : tests of which the later part alone was left out
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
-    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}"
+    parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
+    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
     return (
         Check("left out", sum(nats) > 0.0 and now <= was, sum(nats), 0.0, words, part),

@@ -14,6 +14,7 @@ from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
+from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import standing, with_model
 from validation.revision.revise import Revision, add, calibrate
@@ -121,9 +122,12 @@ class Supervisor:
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
-    """What may be added without asking: physics that stands alone, no fault of the measurement."""
-    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several")
-    return choice[0].effect if alone and not effect(choice[0].effect).fault else None
+    """What may be added without asking: physics that stands alone, no fault of the measurement.
+
+    Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
+    """
+    sure = len(choice) == 1 and (diagnosis.verdict in ("named", "several") or choice[0].probability >= SURE)
+    return choice[0].effect if sure and not effect(choice[0].effect).fault else None
 
 
 def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:

@@ -38,6 +38,7 @@ from validation.revision.acceptance import (
     fall,
     fold_prediction,
     folds,
+    lone_tests,
     middle_instant,
     prediction_checks,
     squares,
@@ -152,14 +153,18 @@ def calibrate(
     return _revised(case, case.model, "calibrate", None, roles, progress, profiled, search)
 
 
-def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress) -> Revision:
+def add(
+    case: Case, names: str | Sequence[str], progress: Progress = no_progress, before: Comparison | None = None
+) -> Revision:
     """Add effect 'kind@place', or several that need each other, and calibrate on all tests but the held-out ones.
 
     names : of one string "a + b" too.  What was never calibrated is calibrated first: an effect is compared with the
         best model without it.
+    before : of the model as it stands, where it was compared
     """
     each = [n for text in ([names] if isinstance(names, str) else names) for n in text.split(TOGETHER)]
     new = [effect(name, scene_of(case)) for name in dict.fromkeys(each)]
+    new.sort(key=lambda one: one.changes_others)  # an effect acts on what those before it brought
     for one in new:
         inside(one, case)
         if one.name in {e.name for e in case.model.effects}:
@@ -169,9 +174,9 @@ def add(case: Case, names: str | Sequence[str], progress: Progress = no_progress
     if not case.model.values:
         progress("calibrating without the effect")
         bare = calibrate(case, TRAINING, progress).model
-        case = replace(case, model=replace(bare, revision=case.model.revision))
+        case, before = replace(case, model=replace(bare, revision=case.model.revision)), None
     model = replace(case.model, effects=(*case.model.effects, *(AddedEffect(one.kind, one.place) for one in new)))
-    return _revised(case, model, "add", TOGETHER.join(one.name for one in new), TRAINING, progress)
+    return _revised(case, model, "add", TOGETHER.join(one.name for one in new), TRAINING, progress, before=before)
 
 
 def inside(one: Effect, case: Case) -> None:
@@ -204,10 +209,11 @@ def _revised(
     progress: Progress,
     profiled: Sequence[str] = (),
     search: Search | None = None,
+    before: Comparison | None = None,
 ) -> Revision:
     if broken := broken_channels(case.tests):
-        case = replace(case, tests=without(case.tests, broken))
-    before = errors(case)
+        case, before = replace(case, tests=without(case.tests, broken)), None
+    before = before or errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
         raise InputError(
@@ -249,10 +255,12 @@ def _effect_checks(
     telling = telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)
+    lone = lone_tests(bare, [e.name for e in case.model.effects])
+    every = folds(tests, telling, middle, lone)
     if (at := (middle, *telling)) not in predictions:
-        predictions[at] = [fold_prediction(bare, fold, values) for fold in folds(tests, telling, middle)]
-    after = [fold_prediction(fit, x, parameter_values(fit.network, new.values)) for x in folds(tests, telling, middle)]
-    checks = prediction_checks(predictions[at], after, telling)
+        predictions[at] = [fold_prediction(bare, fold, values) for fold in every]
+    after = [fold_prediction(fit, fold, parameter_values(fit.network, new.values)) for fold in every]
+    checks = prediction_checks(predictions[at], after, telling, tuple(lone))
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
 
 
@@ -271,9 +279,15 @@ def _fit_before(case: Case) -> tuple[Fit, dict[str, float], dict[tuple, list[Fol
 
 
 def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
-    """No test may pay for another: where one gets worse by far, something else differs between them."""
+    """No test may pay for another: where one gets worse by far, something else differs between them.
+
+    One that stays better than the tests were on the whole pays for nothing: it was right by chance, as a test in which
+    the air was blocked is to a model that knows of no air.
+    """
     sigma = {t.name: float(np.sqrt(np.mean([c.sigma_K**2 for c in t.channels]))) for t in tests}
-    worse = {c.name: c for c in changes if c.name in sigma and c.after > LOST * max(c.before, sigma[c.name])}
+    mine = [c for c in changes if c.name in sigma and isfinite(c.before)]
+    usual = mean_square(mine, "before")
+    worse = {c.name: c for c in mine if c.after > max(LOST * max(c.before, sigma[c.name]), usual)}
     text = ", ".join(f"{c.name} {fall(c.before, c.after)}" for c in worse.values())
     words = f"another test pays for it: {text}; more differs between these tests" if worse else "no test pays for it"
     return Check("other tests", not worse, float(len(worse)), 0.0, words)
@@ -289,7 +303,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
-    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, ())]
+    lone = lone_tests(fit, [e.name for e in case.model.effects if e.name in fit.unknowns.names])
+    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, (), lone=lone)]
     for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)

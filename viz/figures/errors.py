@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PALE = "#8DB9DB"
+TITLED = 0.93  # of an axis' height, from where on small words would run into the title
 
 
 @paper.styled
@@ -89,9 +90,9 @@ def staircase(
 
 
 def _level(ax: Axes, error_K: float, words: str) -> None:
-    """A dotted line at an error, with what it is."""
+    """A dotted line at an error, with what it is: above it, or below where the title would be."""
     ax.axhline(error_K, color=LIGHT.ink, lw=0.9, ls=":")
-    ax.text(0, error_K, words, fontsize=8, va="bottom")
+    ax.text(0, error_K, words, fontsize=8, va="top" if error_K > TITLED * ax.get_ylim()[1] else "bottom")
 
 
 def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], list[float]]:

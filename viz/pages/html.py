@@ -107,6 +107,7 @@ def _cell(value: Any, words: Mapping[str, str]) -> str:
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
     word = cell(value).replace("->", "→").replace(" ... ", "\u00a0…\u00a0").replace(" %", "\u00a0%")
+    word = word.replace("> ", ">\u00a0").replace("< ", "<\u00a0")  # odds on one line, however narrow
     if word in ("", "-"):
         return "–"
     css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from importlib.resources import files
@@ -45,6 +45,7 @@ class Recorded:
     times : (n,) s;  fields : (n, n_nodes) degC;  before : the same of the model before its last step, if there is one
     earlier : other revisions, as many for every test, named in the same order by `document`
     error_map : what its residuals tell between the sensors;  network : its heat flows at the same times
+    absent : parts that are not there in this test: of several bases those that the machine does not stand on
     """
 
     comparison: Comparison
@@ -54,6 +55,7 @@ class Recorded:
     earlier: tuple[Earlier, ...] = ()
     error_map: ErrorMap | None = None
     network: NetworkRun | None = None
+    absent: Collection[str] = ()
 
     @property
     def states(self) -> list[Array]:
@@ -116,7 +118,8 @@ def temperature_document(
         name = f"{test.comparison.test.name} ({test.comparison.test.role})"
         states = [first + i * n for i in range(count)]
         run = {"test": test.comparison.test.name, "name": name, "times": test.times.tolist(), "states": states}
-        out.append({**run, **_sensors(test, positions)})
+        absent = [k for k, part in enumerate(nodes.parts) if part in test.absent]
+        out.append({**run, "absent": absent, **_sensors(test, positions)})
         first += n * count
     changes = [float(np.ptp(np.stack(t.states), axis=0).max()) for t in tests if len(t.states) > 1]
     return {

@@ -97,7 +97,7 @@ class Viewer {
   open() {  // what is unpacked
     this.points = data.points; this.tets = data.tets;
     this.owner = Int32Array.from(data.parts.flatMap((p, k) => Array(p.nodes).fill(k)));
-    this.parts = data.parts.map((p) => ({ ...p, opacity: 1 }));
+    this.parts = data.parts.map((p) => ({ ...p, chosen: 1, opacity: 1 }));
     this.chosen = ""; this.behindOf = new Set(); this.right = 0; this.left = 1; this.time = 1; this.playing = false; this.frames = 0; this.dirty = true; this.smooth = false; this.slow = true; this.pointers = new Map();
     this.bounds();
     this.meshes();
@@ -275,6 +275,11 @@ class Viewer {
     const options = $("layer").options, several = this.test.states.length > 1;
     options[1].disabled = !several; options[2].disabled = !data.k; options[3].disabled = !data.errors;
     this.number = k; $("test").value = k;
+    this.parts.forEach((p, i) => {  // the machine stands on another base in another test
+      p.absent = this.test.absent.includes(i);
+      p.opacity = p.absent ? 0 : p.chosen;
+      if (p.line) p.line.hidden = p.absent;
+    });
     this.sure();
     if (options[$("layer").selectedIndex].disabled) $("layer").value = "0";
     $("wiping").hidden = !several;
@@ -839,9 +844,11 @@ function wired(v) {
   $("time").oninput = (e) => { v.play(false); v.move(e.target.value / 1000); };
   $("play").onclick = () => v.play(!v.playing);
   const words = { 1: "shown", 0.5: "ghost", 0: "hidden" }, next = { 1: 0.5, 0.5: 0, 0: 1 };
-  $("parts").replaceChildren(...v.parts.map((p) => line(p.name, "shown", "", (span) => {
-    p.opacity = next[p.opacity]; span.textContent = words[p.opacity]; again();
-  })));
+  $("parts").replaceChildren(...v.parts.map((p) => {
+    p.line = line(p.name, "shown", "", (span) => { p.chosen = p.opacity = next[p.opacity]; span.textContent = words[p.opacity]; again(); });
+    p.line.hidden = p.absent;
+    return p.line;
+  }));
   c.onpointerdown = (e) => { c.setPointerCapture(e.pointerId); v.pointers.set(e.pointerId, e); c.pressed = v.pointers.size > 1 ? null : e; };
   c.onpointerup = c.onpointercancel = (e) => {
     v.pointers.delete(e.pointerId);

@@ -34,14 +34,13 @@ FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: bel
 def fleet_document(
     case: str, names: Sequence[Path], like: str | None, cluster: str | None, tell: Progress
 ) -> dict[str, Any]:
-    """like : the test of the case whose sheet the recordings have;  cluster : address of a Dask scheduler"""
+    """like : the test whose sheet the recordings have, else the first that fits;  cluster : of a Dask scheduler"""
     files, folder = recordings(names), open_case(case, tell)
     sheets = {e.name: e.sheet for e in folder.settings.tests}
     if like is not None and like not in sheets:
         raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
-    test = next(t for t in folder.case.tests if like in (None, t.name))
-    sheet, step_s = load_sheet(sheets[test.name]), folder.settings.sample_s or STEP_S
-    reader = Reader(replace(folder.case, tests=()), test, sheet, step_s, tuple(sheets))
+    of = {name: load_sheet(sheet) for name, sheet in sheets.items() if like in (None, name)}
+    reader = Reader(replace(folder.case, tests=()), folder.case.tests, of, folder.settings.sample_s or STEP_S)
     with dask_cluster(cluster) if cluster else nullcontext() as executor:
         units = histories(files, reader, tell, executor)
     tell("the motors together")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import date
@@ -13,7 +13,7 @@ import numpy as np
 
 from extras.monitor.fleet import Statistics, UnitHistory, statistics
 from extras.monitor.rows.live_rows import Rows, table_of
-from thermoscope import InputError, Network
+from thermoscope import InputError
 from thermoscope.plugin import LAW_RUNNING as RUNNING
 from thermoscope.plugin import SUFFIXES, Array, Channel, Sheet, Test, stem_of
 from thermoscope.plugin import CaseProgress as Progress
@@ -36,33 +36,33 @@ class Recording:
 
 @dataclass(frozen=True)
 class Reader:
-    """What a recording is read with.  test : of the case, whose sheet the columns have;  case : without its tests
+    """What a recording is read with.  tests : of the case, of which none is running here;  case : without them
 
-    tests : their names, of which none is running here
+    sheets : test -> its sheet, of those whose columns a recording may have: the first that fits
     piece : rows that are in memory at once
     """
 
     case: Case
-    test: Test
-    sheet: Sheet
+    tests: tuple[Test, ...]
+    sheets: Mapping[str, Sheet]
     step_s: float
-    tests: tuple[str, ...] = ()
     piece: int = PIECE
 
     def statistics(self, recording: Recording) -> Statistics:
         """All pieces of a recording together."""
         total: Statistics | None = None
         network = self.case.model.network
-        _, table, parts = table_of(str(recording.file), self.piece, {self.test.name: self.sheet}, network, None)
+        name, table, parts = table_of(str(recording.file), self.piece, self.sheets, network, None)
+        fitting = next(test for test in self.tests if test.name == name)
         for part in parts:
             if total is None or part.rows >= LEAST:
-                one = statistics(self.case, self._test(table.rows(part), recording, network))
+                one = statistics(self.case, self._test(table.rows(part), recording, fitting))
                 total = one if total is None else total + one
         if total is None:
             raise InputError("holds no row", str(recording.file), "rows of numbers under the header")
         return total
 
-    def _test(self, rows: Rows, recording: Recording, network: Network) -> Test:
+    def _test(self, rows: Rows, recording: Recording, fitting: Test) -> Test:
         if rows.time.size < LEAST:
             raise InputError(f"holds {rows.time.size} rows", str(recording.file), f"at least {LEAST} to fit a motor to")
         cell = np.floor((rows.time - rows.time[0]) / self.step_s)
@@ -74,12 +74,12 @@ class Reader:
             with np.errstate(invalid="ignore"):
                 return np.add.reduceat(np.nan_to_num(y), start) / np.where(count > 0.0, count, np.nan)
 
-        channels = [replace(c, y=mean(rows.readings[c.name])) for c in self.test.channels if c.name in rows.readings]
+        channels = [replace(c, y=mean(rows.readings[c.name])) for c in fitting.channels if c.name in rows.readings]
         if not any(np.isfinite(c.y).any() for c in channels):
             raise InputError("no sensor of the machine", str(recording.file), "a temperature that the sheet knows")
         time = mean(rows.time)
         inputs = {n: mean(u) for n, u in rows.inputs.items()}
-        inputs |= {f"{RUNNING}{name}": np.zeros(time.size) for name in self.tests}
+        inputs |= {f"{RUNNING}{test.name}": np.zeros(time.size) for test in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
         return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
 

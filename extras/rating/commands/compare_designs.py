@@ -128,13 +128,14 @@ class Designs(TableResult):
 def compare_designs(
     *machines: str | Path,
     limits: Mapping[str, float] | None = None,
-    bands: bool = False,
+    bands: bool | None = None,
     picture: str | Path | None = None,
     **around: float,
 ) -> Designs:
     """Two to six machine files, names or cases side by side: dimensions that differ, hottest points, ratings, masses.
 
-    limits : place -> degC, for ratings;  picture : a PNG of all on one scale
+    limits : place -> degC, for ratings;  bands : of ratings, else where they cost little
+    picture : a PNG of all on one scale
     around : boundaries (degC) and inputs of all, such as ambient=40.0
     """
     return Designs(
@@ -160,7 +161,9 @@ def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell
     heated = [n for n in dict.fromkeys(network.heated) if n in rows]
     spots = hot_spots(network, rows, dict.fromkeys(heated, 0.0))
     T = replace(one.it.model, rows=spots).rest(op, 1.0, None)
-    posterior = posterior_of(one.folder, tell) if limits and bands_requested(network, sure) else None
+    free = sure is None and not one.folder.case.tests  # of priors alone: there is nothing to look at
+    banded = limits and (free or bands_requested(network, sure))
+    posterior = posterior_of(one.folder, tell) if banded else None
     rating = rated(one.it.model, op, one.it.limits, "S1", None) if limits else None
     ambient = next((T for b, T in op.boundaries.items() if b not in coolant_boundaries(network)), 20.0)
     return {

@@ -29,6 +29,7 @@ from thermoscope.plugin import (
     loss_slope,
     multipliers,
     solve_steady_start,
+    tell_reach,
     temperature_value,
     work,
 )
@@ -83,6 +84,8 @@ def rest(
         return None
     C, z = np.maximum(core.C, SMALLEST * core.C.max()), both.z[0, :-1].copy()
     stable = bool(np.linalg.eigvals(scratch.G[:, :n]).real.min() > 0.0)
+    if stable:
+        tell_reach(core, z)
     return Rest(z, _slopes(network, values, inputs, z) / C[:, None], cold, stable)
 
 

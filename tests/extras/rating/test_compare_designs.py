@@ -72,11 +72,11 @@ def test_a_picture_has_a_name_that_ends_in_png(thermoscope):
 @pytest.mark.nightly
 def test_two_motors_side_by_side(thermoscope):
     """The longer stack loses less heat per volume; what surrounds them is the same."""
-    found = thermoscope(
-        *("use", "compare-designs", FREE, "pmsm-m2-no-base", "--limit", "winding=130", "--no-bands", "--json", "-")
-    )
+    found = thermoscope(*("use", "compare-designs", FREE, "pmsm-m2-no-base", "--limit", "winding=130", "--json", "-"))
     assert found.code == 0, found.err
     long, short = found.document["designs"]
     assert sum(long["masses_kg"].values()) > sum(short["masses_kg"].values())
     assert found.document["boundaries"]["ambient"] == 40.0
     assert all(d["rating"]["value"] > 0.0 for d in (long, short))
+    low, high = long["rating"]["ci95"]
+    assert low < long["rating"]["value"] < high, "of its priors, however many states it has"

@@ -84,7 +84,7 @@ def streams(stretch=0.0, still=None, exponent=3.0):
     return StreamTable("flow", 1.5, 80.0, tuple(total), shift, tuple(number), values, stretch, still, exponent)
 
 
-STREAM = Streamed(0.9, streams(), 9.0, "three regimes")
+STREAM = Streamed(0.9, streams())
 LAWS = [
     Fixed(0.8),
     FORCED,
@@ -131,7 +131,7 @@ TEMPERATURES = [
     streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5)))),
     streams(still=FilmTable((0.0, 5.0, 80.0), grid((0.2, 0.3, 0.5))), exponent=4.0),
 ]
-LAWS += [Fixed(0.5, law) if type(law) is not StreamTable else Streamed(0.5, law, 9.0, "") for law in TEMPERATURES]
+LAWS += [Fixed(0.5, law) if type(law) is not StreamTable else Streamed(0.5, law) for law in TEMPERATURES]
 NAMES = [
     f"{type(law).__name__}{f' {type(law.temperature).__name__}' * (type(law) is Fixed)} {i}"
     for i, law in enumerate(LAWS)

@@ -162,3 +162,17 @@ def test_rises_beside_the_room_alone_are_temperatures(tmp_path, room, added):
     if added:
         assert source.numbers(f"Winding rise ΔT [K] + {room}") == pytest.approx(20 + 1.1 * T)
         assert f"'{room}' is added" in source.notes[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "roles"),
+    [
+        ("T_DE", [Role.BEARING]),
+        ("Temp. NDE", [Role.BEARING]),
+        ("T_AS", [Role.BEARING]),
+        ("frame DE", [Role.HOUSING]),
+        ("temp de culasse", []),
+    ],
+)
+def test_an_end_of_the_shaft_is_its_bearing(name, roles):
+    assert roles_of(name) == roles

@@ -240,3 +240,22 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):
     assert next(iter(roles_of(name)), None) is role
+
+
+@pytest.mark.parametrize(
+    ("header", "quantity", "first", "doubted"),
+    [
+        ("flow [g/s]", "water_flow", 0.06 * 9.0, False),  # water of 1 kg/l
+        ("mdot_kg_h", "water_flow", 9.0 / 60.0, False),
+        ("air mass flow [kg/h]", "air_flow", 9.0 / 1.2, False),  # 1.2 kg/m3 at 20 degC
+        ("Luftmassenstrom [kg/s]", "air_flow", 3600 * 9.0 / 1.2, False),
+        ("air flow [m3/h]", "air_flow", 9.0, False),
+        ("gas [kg/h]", "water_flow", 9.0 / 60.0, True),
+    ],
+)
+def test_a_flow_of_mass_or_of_air(tmp_path, header, quantity, first, doubted):
+    found, _ = read(file(tmp_path, f"t,{header},T_winding,T_amb", "t", np.full(N, 9.0), "W", "A"))
+    guess, source = next(one for column, one in found.items() if column[:2] == header[:2])
+    assert guess.quantity == quantity
+    assert in_memory(source, guess)[0] == pytest.approx(first, rel=1e-9)
+    assert bool(guess.doubt) == doubted

@@ -214,3 +214,17 @@ def test_a_room_further_off_than_any_reading_is_refused():
         fit = minimise(one_node(p), [test], Unknowns((p,)), np.zeros(1))
         assert fit.at_bound[0]
         assert bound_check(fit, p.name).passed == passes
+
+
+def test_of_a_test_with_an_event_of_its_own_the_later_part_is_left_out():
+    """Left out whole, it would be predicted without its event, and no step could be judged beside that error."""
+    tests = [measured("one"), measured("two"), measured("three")]
+    time = float(tests[1].time[50])
+    one, two, three = folds(tests, ["one", "two", "three"], lone={"two": time})
+    for fold, name in ((one, "one"), (three, "three")):
+        assert [t.name for t in fold.predicted] == [name]
+        assert name not in [t.name for t in fold.fitted]
+    assert {t.name for t in two.fitted} == {"one", "two", "three"}
+    seen, unseen = (next(t for t in part if t.name == "two") for part in (two.fitted, two.predicted))
+    assert np.isnan(seen.channels[0].y[60:]).all()
+    assert np.isnan(unseen.channels[0].y[:40]).all()

@@ -15,6 +15,7 @@ from validation import diagnose
 from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
+from validation.effects.registry import with_effects
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.columns import effect_columns
 from validation.inference.conditions import tangent_worth
@@ -324,3 +325,16 @@ def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():
     sizes = [len(extended(net, [During.of(base, e.name) for e in events[:n]]).links) for n in (0, 1, 12)]
     assert sizes[1] > sizes[0]
     assert sizes[2] - sizes[0] == 12 * (sizes[1] - sizes[0])
+
+
+@pytest.mark.parametrize("order", [("convection.constant", "blockage"), ("convection.constant", "blockage", "fouling")])
+def test_what_blocks_a_face_blocks_the_film_that_an_effect_brought(order):
+    """Half of a film of G and half of an added one of G: the rise is that of one film of G, as before them."""
+    bare = one_node()
+    film, block, *_ = inside = [effect(f"{kind}@body") for kind in order]
+    adopted = with_effects(bare, inside, ())
+    on_trial = with_effects(bare, [], inside)
+    amplitudes = {film.name: G, block.name: -0.5}
+    right = predict(bare, measured("day"), {}).y
+    assert predict(adopted, measured("day"), amplitudes).y == pytest.approx(right, abs=1e-6)
+    assert predict(on_trial, measured("day"), amplitudes).y[-1, 0] < right[-1, 0] - 1.0, "on trial each stands alone"

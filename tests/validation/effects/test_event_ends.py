@@ -86,12 +86,12 @@ def test_an_event_is_rare_where_it_is_short_and_at_no_level_of_an_input():
 
 
 def test_when_repeats_were_is_a_part_of_the_evidence():
-    """Two more stretches of 80 s among 300 samples of 20 s: anywhere, and as long as half to half as long again."""
+    """Two more stretches of 80 s in 5980 s: anywhere to half a minute, and half to half as long again."""
     spans = [(1000.0, 1080.0), (2400.0, 2480.0), (4000.0, 4080.0)]
     case = bench((("noon", tuple(spans)),), 5.0)
     lids = [effect(f"convection.constant@body in {Event.of({'noon': x}).name}") for x in (spans, spans[:1])]
     e = scored(case, lids, calibrated_case(case))
-    price = 2.0 * np.log(300 * 2.0)
+    price = 2.0 * np.log((5980.0 / 30.0 + 1.0) * 0.5 * 80.0 / 30.0)
     assert repeats_price(case.tests, lids[0].event) == pytest.approx(price)
     free, both = replace(e), (np.array([0]), np.array([1]))
     free.__dict__["repeats"] = np.zeros(2)

@@ -167,7 +167,14 @@ def test_one_event_with_ends_a_sample_apart_is_one_thing():
         effect(f"convection.constant@{place} in b:{span}s")
         for place, span in (("a", "100-300"), ("a", "120-300"), ("a", "3700-3900"), ("b", "100-300"))
     )
-    e = SimpleNamespace(effects=(lid, late, other, fan))
+    e = SimpleNamespace(effects=(lid, late, other, fan), tests=())
     assert without_twins(e, Decision("group", ((1, 0),), 1.0), [0]) == Decision("named", ((0,),), 1.0)
     assert without_twins(e, Decision("group", ((0, 2, 3),), 1.0), ()) == Decision("group", ((0, 2, 3),), 1.0)
     assert without_twins(e, Decision("group", ((0,),), 1.0), ()).verdict == "group"
+
+
+def test_what_held_nearly_all_of_a_test_is_what_held_in_the_test():
+    whole, most, half = (effect(f"blockage@a in b{span}") for span in ("", ":100-5900s", ":100-2900s"))
+    e = SimpleNamespace(effects=(whole, most, half), tests=(SimpleNamespace(name="b", time=np.array([0.0, 6000.0])),))
+    assert without_twins(e, Decision("group", ((1, 0),), 1.0), ()) == Decision("named", ((1,),), 1.0)
+    assert without_twins(e, Decision("group", ((0, 2),), 1.0), ()).groups == ((0, 2),)

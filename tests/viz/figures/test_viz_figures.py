@@ -141,6 +141,16 @@ def test_long_test_is_drawn_in_hours_with_few_points():
     assert len(svg) < 400_000
 
 
+@pytest.mark.parametrize("share", [0.3, 0.99])
+def test_words_at_a_level_do_not_run_into_the_title(share):
+    top = 1.12 * max(max(path) for path in errors.error_paths(HISTORY).values())
+    figure = errors.staircase(HISTORY, plain_K=share * top)
+    figure.canvas.draw()
+    (words,) = (t for t in figure.axes[0].texts if t.get_text() == "best plain model")
+    title = figure.axes[0].title if figure.axes[0].title.get_text() else figure.axes[0]._left_title
+    assert not words.get_window_extent().overlaps(title.get_window_extent())
+
+
 def test_staircase_path_starts_before_the_first_revision():
     assert errors.error_paths(HISTORY)["road-2", "hold-out"] == [6.4, 4.85, 0.93]
 

@@ -1,5 +1,11 @@
 """What a page of the viewer holds: the fields it was made from, in few shapes and few bytes."""
 
+import json
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 from viewer_pages import NODES, PLACE, document, mapped, mixed, recorded, unpacked, warming, write_viewer
@@ -7,7 +13,7 @@ from viewer_pages import NODES, PLACE, document, mapped, mixed, recorded, unpack
 from viz.rendering.flux import nodal_flux
 from viz.viewer.error_map import ERROR, SHARE, packed_maps
 from viz.viewer.packing import packed_integers, packed_numbers
-from viz.viewer.page import STEP_K
+from viz.viewer.page import STEP_K, render
 from viz.viewer.part_shapes import BLOCK, ERROR_K, low_rank, packed_fields
 
 
@@ -65,6 +71,17 @@ def test_the_page_holds_the_fields_it_was_made_from(before):
     for first, fields in zip(states, one.states, strict=True):
         assert np.abs(found[first : first + len(fields)] - fields).max() < 1.5 * ERROR_K
     assert np.abs(unpacked(held["points"]) - NODES.points).max() < 1e-5
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+def test_a_base_that_it_does_not_stand_on_is_not_drawn(tmp_path):
+    """By what the first test says: its part is there in others."""
+    first = replace(recorded(), absent=NODES.parts[1:2])
+    page = tmp_path / "v.html"
+    page.write_text(render(document("m", NODES, [first, recorded()], PLACE)), encoding="utf-8")
+    script = Path(__file__).with_name("viewer_in_node.js")
+    found = subprocess.run(["node", script, page, "0", "0"], capture_output=True, text=True, check=True)
+    assert json.loads(found.stdout)["opacities"] == [float(name != NODES.parts[1]) for name in NODES.parts]
 
 
 def test_what_a_name_holds_is_never_run(tmp_path):

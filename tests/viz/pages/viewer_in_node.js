@@ -25,8 +25,8 @@ globalThis.requestAnimationFrame = () => ready();
 new Promise((done) => { ready = done; }).then(() => {
   known.left.onchange({ target: { value: process.argv[3] } });
   known.right.onchange({ target: { value: process.argv[4] } });
-  const { values, owner, sensors } = globalThis.viewer;
-  const drawn = { values: [...values.slice(0, 2 * owner.length)], residuals: sensors.map((s) => s.residual), verdicts: sensors.map((s) => s.verdict) };
+  const { values, owner, sensors, parts } = globalThis.viewer;
+  const drawn = { values: [...values.slice(0, 2 * owner.length)], residuals: sensors.map((s) => s.residual), verdicts: sensors.map((s) => s.verdict), opacities: parts.map((p) => p.opacity) };
   process.stdout.write(JSON.stringify(drawn), () => process.exit(0));
 });
 setTimeout(() => { console.error(known.fault && known.fault.textContent); process.exit(1); }, 20000);

@@ -41,7 +41,8 @@ def add(case: Case, effect: Effects, anyway: Anyway = False, target: Json = None
     from validation.revision.revise import add as added
 
     def step(folder: Folder, tell: Callable[[str], None]) -> revise.Revision:
-        return added(folder.case, [meant(folder, one) for one in effect], tell)
+        before = None if folder.stored is None else folder.stored.comparison
+        return added(folder.case, [meant(folder, one) for one in effect], tell, before)
 
     return revised(case, step, anyway, target)
 

@@ -16,6 +16,7 @@ from geom.disk_cache import recalled, store
 from geom.errors import InputError
 from geom.plugins import plugins
 from geom.storage import cache_folder, write_whole
+from lumped.machine.bases import unused
 from measured.case import Test
 from thermoscope.case_folder import runs
 from thermoscope.case_folder.content import digest, result_key
@@ -111,11 +112,14 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
         f"{r.number}: {runs.step_words(folder.case, r) if r.number else 'as it was'}" for r in revisions(folder)
     ] or ["now"]
 
+    def absent(test: Test) -> list[str]:
+        return unused(machine, test.inputs)
+
     def played(test: Test) -> Recorded:
         times, now = runs.fields(folder.case, test, nodes, FRAMES)
         before = None if earlier is None else runs.fields(earlier, test, nodes, FRAMES)[1]
         rest = tuple(Earlier(runs.fields(case, test, nodes, FRAMES)[1], runs.readings(case, test)) for case in others)
-        return Recorded(runs.comparison_of(folder, test, {}), times, now, before, rest)
+        return Recorded(runs.comparison_of(folder, test, {}), times, now, before, rest, absent=absent(test))
 
     def analysis(run: Recorded) -> Recorded:
         test = run.comparison.test
@@ -133,7 +137,7 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
         comparison = pool.submit(runs.current_comparison, folder, order[0])
         run = runs.fields(folder.case, order[0], nodes, FRAMES)
-    first, limits = [Recorded(comparison.result(), *run)], runs.stored_range(folder)
+    first, limits = [Recorded(comparison.result(), *run, absent=absent(order[0]))], runs.stored_range(folder)
     now = temperature_document(nodes, first, folder.positions, conductivity, names[:1], limits)
     yield shape.result() | now
     tell("running every test")

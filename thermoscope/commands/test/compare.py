@@ -13,7 +13,7 @@ from measured.recordings.readings import UNSEEN
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.console.options import Case, Json, Sure
-from thermoscope.console.summary import Summary
+from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.files import STOPPED
 from validation.comparison.uncertainty import RULE
@@ -50,7 +50,8 @@ def compare(
                 raise
             return _stopped(folder, so_far, case)
     unseen = next((note for note in folder.notes if UNSEEN in note), "")
-    give(document, target, lambda: comparison_summary(document, case, unseen))
+    doubts = " ".join([*sentences([unseen] * bool(unseen)), folder.settings.guesses]).strip()
+    give(document, target, lambda: comparison_summary(document, case, doubts))
     return 0 if result.agrees else 1
 
 
@@ -111,10 +112,10 @@ def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
     return [x.document() for x in repeated_events(case)]
 
 
-def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "") -> Summary:
+def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "") -> Summary:
     """How many sensors are over, which, and what the rest looks like.
 
-    called : what the user calls the case;  unseen : what stands before all else of a machine without a warm sensor
+    called : what the user calls the case;  doubts : of its recordings, before all else
     """
     from thermoscope.case_folder.stored_yardstick import lacking_words
 
@@ -131,7 +132,7 @@ def comparison_summary(document: Mapping[str, Any], called: str, unseen: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    words = [f"{unseen}." * bool(unseen), plain["warning"], document["words"], document.get("strained", "")]
+    words = [doubts, plain["warning"], document["words"], document.get("strained", "")]
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(" ".join(filter(None, words)), parts, more, every)
 

@@ -20,18 +20,19 @@ from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
+from measured.importing.aloud import first_lines
 from measured.importing.case_files import folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
-from measured.importing.draft import Draft, test_name
+from measured.importing.draft import ASSUMED_ROOM, Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
-from measured.importing.starter import FirstNetwork, of_machine, place_of, starter, unplaced
+from measured.importing.starter import FirstNetwork, of_machine, place_of, starter
 from measured.importing.target import Target, target_of
 from measured.recordings.invalid_readings import coded
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
-from thermoscope.console.summary import Summary
+from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.parts import message as missing_extra
 
@@ -261,7 +262,8 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
 
     with folder_whole(folder) as partial:
         tell("writing the case")
-        write_case(partial, folder.name, model.put, drafts)
+        warnings = first_lines(drafts)
+        write_case(partial, folder.name, model.put, drafts, " ".join(sentences(warnings)))
         settings = read_settings(partial)
         with _as_recorded(partial, drafts):
             patients = [patient_of(entry) for entry in settings.tests]
@@ -283,7 +285,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         "folder": str(folder),
         "invented_network": model.first is not None,
         "learnt_from": list(first.learnt) if model.first else [],
-        "warnings": unplaced(drafts),
+        "warnings": warnings,
         "sample_s": settings.sample_s,
         "findings": [f.document() for f in findings],
         "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
@@ -367,7 +369,7 @@ def new_case_summary(document: Mapping[str, Any]) -> Summary:
         f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
         "used. All of this is guessed: change it in tests/*.toml."
     )
-    sentence = " ".join([*(f"{w[0].upper()}{w[1:]}." for w in document["warnings"]), sentence])
+    sentence = " ".join([*sentences(document["warnings"]), sentence])
     table = Table.of(
         "", columns, "column | *goes to=place | *unit | quantity | *doubt", place=lambda c: _goes(c) or "left out"
     )
@@ -419,7 +421,9 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
         remarks.append(f"{count} {things} wrong: thermoscope test doctor {document['folder']}")
     files = [Path(f["file"]).name for t in tests for f in t["files"]]
     alike: dict[str, list[str]] = {}
-    for note in dict.fromkeys(n for n in remarks if not any(w in n for w in document["warnings"])):
+    for note in dict.fromkeys(
+        n for n in remarks if ASSUMED_ROOM not in n and not any(w in n for w in document["warnings"])
+    ):
         of = next((file for file in files if note.startswith(f"{file}: ")), "")
         alike.setdefault(re.sub(r"[\d.]+", "", note.removeprefix(f"{of}: ")), []).append(note)
     more = {what: f"; {len(notes)} tests alike" if len(notes) > 1 else "" for what, notes in alike.items()}

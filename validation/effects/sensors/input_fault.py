@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Link, Network, Source
+from lumped.model.sites import standing_links, standing_sources
 from lumped.transfer.laws import Array, Inputs, Law, Wrapped
 from lumped.transfer.ranges import within_silence
 from validation.effects.base import Effect, Scene, with_parameter
@@ -69,6 +70,6 @@ class InputFault(Effect):
 
 
 def read(network: Network) -> list[tuple[str, Link | Source]]:
-    """Inputs, and the links and losses of the network's own that follow them by themselves at every instant."""
-    items: list[Link | Source] = [*network.links, *network.sources]
-    return [(name, x) for x in items if not x.origin and not x.law.looks_at_all for name in x.law.reads]
+    """Inputs, and the links and losses of the model that follow them by themselves at every instant."""
+    items: list[Link | Source] = [*standing_links(network), *standing_sources(network)]
+    return [(name, x) for x in items if not x.law.looks_at_all for name in x.law.reads]

@@ -6,7 +6,7 @@ import numpy as np
 
 from geom.description.roles import Role
 from lumped.model.network import Link, Network
-from lumped.model.sites import boundaries, cell, model_links, part_of
+from lumped.model.sites import boundaries, cell, part_of, standing_links
 from lumped.transfer.laws import Inputs
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import HOUR, Shaped, copy_link
@@ -15,7 +15,7 @@ from validation.effects.build import HOUR, Shaped, copy_link
 def films(network: Network, part: str) -> list[Link]:
     """Films of a part to any boundary but a test bed, which it stands on."""
     washing = set(network.boundaries) - set(boundaries(network, Role.TEST_BED))
-    outer = [link for link in model_links(network) if set(link.places) & washing]
+    outer = [link for link in standing_links(network) if set(link.places) & washing]
     outer = [link for link in outer if not any(cell(network, place) for place in link.places)]
     return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
 

@@ -100,8 +100,8 @@ def test_what_differs_and_what_drifts_is_said(document):
 
 def reader_of(case):
     folder = load_case(case)
-    test = folder.case.tests[0]
-    return Reader(replace(folder.case, tests=()), test, load_sheet(folder.settings.tests[0].sheet), 20.0)
+    sheets = {one.name: load_sheet(one.sheet) for one in folder.settings.tests}
+    return Reader(replace(folder.case, tests=()), folder.case.tests, sheets, 20.0)
 
 
 def test_memory_does_not_grow_with_the_recording(made, tmp_path):
@@ -123,6 +123,15 @@ def test_memory_does_not_grow_with_the_recording(made, tmp_path):
         tracemalloc.stop()
     assert found.samples > 3 * 3 * 100
     assert peaks[1] < 1.2 * peaks[0]
+
+
+def test_each_recording_is_read_as_the_test_that_it_fits(thermoscope, root):
+    """Two headers in one folder: of the case's sheets each file finds its own."""
+    case = root / "cases" / "tclab"
+    headers = {file.read_text().partition("\n")[0] for file in (case / "tests").glob("*.csv")}
+    done = thermoscope("use", "fleet", case, case / "tests", "--json", "-")
+    assert len(headers) == 2
+    assert (done.code, done.document["recordings"]) == (0, 3)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,175 @@
+"""What readings say of each other, with truths of our own: sensors with noise, and columns that were made of them."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from measured.importing.aligned import Recording, shift
+from measured.importing.aloud import first_lines
+from measured.importing.case_files import read_runs
+from measured.importing.draft import Draft
+from measured.importing.guess import guesses
+from measured.importing.relations import functional_relations, is_like_temperature, is_product, misfit
+from measured.importing.starter import heating
+from measured.importing.target import Target
+
+RNG = np.random.default_rng(7)
+T = 5.0 * np.arange(1500)
+LOAD = np.where((T > 300) & (T < 3000), 9.0, np.where((T > 4000) & (T < 6000), 5.0, 0.0))
+
+
+def sensor(tau, size, start=21.0, noise=0.06, digits=2):
+    a = -np.expm1(-5.0 / tau)
+    rise = size * lfilter([a], [1.0, a - 1.0], (LOAD / 9.0) ** 2)
+    return np.round(start + rise + noise * RNG.standard_normal(T.size), digits)
+
+
+W1, W2, FRAME, ROOM = sensor(400, 40), sensor(450, 38), sensor(1500, 20), sensor(900, 0.0)
+SENSORS = {"w1": W1, "w2": W2, "frame": FRAME, "room": ROOM}
+LAGGED = lfilter([0.1], [1.0, -0.9], W1, zi=[0.9 * W1[0]])[0]
+EVEN = np.convolve(W1, np.ones(12) / 12)[: T.size]
+
+
+def test_sensors_of_one_machine_are_none_of_each_other():
+    """Nor are whole degrees, which are equal too often to say anything."""
+    assert functional_relations(SENSORS, {}, ()) == {}
+    assert functional_relations({c: np.round(v) for c, v in SENSORS.items()}, {}, ()) == {}
+
+
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [
+        ((W1 + W2 + FRAME) / 3, "the mean of 'w1', 'w2', 'frame'"),
+        (np.maximum(W1, W2), "the largest of 'w1', 'w2'"),
+        (np.minimum(W1, W2), "the least of 'w1', 'w2'"),
+        (W1 - ROOM, "'w1' less 'room'"),
+        (W1, "the same readings as 'w1'"),
+        (1.8 * W1 + 32, "the same readings as 'w1'"),
+        (W1 + 273.15, "the same readings as 'w1'"),
+        (LAGGED, "'w1', filtered"),
+        (np.where(np.arange(T.size) < 12, W1, EVEN), "'w1', filtered"),
+    ],
+)
+def test_a_column_made_of_others_is_told_with_its_function(column, words):
+    assert functional_relations({**SENSORS, "made": np.round(column, 2)}, {}, {"made"})["made"] == words
+
+
+def test_what_starts_and_moves_as_temperatures_do():
+    assert is_like_temperature(W1, [21.0])
+    assert not is_like_temperature(W1, [80.0])
+    assert not is_like_temperature(np.round(LOAD) + 20, [21.0])
+    assert not is_like_temperature(21.0 + 30 * RNG.random(T.size), [21.0])
+
+
+def test_a_power_is_told_by_its_factors_and_the_heat_by_what_follows_it():
+    U, current = np.round(300 - LOAD + RNG.random(T.size), 1), LOAD + 0.1 * RNG.random(T.size)
+    assert is_product(np.round(1.73 * U * current, 1), [U, current])
+    assert not is_product(np.round(1.73 * U * current + 5 * LOAD**2, 1), [U, current])
+    assert misfit(T, W1 - ROOM, LOAD, 2.0) < 1.0 < 5.0 < misfit(T, W1 - ROOM, RNG.random(T.size), 2.0)
+
+
+def record(tmp_path, columns, name="a.csv"):
+    rows = zip(*([f"{x:.5g}" for x in v] if not isinstance(v[0], str) else v for v in columns.values()))
+    (tmp_path / name).write_text("\n".join([";".join(columns), *map(";".join, rows)]))
+    ((source, clock),) = read_runs(tmp_path / name)
+    return Recording(
+        source,
+        clock,
+        guesses(source, clock.columns, Target(places_by_header=dict.fromkeys(source.labels.values(), "x"))),
+    )
+
+
+def by_column(tmp_path, columns):
+    return {g.column: g for g in record(tmp_path, {"t [s]": T, **columns}).guesses}
+
+
+def test_a_name_that_nobody_knows_over_readings_like_those_of_others(tmp_path):
+    g = by_column(tmp_path, {"T_winding [°C]": W1, "Qwzrt": FRAME, "Flow 2": sensor(900, 3.0), "I [A]": LOAD})
+    assert (g["Qwzrt"].quantity, g["Qwzrt"].doubt) == ("temperature", "a temperature, by its readings alone")
+    assert g["Flow 2"].doubt.endswith("or a temperature, by its readings alone")
+
+
+def test_units_in_cells_are_law_and_a_name_may_be_a_unit(tmp_path):
+    g = by_column(tmp_path, {"stator winding W": [f"{v} °C" for v in W1], "mA": 1000 * LOAD, "T_room [°C]": ROOM})
+    assert (g["stator winding W"].quantity, g["mA"].unit) == ("temperature", "mA")
+
+
+def test_a_current_by_its_last_letter_that_is_a_mean_of_temperatures(tmp_path):
+    g = by_column(tmp_path, {"T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_m_A": (W1 + FRAME) / 2, "I [A]": LOAD})
+    assert not g["T_m_A"].used
+    assert g["I [A]"].feeds == "current_A"
+
+
+def test_groups_that_all_names_begin_with_say_nothing(tmp_path):
+    names = [f"Root Model/Meas/{name}/Out1[°C]" for name in ("T_winding", "T_Observer_winding", "T_room")]
+    g = by_column(tmp_path, {**dict(zip(names, (W1, 0.97 * W1 + 0.5, ROOM))), "Root Model/Meas/I/Out1[A]": LOAD})
+    assert [g[name].doubt for name in names] == ["", "modelled, not read", ""]
+
+
+def test_a_loss_that_is_what_goes_in_less_what_comes_out(tmp_path):
+    out, lost = 30 * LOAD, np.round(4 * LOAD**2 + 1)
+    g = by_column(tmp_path, {"P_in [W]": out + lost, "P_shaft [W]": out, "P_v [W]": lost, "T_winding [°C]": W1})
+    assert g["P_v [W]"].feeds == "power_W"
+    assert len(g) == 4
+
+
+def test_what_is_warm_where_all_others_are_cold_is_doubted(tmp_path):
+    hot = sensor(900, 2.0, start=38.0)
+    g = by_column(tmp_path, {"Oil [°C]": hot, "T_winding [°C]": W1, "T_frame [°C]": FRAME, "T_room [°C]": ROOM})
+    assert g["Oil [°C]"].doubt == "starts at 38 degC, all others near 21: is it of this machine?"
+
+
+def test_of_columns_without_a_part_the_quickest_are_of_the_winding(tmp_path):
+    hot = {"Qa [°C]": W1, "Qb [°C]": FRAME, "Qc [°C]": W2, "T_room [°C]": ROOM, "I [A]": LOAD}
+    g = by_column(tmp_path, hot)
+    assert ["fastest" in g[c].doubt for c in hot] == [True, False, True, False, False]
+    g = by_column(tmp_path, {"T_winding [°C]": FRAME, **hot})
+    assert not any("fastest" in one.doubt for one in g.values())
+
+
+def test_powers_on_both_sides_of_a_machine_pass_through(tmp_path):
+    powers = {"P_in [W]": 40 * LOAD + 100, "P_out [W]": 30 * LOAD}
+    one = record(tmp_path, {"t [s]": T, "T_winding [°C]": W1, "I [A]": LOAD, **powers})
+    columns = [(one.source, g) for g in one.guesses]
+    assert heating(columns, "power") == []
+    assert [g.column for _, g in heating(columns, "current")] == ["I [A]"]
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"I_1 [A]": np.roll(LOAD, 400), "I_2 [A]": LOAD}, "'I_2 [A]' explains the readings better than"),
+        ({"shunt [mV]": 5 * LOAD}, "the only heat was left out: 'shunt [mV]'"),
+        ({"U [V]": 20 + LOAD}, "no current and no loss is recorded: 'U [V]' alone tells of the heat"),
+        ({"pwm": np.round(20 * LOAD)}, "'pwm': goes to 180, so in no percent"),
+        ({"I": LOAD}, "no unit: 'I' is taken in A"),
+        (
+            {"I [A]": LOAD, "Outlet water [°C]": sensor(900, 12)},
+            "'Outlet water [°C]': it warms with the machine: an outlet?",
+        ),
+    ],
+)
+def test_the_first_lines_name_what_may_matter(tmp_path, columns, words):
+    one = record(tmp_path, {"t [s]": T, "T_winding [°C]": W1, "T_room [°C]": ROOM, **columns})
+    places = {"T_winding [°C]": "winding", "T_room [°C]": "ambient", "Outlet water [°C]": "coolant"}
+    columns_at_places = [
+        g if g.feeds or g.column not in places else type(g)(g.column, "temperature", "degC", places[g.column])
+        for g in one.guesses
+    ]
+    lines = first_lines([Draft("a", (Recording(one.source, one.clock, columns_at_places),))])
+    assert any(line.startswith(words) for line in lines), lines
+
+
+def test_a_clock_with_a_zone_beside_one_without(tmp_path):
+    stamps = [f"2024-04-17 {9 + k // 720:02d}:{k // 12 % 60:02d}:{5 * k % 60:02d}" for k in range(T.size)]
+    first = record(tmp_path, {"Time": stamps, "I [A]": LOAD})
+    other = record(tmp_path, {"Zeit": [f"{s}+02:00" for s in stamps], "T_winding [°C]": W1}, "b.csv")
+    seconds, how = shift(first, other)
+    assert seconds == 0.0
+    assert "the whole hours are guessed" in how
+
+
+def test_hours_and_minutes_as_written_by_hand_in_french(tmp_path):
+    stamps = [f"{10 + k // 60}h{k % 60:02d}" for k in range(100)]
+    one = record(tmp_path, {"heure": stamps, "T bobine [°C]": W1[:100], "I [A]": LOAD[:100]})
+    assert one.clock.seconds == pytest.approx(60.0 * np.arange(100))
