@@ -14,6 +14,7 @@ from measured.doubt import USUAL
 
 STEP = 0.1  # of an input's largest value: a smaller change between two rows is a hundredth of the variance of a step
 MOST = 48  # moved by themselves in a test: of more, neighbours are moved together by what they come to
+FEW, LARGE = 8, 30  # so many in a network of more states than that: each costs a run of the model
 MOSTLY = 0.95  # of the rows with a step: three steps in the time of a row
 EDGE = 1e-3  # of the time between two rows: how long a step takes
 
@@ -43,10 +44,14 @@ def recorded_inputs(test: Test) -> tuple[Array, Mapping[str, Array]]:
     return fine.time, fine.inputs
 
 
-def input_steps(test: Test) -> list[InputStep]:
+def input_steps(test: Test, states: int = 0) -> list[InputStep]:
     """The steps between rows of a test's inputs and, where these are no finer, of its boundaries; none where rows are
-    so close that the clock is doubted by more."""
+    so close that the clock is doubted by more.
+
+    states : of the network that is run for each
+    """
     time, inputs = recorded_inputs(test)
+    limit = FEW if states > LARGE else MOST
     if time.size < 2 or USUAL["step in sample"] * np.median(np.diff(time)) <= USUAL["clock"]:
         return []
     largest = {n: max(float(np.max(np.abs(u))), 1e-300) for n, u in inputs.items()}
@@ -61,13 +66,13 @@ def input_steps(test: Test) -> list[InputStep]:
     first = np.argmax(np.abs(every), axis=0)
     most = np.take_along_axis(every, first[None], axis=0)[0]
     rows = np.flatnonzero(np.abs(most) > STEP)
-    groups = np.array_split(rows, min(MOST, rows.size)) if rows.size else []
+    groups = np.array_split(rows, min(limit, rows.size)) if rows.size else []
     steps = [InputStep(g, most[g] / float(np.linalg.norm(most[g]))) for g in groups]
-    return [*steps, *(s for n, d in change.items() for s in _hidden_steps(n, d, largest[n]))]
+    return [*steps, *(s for n, d in change.items() for s in _hidden_steps(n, d, largest[n], limit))]
 
 
-def _hidden_steps(name: str, change: Array, largest: float) -> Iterator[InputStep]:
-    """What an input may have been between two rows.  change : between rows, of its largest value
+def _hidden_steps(name: str, change: Array, largest: float, limit: int) -> Iterator[InputStep]:
+    """What an input may have been between two rows.  change : between rows, of its largest value;  limit : most of them
 
     Where steps come by chance, a row that shows one has more, as of a Poisson process. Where they keep a distance, that
     is where fewer than by chance are next to each other, they have fewer.
@@ -80,7 +85,7 @@ def _hidden_steps(name: str, change: Array, largest: float) -> Iterator[InputSte
     more = -float(np.log1p(-min(often, MOSTLY))) * min(1.0, side / often**2)
     size = float(np.sqrt(more * np.mean(np.where(stepped, change, 0.0) ** 2)))
     if size > STEP:
-        for g in np.array_split(np.arange(change.size), min(MOST, change.size)):
+        for g in np.array_split(np.arange(change.size), min(limit, change.size)):
             yield InputStep(g, np.full(g.size, largest * size / np.sqrt(g.size)), name)
 
 

@@ -333,7 +333,7 @@ def model_error(
     each = side_by_side(of_test, tests, lambda test: len(test.time))
     names = named(network, each[-1][0], doubt, sensed or tests)
     columns = {key: x for _, of in each for key, x in of.items()}
-    late = sum(len(input_steps(t)) for t in sensed or tests)
+    late = sum(len(input_steps(t, len(network.states))) for t in sensed or tests)
     sums = {key: total_sd(x[:, : x.shape[1] - late]) for key, x in columns.items()}
     return ModelError(columns, names, doubt["law"], sums, late).bounded(doubt["total"] * machine_rise(sensed or tests))
 
@@ -353,7 +353,8 @@ def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Se
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    late = [f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t in tests for s in input_steps(t)]
+    steps = [(t, s) for t in tests for s in input_steps(t, len(network.states))]
+    late = [f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t, s in steps]
     return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
 
 
@@ -386,7 +387,7 @@ def of_steps(
 
     plain : the test as recorded
     """
-    every = [(t.name == test.name, s) for t in tests for s in input_steps(t)]
+    every = [(t.name == test.name, s) for t in tests for s in input_steps(t, len(network.states))]
     if not doubt["step in sample"]:
         return {s.channel: np.zeros((s.r.size, len(every))) for s in plain}
     steps = [s for here, s in every if here and not s.hidden]
