@@ -25,7 +25,7 @@ benchmark: setup  ## every benchmark at a small size, results in out/benchmarks;
 	@mkdir -p out/benchmarks
 	@for name in geometry field network rendering viewer first_comparison; do echo "== $$name"; $(BIN)/python benchmarks/$$name.py --json out/benchmarks/$$name.json || exit 1; done
 	@echo "== condensation"; $(BIN)/python benchmarks/condensation.py series-dc-100kw --coarse --json out/benchmarks/condensation.json
-	@echo "== robustness"; $(BIN)/python benchmarks/robustness.py --hits 1 --json out/benchmarks/robustness.json
+	@echo "== robustness"; $(BIN)/python benchmarks/console/robustness.py --hits 1 --json out/benchmarks/robustness.json
 	@echo "== diagnosis"; $(BIN)/python benchmarks/diagnosis.py --samples 400000 --json out/benchmarks/diagnosis.json
 	@echo "== bands"; $(BIN)/python benchmarks/bands.py --kinds servo --count 2 --json out/benchmarks/bands.json
 	@echo "== drawn_benches"; $(BIN)/python benchmarks/drawn/drawn_benches.py --cases 1 --json out/benchmarks/drawn_benches.json

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from geom.arrays import Array, Ints
-from lumped.integration.compiled import Compiled
 from lumped.numerics.terms import COLD, HOT, PLACE, SOURCE, Forcing
 from lumped.transfer.laws import FilmTable, StreamTable, Table
 from lumped.transfer.ranges import Domain, out_of_range
+
+if TYPE_CHECKING:
+    from lumped.integration.compiled import Compiled
 
 SMALL = 1e-12  # K
 

@@ -124,7 +124,7 @@ def lone_tests(fit: Fit, names: Sequence[str]) -> dict[str, float]:
 
 
 def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
-    """When (s) half of what some parameters do to a test's readings has been seen: an event late in it has a late one."""
+    """When (s) half of what some parameters do to a test's readings has been seen: of a late event that is late."""
     columns, parts = [fit.unknowns.names.index(name) for name in names], [s for s in fit.parts if s.test == test]
     time = np.concatenate([s.time for s in parts])
     size = np.concatenate([np.sum(s.J[:, columns] ** 2, axis=1) for s in parts])

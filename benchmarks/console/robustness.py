@@ -1,6 +1,6 @@
 """A process killed, and a disk that fills, at random moments of commands that write: does the case still open?
 
-    python benchmarks/robustness.py [--hits 20] [--seed 0] [--json FILE]
+    python benchmarks/console/robustness.py [--hits 20] [--seed 0] [--json FILE]
 
 Every trial runs one command on a fresh copy of a small case in a process of its own. It is killed (SIGKILL) at a random
 moment, or as soon as a file is half written (aimed), or its disk (a small tmpfs, in a mount namespace of its own) is
