@@ -9,12 +9,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from geom.arrays import Array, Ints
-from lumped.transfer.ranges import Domain
+
+if TYPE_CHECKING:
+    from lumped.transfer.ranges import Domain
 
 Inputs = Mapping[str, Array]
 
