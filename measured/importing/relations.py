@@ -11,8 +11,6 @@ from collections.abc import Container, Mapping, Sequence
 from functools import partial
 
 import numpy as np
-from scipy.optimize import nnls
-from scipy.signal import lfilter
 
 from geom.arrays import Array
 
@@ -135,6 +133,8 @@ def _extreme(y: Array, others: Mapping[str, Array], margin: float, digit: Mappin
 
 def _mean(y: Array, others: Mapping[str, Array], near: partial[bool]) -> str:
     """The mean of several columns."""
+    from scipy.optimize import nnls
+
     if len(others) < 2:
         return ""
     names, table = [*others], np.array([*others.values()]).T
@@ -158,6 +158,8 @@ def _difference(y: Array, sources: Mapping[str, Array], near: partial[bool]) -> 
 
 def _is_filtered(y: Array, x: Array, limit: float) -> bool:
     """Is it the other after a lag of the first order or a moving average of rows?"""
+    from scipy.signal import lfilter
+
     span = float(np.ptp(y))
     if span < DIGITS * limit or float(np.mean(np.abs(y - x))) > NEAR * span:
         return False
@@ -200,6 +202,9 @@ def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = 
 
 def misfit(seconds: Array, rise: Array, heat: Array, exponent: float) -> float:
     """What is left (K rms) of a rise over the room after the response to a heat, with every time constant there is."""
+    from scipy.optimize import nnls
+    from scipy.signal import lfilter
+
     rows = slice(None, None, max(1, rise.size // ROWS))
     good = np.isfinite(rise) & np.isfinite(heat) & np.isfinite(seconds)
     t, y, u = (v[good][rows] for v in (seconds, rise, np.abs(heat) ** exponent))
