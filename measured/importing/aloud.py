@@ -88,8 +88,8 @@ def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
     if any(Role.WINDING in roles or is_whole(g.column) or FASTEST in g.doubt for roles, g in hot):
         return {}
-    lost = [g.column for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
-    lost = [g.column for r, g in left if g.column in lost and may_be_temperature(r.source, g)]
+    wound = [(r, g) for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
+    lost = [g.column for r, g in wound if may_be_temperature(r.source, g)]
     ohms = [g.column for _, g in left if g.quantity == "resistance"]
     if lost:
         words = f"'{lost[0]}' looks like winding; --place {quote(f'{lost[0]}=PLACE')}"

@@ -122,20 +122,16 @@ def of_machine(columns: Columns) -> Columns:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
     if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
         return columns
-    still = [one for one in parts if not roles_of(one[0].labels[one[1].column]) and _is_still(one, parts)]
-    if not still:
-        return columns
-    _, room = min(still, key=lambda one: float(np.nanmean(in_memory(*one))))
-    return [(s, replace(g, place="ambient") if g.column == room.column else g) for s, g in columns]
-
-
-def _is_still(one: tuple[Source, Guess], parts: Columns) -> bool:
-    """Does it hardly change, and is it as cold as the others were when they began?"""
-    values = in_memory(*one)
-    span = float(np.ptp(np.nanpercentile(values, MOST)))
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
-    cold = float(np.nanmean(values)) <= float(np.median(starts)) + COLD_K
-    return cold and span <= STILL * max(rise(*part) for part in parts)
+    coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
+    means = dict[float, str]()
+    for s, g in parts:
+        values = in_memory(s, g)
+        mean = float(np.nanmean(values))  # of what hardly changes and is as cold as the others were when they began
+        if not roles_of(s.labels[g.column]) and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
+            means.setdefault(mean, g.column)
+    room = means[min(means)] if means else ""
+    return [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:

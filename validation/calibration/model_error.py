@@ -314,6 +314,7 @@ def model_error(
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
     """
     larger, doubts = with_doubts(network, doubt, sensed or tests)
+    steps = {t.name: input_steps(t, len(network.states)) for t in sensed or tests}
 
     def of_test(test: Test) -> tuple[tuple[Parameter, ...], dict[tuple[str, str], Array]]:
         with_core = with_cores(larger, test, values, doubt)
@@ -323,7 +324,7 @@ def model_error(
         beside = placements(network, test, values, doubt, sensed or tests)
         here = np.array([float(t.name == test.name) for t in sensed or tests])
         flow = of_inputs(network, test, values, doubt, parts, here)
-        late = of_steps(network, test, values, doubt, parts, sensed or tests)
+        late = of_steps(network, test, values, doubt, parts, steps)
         columns = {
             s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel], late[s.channel]])
             for s in parts
@@ -331,9 +332,9 @@ def model_error(
         return every, {(s.test, s.channel): columns[s.channel] for s in parts}
 
     each = side_by_side(of_test, tests, lambda test: len(test.time))
-    names = named(network, each[-1][0], doubt, sensed or tests)
+    names = (*named(network, each[-1][0], doubt, sensed or tests), *step_names(sensed or tests, steps))
     columns = {key: x for _, of in each for key, x in of.items()}
-    late = sum(len(input_steps(t, len(network.states))) for t in sensed or tests)
+    late = sum(map(len, steps.values()))
     sums = {key: total_sd(x[:, : x.shape[1] - late]) for key, x in columns.items()}
     return ModelError(columns, names, doubt["law"], sums, late).bounded(doubt["total"] * machine_rise(sensed or tests))
 
@@ -349,13 +350,17 @@ def total_sd(columns: Array) -> float:
 
 
 def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Sequence[Test]) -> tuple[str, ...]:
-    """What each column stands for."""
+    """What each column but those of input steps stands for."""
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    steps = [(t, s) for t in tests for s in input_steps(t, len(network.states))]
-    late = [f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t, s in steps]
-    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
+    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once)
+
+
+def step_names(tests: Sequence[Test], steps: Mapping[str, Sequence[InputStep]]) -> tuple[str, ...]:
+    """What each column of input steps stands for.  steps : by the name of their test"""
+    every = [(t, s) for t in tests for s in steps[t.name]]
+    return tuple(f"{s.what} near {recorded_inputs(t)[0][s.row[0]]:.0f} s of {t.name}" for t, s in every)
 
 
 def of_inputs(
@@ -380,14 +385,14 @@ def of_steps(
     values: Mapping[str, float],
     doubt: Doubt,
     plain: Sequence[Segment],
-    tests: Sequence[Test],
+    by_test: Mapping[str, Sequence[InputStep]],
 ) -> dict[str, Array]:
     """Channel -> (n, k): each step of the inputs of all tests, moved by a deviation; zero in other tests, and where all
     steps of the test together are small beside what a good model may be wrong by.
 
-    plain : the test as recorded
+    plain : the test as recorded;  by_test : name -> its steps
     """
-    every = [(t.name == test.name, s) for t in tests for s in input_steps(t, len(network.states))]
+    every = [(name == test.name, s) for name, some in by_test.items() for s in some]
     if not doubt["step in sample"]:
         return {s.channel: np.zeros((s.r.size, len(every))) for s in plain}
     steps = [s for here, s in every if here and not s.hidden]

@@ -41,6 +41,7 @@ from validation.inference.hypotheses import (
     is_rare,
     probabilities,
     repeat_price,
+    sample_step,
     timing_step,
 )
 from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
@@ -130,11 +131,6 @@ def timed_span(
 def time_around(instants: Array) -> Array:
     """Time (s) that each of some instants stands for."""
     return np.gradient(instants) if instants.size > 1 else np.full(1, WHEN_S)
-
-
-def sample_step(test: Test) -> float:
-    """Usual time between two samples (s)."""
-    return float(np.median(np.diff(test.time)))
 
 
 def next_reach(reach_s: float) -> float:

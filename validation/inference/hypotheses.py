@@ -256,9 +256,14 @@ def stretch_count(n: float, usual: float | None) -> float:
     return 0.5 * n * (n + 1) if usual is None else n * max(1.0, LENGTHS * usual)
 
 
+def sample_step(test: Test) -> float:
+    """Usual time between two samples (s)."""
+    return float(np.median(np.diff(test.time)))
+
+
 def timing_step(test: Test) -> float:
     """Time (s) between instants at which something may begin or end: rows where they are close, else WHEN_S."""
-    return min(float(np.median(np.diff(test.time))), WHEN_S)
+    return min(sample_step(test), WHEN_S)
 
 
 def repeat_price(test: Test, usual_s: float) -> float:
