@@ -15,7 +15,7 @@ Source: Rasmussen and Williams 2006, chapters 4.2 and 5.4; Kennedy and O'Hagan 2
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 TAU, ELL = FORM["fast time"], FORM["slow time"]
 FLOOR_K = FORM["resolved"]
+OUTLYING = 3.0  # deviations: of a thousand readings three are further off by chance
 
 
 @dataclass(frozen=True)
@@ -159,11 +160,13 @@ class Noise:
     """levels : per channel, in units of the segments' weight; `reserve` for channels that were never fitted.
 
     allow : share of what a model may be wrong by that the noise is never below; 0 for the residual's own noise
+    trust : (test, channel) -> (n,) share of each whitened reading that counts; all of it where nothing is said
     """
 
     levels: Mapping[str, Level]
     reserve: Level = START
     allow: float = 1.0
+    trust: Mapping[tuple[str, str], Array] = field(default_factory=dict)
 
     def at(self, segment: Segment) -> Level:
         return self.levels.get(segment.channel, self.reserve).at(segment, self.allow)
@@ -171,7 +174,18 @@ class Noise:
     def whiten(self, segment: Segment, columns: Array) -> Array:
         """Sigma^-1/2 applied to columns (n, k) of a segment."""
         level = self.at(segment)
-        return (_whitener(stamp(segment.time), level.shape()) @ columns) / level.white
+        white = (_whitener(stamp(segment.time), level.shape()) @ columns) / level.white
+        trust = self.trust.get((segment.test, segment.channel))
+        return white if trust is None else trust[:, None] * white
+
+    def robust(self, parts: Sequence[Segment]) -> Noise:
+        """The same, under which readings that surprise a fit by more than OUTLYING deviations pull it no further.
+
+        Nothing in the noise is as fast as heat that comes or goes between two readings: a single one would outweigh
+        hours. Source: Huber 1964.
+        """
+        each = {(s.test, s.channel): np.abs(self.whiten(s, s.r[:, None])[:, 0]) for s in parts}
+        return replace(self, trust={at: np.sqrt(OUTLYING / np.maximum(e, OUTLYING)) for at, e in each.items()})
 
     def logdet(self, segment: Segment) -> float:
         """log|Sigma| of a segment."""

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -24,6 +25,7 @@ SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0  # degC, at which sensors are compared
 STEP = {"lag": 0.05, "delay": 0.05}  # s, of a difference quotient; chosen, small beside any sample step
 Memory = dict[str, Array]
+NOTHING: Mapping[str, tuple[str, str, Array]] = MappingProxyType({})
 
 
 # The cubic spline without knots at its second points (de Boor 1978, ch. IV), for thousands of columns at once. SciPy's
@@ -132,6 +134,7 @@ class Stretch:
 
     memory : variant -> how far its sensors are behind at the end of what was read last. A stretch that follows another
         starts with the time at which that ended.
+    whiles : what acts on a channel for a while -> its kind, the channel, and the share of each sample in which it does
     """
 
     time: Array
@@ -139,6 +142,7 @@ class Stretch:
     began: float
     channels: tuple[Channel, ...]
     memory: Memory
+    whiles: Mapping[str, tuple[str, str, Array]] = field(default_factory=dict)
 
     def read(self, T: Array, now: Mapping[str, float], variant: str = "", linear: bool = False) -> Array:
         """Readings (n_time, n_channel, ...) from temperatures that are delayed already; linear: without the constants.
@@ -159,7 +163,11 @@ class Stretch:
         columns, rows = (-1,) + (1,) * (T.ndim - 2), (-1,) + (1,) * (T.ndim - 1)
 
         def each(kind: str) -> Array:
-            return np.array([now.get(f"{kind}:{c.name}", 0.0) for c in channels]).reshape(columns)
+            every = np.array([now.get(f"{kind}:{c.name}", 0.0) for c in channels]).reshape(columns)
+            for key in [key for key, (of, *_) in self.whiles.items() if of == kind and key in now]:
+                _, name, share = self.whiles[key]
+                every = every + now[key] * share.reshape(rows) * np.reshape([c.name == name for c in channels], columns)
+            return every
 
         stem, gain, bias, drift = each("stem"), each("gain"), each("bias"), each("drift")
         if stem.any() and self.air is not None:
@@ -176,11 +184,14 @@ class Stretch:
         return out
 
 
-def stretch_of(network: Network, test: Test, some: slice, memory: Memory) -> Stretch:
-    """The samples of a test from some.start to some.stop."""
+def stretch_of(
+    network: Network, test: Test, some: slice, memory: Memory, whiles: Mapping[str, tuple[str, str, Array]] = NOTHING
+) -> Stretch:
+    """The samples of a test from some.start to some.stop; whiles of all its samples."""
     air = test.boundaries.get(ambient(network) or "")
     around = None if air is None else np.broadcast_to(np.asarray(air, float), test.time.shape)[some]
-    return Stretch(test.time[some], around, float(test.time[0]), test.channels, memory)
+    here = {key: (kind, name, share[some]) for key, (kind, name, share) in whiles.items()}
+    return Stretch(test.time[some], around, float(test.time[0]), test.channels, memory, here)
 
 
 def observe(network: Network, test: Test, T: Array, now: Mapping[str, float]) -> Array:

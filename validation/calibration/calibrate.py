@@ -417,7 +417,7 @@ def calibrated(
             tests,
             unknowns,
             fit.theta,
-            fit_noise(fit.parts),
+            fit_noise(fit.parts).robust(fit.parts),
             fixed,
             DRAFT_STEPS if rough or i + 1 < rounds else LAST_STEPS,
             CachedSegments(fit.parts, nearby=False, stale=True),

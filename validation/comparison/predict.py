@@ -30,9 +30,10 @@ from measured.sensors.operators import (
     starts,
     stretch_of,
 )
-from validation.effects.time_window import IN, lasts
+from validation.effects.time_window import IN, holds, lasts
 
 MOVING = tuple(f"{kind}:" for kind in SHIFTS)
+SENSORS = tuple(f"{kind}:" for kind in OPERATORS if kind != "swap")
 CACHED_NUMBERS = 100_000  # of a run whose readings are cached: a clock or a sensor that differs needs no new one
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
@@ -184,13 +185,19 @@ class Watch:
         self.hot = [*hot, *shift_of]
         moving = [tangents[i] for i in hot], list(shift_of.values())
         self.course = Course(bare, test, heat, self.now, *moving, precision)
+        every = {target for p in (*network.parameters, *tangents) for target, _ in p.targets}
+        self.whiles = {
+            target: (*channel_of(target), holds(target.rpartition(IN)[2], test))
+            for target in every
+            if IN in target and target.startswith(SENSORS)
+        }
         self.late_s, self.spread = abs(self.now.get(f"delay:{test.name}", 0.0)), test.spread
 
     def until(self, stop: int) -> Prediction:
         """Readings and derivatives from where the last look ended to sample `stop`."""
         some = slice(max(self.done - 1, 0), stop)
         self.around = self._around(some)
-        look = stretch_of(self.network, self.test, some, self.memory)
+        look = stretch_of(self.network, self.test, some, self.memory, self.whiles)
         T, dT = self.course.over(self.around)
         late = self._late(T, some, self.now)
         y = look.read(late, self.now)
@@ -227,11 +234,17 @@ class Watch:
             return (look.read(self._late(T, some, now), now, f"step {i}") - y) / step
         if any(key.startswith("swap:") for key in now):
             return (look.read(late, now, f"step {i}") - y) / step
-        out, name = np.zeros_like(y), self.tangents[i].targets[0][0].split(":", 1)[1]
+        out, (_, name) = np.zeros_like(y), channel_of(self.tangents[i].targets[0][0])
         for j, c in enumerate(look.channels):
             if c.name == name:
                 out[:, j] = (look.through([c], late[:, j : j + 1], now, f"step {i}")[:, 0] - y[:, j]) / step
         return out
+
+
+def channel_of(target: str) -> tuple[str, str]:
+    """Kind of sensor's error and channel that a parameter acts on, always or for a while."""
+    kind, _, name = target.partition(":")
+    return kind, name.rpartition(IN)[0] or name
 
 
 def softened(T: Array, spread: float) -> Array:

@@ -46,6 +46,7 @@ class Effect(ABC):
     whole : True when it happens entirely or not at all, with parameter 1 (two plugs exchanged)
     of_tests : True when it may be off in whole tests alone, though it is an offset
     of_material : True when its amplitude is a property of a material, which is never far from `typical`
+    temporary : True when it can be told only while a condition holds: in all tests it is what a fit does to parameters
     empirical : True when it follows a correlation that scatters, as films and losses do; not conduction, nor a sensor
     """
 
@@ -71,6 +72,7 @@ class Effect(ABC):
     whole: ClassVar[bool] = False
     of_tests: ClassVar[bool] = False
     of_material: ClassVar[bool] = False
+    temporary: ClassVar[bool] = False
     empirical: ClassVar[bool] = False
 
     @property

@@ -9,6 +9,7 @@ from geom.errors import InputError
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.transfer.laws import CLOCK, Law
 from measured.doubt import USUAL
+from measured.sensors.operators import of_measurement
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
 from validation.effects.time_window import IN, Event, TimeWindow, event
@@ -81,6 +82,9 @@ class During(Effect):
     def extend(self, network: Network) -> Network:
         larger = self.base.extend(network)
         amplitude = replace(larger.parameters[-1], prior_sd=USUAL["switched"] * larger.parameters[-1].prior_sd)
+        if of_measurement(amplitude) and not self.base.of_tests and self.base.temporary:
+            targets = tuple((f"{t}{IN}{self.condition}", factor) for t, factor in amplitude.targets)
+            return with_parameter(network, replace(amplitude, name=self.name, targets=targets))
         if amplitude.mapping == "amplitude":
             return self._conditional(network, larger, amplitude)
         if amplitude.mapping == "offset":

@@ -44,7 +44,8 @@ def kinds() -> dict[str, type[Effect]]:
 def catalogue(scene: Scene, only: Iterable[str] | None = None) -> tuple[Effect, ...]:
     """All effects that can sit somewhere in the scene; `only` restricts the kinds."""
     table = kinds()
-    classes = [_of(kind, table, "the kinds to look for") for kind in (table if only is None else only)]
+    always = [kind for kind, cls in table.items() if not cls.temporary]
+    classes = [_of(kind, table, "the kinds to look for") for kind in (always if only is None else only)]
     return tuple(cls(place) for cls in classes for place in cls.places(scene))
 
 

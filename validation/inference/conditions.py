@@ -13,12 +13,15 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
+from geom.arrays import Array
 from geom.errors import InputError
 from lumped.model.sites import ambient, neighbours
 from lumped.schemas.reader import suggestion
 from measured.case import Case, Test
 from measured.doubt import FORM
+from measured.sensors.blocks import groups
 from validation.calibration.calibrate import no_progress
 from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
@@ -39,8 +42,10 @@ from validation.threads import side_by_side
 
 Values = Mapping[str, float]
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
-AS_DECLARED = ("conduction.bench", "flow", "blockage", "input.factor")  # where the catalogue has them
-IN_WHOLE_TESTS = ("ambient.offset", "input.offset")
+AS_DECLARED = ("conduction.bench", "flow", "blockage", "blockage.all", "input.factor")  # where the catalogue has them
+IN_WHOLE_TESTS = ("ambient.offset", "input.offset", "sensor.loose")
+LOOSE = 4  # sensors that may have come loose, in the tests that speak for it most, are asked when
+SLIPPED = (0.0, 0.3, 0.6, 0.85)  # of a test, when one may have: from one to the next it shows half its change at least
 TESTS, EACH = 16, 6  # conditions of whole tests, and explanations of an event, that join the others
 EVENTS = 8  # that pay the price of when, what and where; more would be a matter of time, not of odds
 LAWS = 4  # laws that join
@@ -118,6 +123,8 @@ def conditions(
     for occurrence, rows in side_by_side(lambda s: explanations(evidence, bases, s, scan, values), intervals):
         events.append(occurrence)
         selection += best(rows, EACH)
+    sensors = [e for e in whole if e.kind == "sensor.loose"]
+    selection += best(loose_sensors(evidence, sensors, values, 0.5 / (len(bases) + len(sensors))), EACH)
     for name, share in declared_conditions(case, evidence, events):
         selection += best(tangent_worth(evidence, bases, name, share / len(bases), values), EACH)
     once: dict[str, Promising] = {}
@@ -233,6 +240,42 @@ def explanations(
 def end_reach(scan: Scan) -> dict[str, float]:
     """Test -> how far (s) an end may lie from where knots of heat put it."""
     return {t: 1.5 * float(knots[1] - knots[0]) for t, knots in scan.knots.items()}
+
+
+def loose_sensors(evidence: Evidence, sensors: Sequence[Effect], values: Values, share: float) -> list[Promising]:
+    """Sensors that may have come loose during a test, and stayed so to its end; when, by the most probable instant.
+
+    share : of the prior, of each sensor
+    """
+    pairs = [(e, t) for e in sensors for t in evidence.tests if any(c.name == e.place for c in t.channels)]
+    first = [(e, t, float(np.quantile(t.time, at))) for e, t in pairs for at in SLIPPED]
+    worth = dict[tuple[str, str], float]()
+    for (e, t, _), bayes in zip(first, slip_bayes(evidence, first, values), strict=True):
+        worth[e.name, t.name] = max(worth.get((e.name, t.name), -np.inf), float(bayes))
+    out = []
+    for e, t in sorted(pairs, key=lambda x: -worth[x[0].name, x[1].name])[:LOOSE]:
+        at = np.unique(t.time[groups(t.time.size)][1:-1])
+        bayes = slip_bayes(evidence, [(e, t, float(x)) for x in at], values)
+        prior = condition_prior(share / len(evidence.tests))
+        density = float(logsumexp(bayes - bayes.max() + np.log(np.gradient(at) / np.ptp(t.time))))
+        effect = slipped(e, t, float(at[np.argmax(bayes)]))
+        out.append(Promising(effect, prior + density, float(bayes.max()) + prior + density - NOTHING.log_prior))
+    return out
+
+
+def slipped(sensor: Effect, test: Test, since: float) -> During:
+    """A sensor that is loose from an instant (s) on."""
+    return During.of(sensor, Event.of({test.name: [(since, float(test.time[-1]))]}).name)
+
+
+def slip_bayes(evidence: Evidence, many: Sequence[tuple[Effect, Test, float]], values: Values) -> Array:
+    """Log Bayes factor by its tangent of each (sensor, test, since when) against nothing."""
+    effects = [slipped(*one) for one in many]
+    parameters = amplitudes(evidence.fit.network, effects)
+    scores = fit_score(
+        evidence.fit, effect_columns(evidence.fit, evidence.tests, effects, values), np.ones(len(many), int)
+    )
+    return scores.log_bayes(np.array([p.prior_sd for p in parameters]))
 
 
 def timed_worth(

@@ -30,6 +30,7 @@ from validation.effects.base import Effect
 from validation.effects.build import Shaped
 from validation.effects.during import During
 from validation.effects.registry import extended
+from validation.effects.sensors.reading_fault import ReadingFault
 from validation.effects.time_window import AND, Event, Span, TimeWindow, lasts
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.evidence import Evidence, joined
@@ -270,7 +271,9 @@ def moved_events(evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Map
     for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
-            if k in new or not isinstance(effect, During) or not effect.event or throughout(evidence, effect.event):
+            if k in new or not isinstance(effect, During) or isinstance(effect.base, ReadingFault):
+                continue
+            if not effect.event or throughout(evidence, effect.event):
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
                 event = refit_ends(evidence, h.fit, effect, effect.event, reach_s)

@@ -259,7 +259,8 @@ def _effect_checks(
     every = folds(tests, telling, middle, lone)
     if (at := (middle, *telling)) not in predictions:
         predictions[at] = [fold_prediction(bare, fold, values) for fold in every]
-    after = [fold_prediction(fit, fold, parameter_values(fit.network, new.values)) for fold in every]
+    alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
+    after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in every]
     checks = prediction_checks(predictions[at], after, telling, tuple(lone))
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
 

@@ -1,5 +1,6 @@
 """Cooling that fades during the test."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +13,16 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import HOUR, Shaped, copy_link
 
 
-def films(network: Network, part: str) -> list[Link]:
-    """Films of a part to any boundary but a test bed, which it stands on."""
-    washing = set(network.boundaries) - set(boundaries(network, Role.TEST_BED))
+def outer_films(network: Network, washing: Collection[str]) -> list[Link]:
+    """Films to some boundaries, none of them a test bed, which the machine stands on."""
+    washing = set(washing) - set(boundaries(network, Role.TEST_BED))
     outer = [link for link in standing_links(network) if set(link.places) & washing]
-    outer = [link for link in outer if not any(cell(network, place) for place in link.places)]
+    return [link for link in outer if not any(cell(network, place) for place in link.places)]
+
+
+def films(network: Network, part: str) -> list[Link]:
+    """Films of a part to any boundary."""
+    outer = outer_films(network, network.boundaries)
     return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
 
 
