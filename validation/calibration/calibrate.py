@@ -393,8 +393,11 @@ def calibrated(
     noise: Noise | None = None,
     keep: Keep = no_memory,
     rough: bool = False,
+    robust: bool = False,
 ) -> Fit:
     """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times.
+
+    robust : single readings that nothing explains pull no further, see `Noise.robust`; not where they are looked for
 
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
@@ -417,7 +420,7 @@ def calibrated(
             tests,
             unknowns,
             fit.theta,
-            fit_noise(fit.parts).robust(fit.parts),
+            fit_noise(fit.parts).robust(fit.parts) if robust else fit_noise(fit.parts),
             fixed,
             DRAFT_STEPS if rough or i + 1 < rounds else LAST_STEPS,
             CachedSegments(fit.parts, nearby=False, stale=True),

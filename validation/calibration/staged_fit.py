@@ -81,7 +81,7 @@ def staged_fit(
         names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         best = best_start(network, stage.tests, free, values, search, progress) if search.starts > 1 else values
-        fits.append(calibrated(network, stage.tests, free, best, progress=progress, keep=search.keep))
+        fits.append(calibrated(network, stage.tests, free, best, progress=progress, keep=search.keep, robust=True))
         values |= fits[-1].values
     return fits
 

@@ -280,19 +280,27 @@ def _fit_before(case: Case) -> tuple[Fit, dict[str, float], dict[tuple, list[Fol
 
 
 def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
-    """No test may pay for another: where one gets worse by far, something else differs between them.
+    """No test may pay for another: where one gets worse by far, as its sensors read and as the fit has them, something
+    else differs between them."""
+    sigma = {t.name: float(np.sqrt(np.mean([c.sigma_K**2 for c in t.channels]))) for t in tests}
+    mine = [c for c in changes if c.name in sigma and isfinite(c.before)]
+    read = {c.name: (c.before, c.after) for c in mine}
+    fitted = {c.name: (c.fitted_before or c.before, c.fitted_after or c.after) for c in mine}
+    both = _far_worse(read, sigma) & _far_worse(fitted, sigma)
+    text = ", ".join(f"{c.name} {fall(c.before, c.after)}" for c in mine if c.name in both)
+    words = f"another test pays for it: {text}; more differs between these tests" if both else "no test pays for it"
+    return Check("other tests", not both, float(len(both)), 0.0, words)
+
+
+def _far_worse(errors: Mapping[str, tuple[float, float]], sigma: Mapping[str, float]) -> set[str]:
+    """Tests whose error (K), before and after, got worse by far.
 
     One that was far better than the tests on the whole may have been so by chance, as one in which the air was blocked
     is to a model that knows of no air: it may go half the way to them, as ratios go.
     """
-    sigma = {t.name: float(np.sqrt(np.mean([c.sigma_K**2 for c in t.channels]))) for t in tests}
-    mine = [c for c in changes if c.name in sigma and isfinite(c.before)]
-    usual = mean_square(mine, "before")
-    before = {c.name: max(c.before, sigma[c.name]) for c in mine}
-    worse = {c.name: c for c in mine if c.after > max(LOST * before[c.name], sqrt(before[c.name] * usual))}
-    text = ", ".join(f"{c.name} {fall(c.before, c.after)}" for c in worse.values())
-    words = f"another test pays for it: {text}; more differs between these tests" if worse else "no test pays for it"
-    return Check("other tests", not worse, float(len(worse)), 0.0, words)
+    usual = float(np.sqrt(np.mean([before**2 for before, _ in errors.values()]))) if errors else 0.0
+    least = {name: max(before, sigma[name]) for name, (before, _) in errors.items()}
+    return {n for n, (_, now) in errors.items() if now > max(LOST * least[n], sqrt(least[n] * usual))}
 
 
 def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> tuple[Check, ...]:
