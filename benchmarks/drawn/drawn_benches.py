@@ -3,7 +3,8 @@
     python benchmarks/drawn/drawn_benches.py [--cases 100] [--only lid] [--json FILE]
 
 Every case is drawn anew (sizes, losses, films, noise, inputs) with one cause that the model does not have. It is right
-where `diagnose` names it and `add` accepts it: the test of the fan; the lid with begin and end within two samples. Of
+where `diagnose` names it and `add` accepts it: the test of the fan, or of less air at all faces; the lid with begin and
+end, a sensor that came loose with the begin within two samples. Of
 air that follows the speed, part of which was away in one test, `improve` has to add both, and nothing for a while in
 another test or place. A probe that sat elsewhere is nothing that a model should explain: right is any verdict but
 *adequate* whose sentence names the sensor or one of its tests.
@@ -184,7 +185,56 @@ def blocked(rng: np.random.Generator) -> str:
     return f"{share:.0%} away in {which}; {', '.join(e.name for e in added) or 'nothing'}; {done.why}"
 
 
-KINDS = {"fan": fan, "blocked": blocked, "lid": lid, "incubator": incubator, "probe": probe}
+def starved(rng: np.random.Generator) -> str:
+    """Every film to the room was weaker by one share in one of three tests: a clogged filter, a slow fan, a cover."""
+    which, share, drawn = str(rng.choice(list("abc"))), rng.uniform(0.2, 0.6), int(rng.integers(2**31))
+    shell, core = rng.uniform(0.5, 1.5), rng.uniform(0.2, 0.8)
+
+    def films(**of: dict) -> dict[str, dict]:
+        each = {"film": (["shell", "ambient"], shell), "vent": (["core", "ambient"], core)}
+        return {name: {"between": ends, "G_W_K": G, "prior_sd": 0.3, **of} for name, (ends, G) in each.items()}
+
+    truth = network(np.random.default_rng(drawn), films(of={"input": "open", "at": 1.0, "exponent": 1.0}))
+    case = recorded(rng, truth, "abc", 20.0, lambda name: {"open": np.full(270, 1.0 - share * (name == which))})
+    case = replace(case, model=Model(network(np.random.default_rng(drawn), films())))
+    said = diagnose(case, plan=False)
+    found = [one for one in accepted(case, said) if one.base.kind == "blockage.all" and one.tests == (which,)]
+    return "right" if found else f"{share:.0%} away in {which}; {said.verdict}: {said.words}"
+
+
+def loose(rng: np.random.Generator) -> str:
+    """A sensor slipped off in one of three tests, and read a mean of the part and the room from then on."""
+    which, place, share = str(rng.choice(list("abc"))), str(rng.choice(["core", "shell"])), rng.uniform(0.2, 0.9)
+    since = 20.0 * rng.integers(30, 200)
+    case = recorded(rng, network(rng, {}), "abc", 20.0, lambda name: {})
+
+    def slipped(test: Test) -> Test:
+        off = np.where(test.time >= since, share * (test.name == which), 0.0)
+        read = (
+            replace(c, y=c.y + (off * (test.boundaries["ambient"] - c.y) if c.name == place else 0.0))
+            for c in test.channels
+        )
+        return replace(test, channels=tuple(read))
+
+    case = replace(case, tests=tuple(map(slipped, case.tests)))
+    said = diagnose(case, plan=False)
+    first = effect(said.groups[0][0]) if said.groups and len(said.groups[0]) == 1 else None
+    if isinstance(first, During) and first.base.name == f"sensor.loose@{place}" and first.tests == (which,):
+        begin = first.event.every[0][0] if first.event else 0.0
+        if abs(begin - since) <= CLOSE * 20.0:
+            return "right"
+    return f"{share:.0%} at {place} in {which} from {since:.0f} s; {said.verdict}: {said.words}"
+
+
+KINDS = {
+    "fan": fan,
+    "blocked": blocked,
+    "starved": starved,
+    "loose": loose,
+    "lid": lid,
+    "incubator": incubator,
+    "probe": probe,
+}
 
 
 def main() -> None:

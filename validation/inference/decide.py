@@ -274,16 +274,22 @@ def consistent_decision(choice: Decision, checks: tuple[Check, ...]) -> Decision
 
 def half_posterior(posterior: Posterior, first: int) -> Posterior:
     """The posterior on instants `first`, `first` + 2, ...: refits are weighed where they stand, and all that was too
-    improbable to be refitted gains or loses as the best of these does."""
+    improbable to be refitted gains or loses as the best of these does. So does nothing where it has gained by a noise
+    of its own, which what explains all has no use for."""
     e, every = posterior.evidence, posterior.hypotheses
     fit = half_fit(e, e.fit, None, first)
     new = replace(e, fit=fit)
-    gained = {
-        h.members: log_bayes(new, half_fit(e, h.fit, fit.error, first), h.members) - log_bayes(e, h.fit, h.members)
+    bayes = {
+        h.members: (log_bayes(e, h.fit, h.members), log_bayes(new, half_fit(e, h.fit, fit.error, first), h.members))
         for h in every
         if h.fit and h.members
     }
-    best = max((h for h in every if h.members in gained), key=lambda h: h.log_bayes, default=None)
+    best = max((h for h in every if h.members in bayes), key=lambda h: h.log_bayes, default=None)
+    whole, half = bayes[best.members] if best else (0.0, 0.0)
+    nothing = (
+        max(whole - best.log_bayes, 0.0) * (1.0 - np.clip(half / whole, 0.0, 1.0)) if best and whole > 0.0 else 0.0
+    )
+    gained = {members: now - was + nothing for members, (was, now) in bayes.items()}
     share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
     increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
     now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))

@@ -22,7 +22,7 @@ from validation.comparison.linearisation import Segment, segments
 from validation.parameters.unknowns import to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
-GAIN = 2.3  # nats, odds of 10 to 1: from there on evidence is called strong (Jeffreys 1961, appendix B)
+GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits

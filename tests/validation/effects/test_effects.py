@@ -63,7 +63,12 @@ def first(kind, net):
 LASTING = [
     k
     for k, cls in KINDS.items()
-    if k == "mass" or (cls.__module__.startswith("validation.effects.sensors.") and not issubclass(cls, InputFault))
+    if k == "mass"
+    or (
+        cls.__module__.startswith("validation.effects.sensors.")
+        and not issubclass(cls, InputFault)
+        and not cls.temporary
+    )
 ]
 
 
