@@ -166,15 +166,21 @@ def probe(rng: np.random.Generator) -> str:
     return "right" if said.verdict != "adequate" and named else f"{said.verdict}: {said.words}"
 
 
-def blocked(rng: np.random.Generator) -> str:
-    """Air that follows the speed cooled the shell, which no model knew; in one of four tests part of it was away."""
+def blocked_case(rng: np.random.Generator) -> tuple[Case, str, float]:
+    """Air that follows the speed cooled the shell, which no model knew; in one of four tests part of it was away.
+    The case, in which test, and what part."""
     which, share, size = str(rng.choice(list("abcd"))), rng.uniform(0.3, 0.8), rng.uniform(2.0, 6.0)
 
     def inputs(name: str) -> Inputs:
         speed = np.repeat(rng.choice([0.0, 600.0, 1000.0, 1500.0], 10), 27)
         return {"speed_rpm": speed, "open": (speed / 1000.0) ** 0.8 * (1.0 - share * (name == which))}
 
-    case = without_cause(recorded(rng, network(rng, switched(size)), "abcd", 20.0, inputs))
+    return without_cause(recorded(rng, network(rng, switched(size)), "abcd", 20.0, inputs)), which, share
+
+
+def blocked(rng: np.random.Generator) -> str:
+    """Both are added, the air and the blockage, and nothing for a while in another test or place."""
+    case, which, share = blocked_case(rng)
     done = improve(case, Supervisor(singletons, suggest=True))
     added = [effect(e.name) for e in done.case.model.effects]
     for_a_while = [e for e in added if isinstance(e, During)]
