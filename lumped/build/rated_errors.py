@@ -129,11 +129,14 @@ def at_multiplied_point(
     field, network = built.field, on_every_base(built.network)
     point = rated(built.machine, network, *coefficients_on(built.machine, built.mesh))
 
-    def times(kind: str, nominal: Mapping[str, float]) -> dict[str, float]:
-        by_name = {link.split(":")[1]: m for link, m in multipliers.items() if link.startswith(f"{kind}:")}
-        return {name: by_name.get(name, 1.0) * value for name, value in nominal.items()}
-
-    there = replace(point, films=times("film", point.films), contacts=times("contact", point.contacts))
+    links = [(x, multipliers[x.name]) for x in built.network.links if x.name in multipliers]
+    films = {x.places[0]: m for x, m in links if x.kind == "film"}
+    contacts = {x.name.removeprefix("contact:"): m for x, m in links if x.kind == "contact"}
+    there = replace(
+        point,
+        films={face: films.get(face, 1.0) * h for face, h in point.films.items()},
+        contacts={pair: contacts.get(pair, 1.0) * g for pair, g in point.contacts.items()},
+    )
     reader, T = Reader(field, network, there, looks), there.of_field(field)
     scale = rise_K / max(map(abs, reader.read(T).values()))
     return {name: scale * off for name, off in _largest(reader, _steady_and_step(there, T, field, network)).items()}
