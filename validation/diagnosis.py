@@ -137,7 +137,8 @@ def diagnose(
         if wrong:  # nothing else is accused of what the base does
             choice = Decision("data", (), choice.sure)
         faults = PlainFaults(tuple(broken), tuple(wrong))
-        return tabulate(case, posterior, choice, faults, bases, plan and not preliminary, scope, preliminary)
+        answer = tabulate(case, posterior, choice, faults, bases, plan and not preliminary, scope, preliminary)
+        return replace(answer, small_network_K=small)
 
     posterior = infer(training, kinds, progress, scope, quick, lambda first: report(lambda: result(first, True)))
     progress("writing the tables")

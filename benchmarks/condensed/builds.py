@@ -38,6 +38,7 @@ def row(machine: str) -> dict[str, Any]:
             ended, status, used = os.wait4(process.pid, os.WNOHANG)
         process.returncode = os.waitstatus_to_exitcode(status)
         sizes = json.loads((Path(folder) / "crosscheck.json").read_text(encoding="utf-8"))["sizes"]
+        stages = json.loads((Path(folder) / "cache" / "stages.json").read_text(encoding="utf-8"))["model build 0"]
     return {
         "machine": machine,
         "exit": process.returncode,
@@ -45,6 +46,7 @@ def row(machine: str) -> dict[str, Any]:
         "wall_s": round(time.monotonic() - begun, 1),
         "memory_GB": round(most / 1e9, 2),
         "states": sizes["states"],
+        "stages": stages,
         **{key: sizes["mesh"][key] for key in ("unknowns", "worst", "worst_part")},
     }
 

@@ -1,12 +1,14 @@
 """How true the time left is: commands on a terminal of 80 columns, the first time on a computer and the second.
 
     python benchmarks/console/progress.py [--only CASE ...] [--commands COMMAND ...] [--json FILE] [--page] [--usual]
+    python benchmarks/console/progress.py --builds FILE
 
 Every shipped case by default, and the four commands that may take long; the first run builds what comes from a machine.
 After a fifth of the work: the time left as it was shown over what it was then (wanted: 0.5 to 2). The longest time for
 which the share stood still, and whether every line kept its times. Work that is done in SHORT_S shows nothing.
 --json FILE keeps the rows of earlier runs for other cases and commands; --page puts all of them into the docs. --usual
 writes what the stages of the first runs took, the median over the cases, into what a new computer starts with.
+--builds does the same for `model build` by the rows of benchmarks/condensed/builds.py.
 """
 
 from __future__ import annotations
@@ -126,6 +128,17 @@ def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
     return {word: round(median(took[word] for took in stages if word in took), 1) for word in names}
 
 
+def alone(row: dict[str, float]) -> float:
+    """Of the time that a build took, what it would have taken without others on the computer; 1 where it had it all."""
+    return min(row["cpu_s"] / row["wall_s"], 1.0)
+
+
+def keep_usual(took: dict[str, list[dict[str, float]]]) -> None:
+    """Write what the stages of commands usually take.  took : command -> its stages in several runs (s)"""
+    again = {f"{COMMANDS[name]} {name} 0": usual(stages) for name, stages in took.items()}
+    USUAL.write_text(json.dumps(json.loads(USUAL.read_text()) | again, indent=1), encoding="utf-8")
+
+
 def main() -> None:
     """A row per case and run."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -134,7 +147,12 @@ def main() -> None:
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--usual", action="store_true")
+    parser.add_argument("--builds", type=Path)
     options = parser.parse_args()
+    if options.builds:
+        builds = json.loads(options.builds.read_text())
+        keep_usual({"build": [{s: t * alone(row) for s, t in row["stages"].items()} for row in builds]})
+        return
     rows = (
         [Row(**row) for row in json.loads(options.json.read_text())] if options.json and options.json.exists() else []
     )
@@ -153,8 +171,7 @@ def main() -> None:
             )
     print(verdict(rows))
     if options.usual:
-        again = {f"{COMMANDS[name]} {name} 0": usual(stages) for name, stages in took.items()}
-        USUAL.write_text(json.dumps(json.loads(USUAL.read_text()) | again, indent=1), encoding="utf-8")
+        keep_usual(took)
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
     if options.page:

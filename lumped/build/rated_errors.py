@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from itertools import chain
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import log
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,11 @@ from lumped.model.network import Array, Network, Row
 if TYPE_CHECKING:
     from lumped.condensation.error_budget import MonitoredPlaces
 
-SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what a calibration may do
+SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what most calibrations do
+STEP = 1.1  # factors are rounded to its powers: within them one look serves, errors change little
+LEAST = 1e-3  # a film or contact that is switched off
 HOT = "hot spot of "
+NOMINAL: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -48,15 +52,27 @@ def _at_node(shape: PartShape, node: int) -> Row:
     return Row(shape.states, shape.V[node])
 
 
-def cached_errors(built: Built, looks: MonitoredPlaces) -> Rated:
-    """From the cache, where this network was looked at before in the same places."""
+def cached_errors(built: Built, looks: MonitoredPlaces, multipliers: Mapping[str, float] = NOMINAL) -> Rated:
+    """From the cache, where this network was looked at before in the same places.
+
+    multipliers : link -> what the model's values multiply it by; where one goes beyond SPREAD, condensation is looked
+    at there, too
+    """
     file = cache_folder() / f"budget-{_key(built, looks)}.json"
-    cached = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
-    if cached is not None:
-        return cached
-    errors = at_rated_point(built, looks)
-    store(file, json.dumps(vars(errors)))
-    return errors
+    errors = recalled(file, lambda path: Rated(**json.loads(path.read_text(encoding="utf-8"))))
+    if errors is None:
+        errors = at_rated_point(built, looks)
+        store(file, json.dumps(vars(errors)))
+    factors = {x.name: multipliers.get(x.name, 1.0) for x in built.network.links if x.kind in ("film", "contact")}
+    if all(1.0 / SPREAD <= m <= SPREAD for m in factors.values()):
+        return errors
+    powers = {name: round(log(max(m, LEAST)) / log(STEP)) for name, m in factors.items()}
+    there = file.with_name(f"{file.stem}-{hashlib.sha256(repr(sorted(powers.items())).encode()).hexdigest()[:12]}.json")
+    left = recalled(there, lambda path: dict[str, float](json.loads(path.read_text(encoding="utf-8"))))
+    if left is None:
+        left = at_multiplied_point(built, looks, errors.rise_K, {name: STEP**n for name, n in powers.items()})
+        store(there, json.dumps(left))
+    return replace(errors, condensation_K={n: max(off, left[n]) for n, off in errors.condensation_K.items()})
 
 
 def _key(built: Built, looks: MonitoredPlaces) -> str:
@@ -83,21 +99,47 @@ def at_rated_point(built: Built, looks: MonitoredPlaces) -> Rated:
     point = rated(built.machine, network, films, contacts)
     coarse = meshed(built.machine, built.meshing.coarser).field
     reader, rough = (Reader(f, network, point, looks) for f in (field, coarse))
-    T = point.of_field(field)
+    T, variant = point.of_field(field), point.moved(SPREAD)
     fine, other = reader.read(T), rough.read(point.of_field(coarse))
-    left = {name: 0.0 for name in fine}
-    for exact, approximation in chain([(T, point.of_network(network, field))], _elsewhere(point, field, network)):
-        for name, off in reader.differences(exact, approximation).items():
-            left[name] = max(left[name], off)
+    beside = variant.of_field(field), variant.of_network(network, field)
+    left = _largest(reader, [*_steady_and_step(point, T, field, network), beside])
     nodes = {f"{HOT}{p}": int(np.argmax(T[field.blocks[p].dofs])) for p in point.watts}
     return Rated({n: abs(fine[n] - other[n]) for n in fine}, left, max(map(abs, fine.values())), nodes)
 
 
-def _elsewhere(point: FixedCoefficients, field: FieldModel, network: Network) -> Iterator[tuple[Array, Array]]:
-    """The step of loss, and a steady state at other coefficients; field and network."""
+def _steady_and_step(
+    point: FixedCoefficients, T: Array, field: FieldModel, network: Network
+) -> Iterator[tuple[Array, Array]]:
+    """Field and network, steady and after a step of loss.  T : the field's steady answer"""
+    yield T, point.of_network(network, field)
     yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
-    variant = point.moved(SPREAD)
-    yield variant.of_field(field), variant.of_network(network, field)
+
+
+def _largest(reader: Reader, answers: Iterable[tuple[Array, Array]]) -> dict[str, float]:
+    """Place -> the largest difference (K) between field and network."""
+    each = [reader.differences(exact, approximation) for exact, approximation in answers]
+    return {name: max(off[name] for off in each) for name in each[0]}
+
+
+def at_multiplied_point(
+    built: Built, looks: MonitoredPlaces, rise_K: float, multipliers: Mapping[str, float]
+) -> dict[str, float]:
+    """Place -> error of condensation (K) with films and contacts multiplied, steady and after a step, as of a rise of
+    `rise_K`."""
+    field, network = built.field, on_every_base(built.network)
+    point = rated(built.machine, network, *coefficients_on(built.machine, built.mesh))
+
+    links = [(x, multipliers[x.name]) for x in built.network.links if x.name in multipliers]
+    films = {x.places[0]: m for x, m in links if x.kind == "film"}
+    contacts = {x.name.removeprefix("contact:"): m for x, m in links if x.kind == "contact"}
+    there = replace(
+        point,
+        films={face: films.get(face, 1.0) * h for face, h in point.films.items()},
+        contacts={pair: contacts.get(pair, 1.0) * g for pair, g in point.contacts.items()},
+    )
+    reader, T = Reader(field, network, there, looks), there.of_field(field)
+    scale = rise_K / max(map(abs, reader.read(T).values()))
+    return {name: scale * off for name, off in _largest(reader, _steady_and_step(there, T, field, network)).items()}
 
 
 @dataclass(frozen=True)

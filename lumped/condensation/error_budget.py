@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import Any
 
 from lumped.model.network import Array, Row
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
@@ -53,6 +50,15 @@ class ErrorBudget:
             if place.place not in largest or place.total_K > largest[place.place].total_K:
                 largest[place.place] = place
         return cls(tuple(largest.values()))
+
+    def with_condensation(self, more_K: Mapping[str, float]) -> ErrorBudget:
+        """With so much more at some places, as a network of fewer shapes leaves."""
+
+        def one(p: PlaceError) -> PlaceError:
+            more = more_K.get(p.place)
+            return p if more is None else replace(p, condensation_K=more + (p.condensation_K or 0.0))
+
+        return replace(self, places=tuple(map(one, self.places)))
 
     def document(self) -> list[dict[str, Any]]:
         return [p.document() for p in self.places]

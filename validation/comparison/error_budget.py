@@ -13,6 +13,7 @@ import numpy as np
 from lumped.condensation.error_budget import ErrorBudget, MonitoredPlaces, PlaceError
 from lumped.condensation.recovery import Shapes
 from lumped.integration.simulate import Record, simulate
+from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
 from measured.case import Channel, Test
 from validation.comparison.predict import heat_model, record
@@ -55,7 +56,7 @@ def error_budgets(folder: OpenCase, records: Mapping[str, Record], progress: Pro
         from lumped.build.rated_errors import cached_errors, hot_rows
 
         progress("checking mesh and condensation")
-        rated = cached_errors(folder.built, looks)
+        rated = cached_errors(folder.built, looks, multipliers(network, values))
         rows |= hot_rows(network, rated)
     progress("estimating the error of the time steps")
     each = run_by_run(lambda run: _of_run(network, values, run, rows, rated), list(records.values()), network.size)

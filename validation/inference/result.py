@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -281,6 +282,7 @@ class Diagnosis(TableResult):
     without, only : what the user left out of the question, see Scope
     stated_odds : effect, factor and reason of odds that differ in this case
     preliminary : the search was stopped at its first odds
+    small_network_K : channel -> what the small network that was run is off from the case's own; empty where that was
     """
 
     verdict: Verdict
@@ -311,6 +313,7 @@ class Diagnosis(TableResult):
     only: tuple[str, ...] = ()
     stated_odds: tuple[tuple[str, float, str], ...] = ()
     preliminary: bool = False
+    small_network_K: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         likely = [x for x in self.explanations if x.probability > LEAST_PROBABILITY] or self.explanations[:1]

@@ -1,7 +1,7 @@
 """The error budget against what it estimates: a finer mesh, a finer network, and what a declared network has."""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -11,17 +11,23 @@ from small_case import small_case
 from geom import load_machine
 from lumped.build import pipeline, rated_errors
 from lumped.build.fixed_coefficients import rated
-from lumped.build.pipeline import Meshing, build, coefficients_on, meshed
-from lumped.build.rated_errors import HOT, Reader, at_rated_point, cached_errors
+from lumped.build.pipeline import Built, Meshing, build, coefficients_on, meshed
+from lumped.build.rated_errors import HOT, Reader, at_rated_point, cached_errors, hot_rows
 from lumped.condensation.error_budget import MonitoredPlaces
 from lumped.condensation.reduction import Recipe
+from lumped.integration.simulate import simulate as run_network
+from lumped.machine.motor import rated_inputs
+from measured.case import Case, Channel, Model, Test
 from thermoscope.commands.test.compare import compare
 from thermoscope.commands.use.simulate import simulate
+from validation.comparison.error_budget import budgets_of
+from validation.comparison.predict import record
 
 pytestmark = pytest.mark.heavy
 
 MACHINE, SIZE, SEGMENTS, AXIAL = "pmsm-m1-no-base", 0.1, 36, 0.12
 RECIPE = Recipe(tolerance=0.05, shifts=(0.01,), random_points=1, max_states=60)
+FEEDBACK = 1.4  # 1 / (1 - 0.39 % / K * 100 K / 1.4): copper that is too warm heats more; budgets hold losses fixed
 SENSORS = {"T_winding": "winding", "T_end": "endcap.left"}
 
 
@@ -72,6 +78,42 @@ def test_a_network_of_more_states_leaves_less(built, looks, found):
     small, large = (reader.differences(T, asked.of_network(b.network, built.field)) for b in (built, larger))
     assert max(large.values()) < 0.5 * max(small.values())
     assert all(small[name] <= found.condensation_K[name] for name in small)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """What a budget is made of.  positions : of no sensor"""
+
+    case: Case
+    built: Built
+    positions: dict = field(default_factory=dict)
+
+
+def test_with_fitted_contacts_a_smaller_network_is_as_far_off_as_its_budget_says(built, looks):
+    """Hot spots of two networks of one machine after three hours of rated losses, all contacts x5: further apart than
+    the rated point and factors up to 2 tell, and within what a look at the model's own values does."""
+    larger = build(built.machine, SIZE, SEGMENTS, replace(RECIPE, max_states=None, tolerance=0.01), axial_m=AXIAL)
+    contacts = {p.name: 5.0 for p in built.network.parameters if p.name.startswith("contact.")}
+    time = np.linspace(0.0, 10800.0, 91)
+    load = rated_inputs(built.machine) | {"current_A": 10.0}  # on wood the rated current is too much for it
+    inputs = {name: np.full(time.shape, x) for name, x in load.items()}
+    sensor = Channel("T", "winding", looks.rows["T_winding"], np.full(time.shape, 50.0))
+    run = Test("run", "calibrate", time, inputs, {"ambient": np.full(time.shape, 20.0)}, (sensor,))
+
+    def left(of, values):
+        sensor_of = replace(sensor, row=of.network.places["winding"].mean)
+        case = Case("x", Model(of.network, values=values), (replace(run, channels=(sensor_of,)),))
+        return {p.place: p.condensation_K for p in budgets_of(Opened(case, of), case.tests)["run"].places}
+
+    def hot_spots(of):
+        rows = hot_rows(of.network, cached_errors(of, looks))
+        return dict(zip(rows, run_network(of.network, record(run, {}), contacts, [*rows.values()]).y.T, strict=True))
+
+    fewer, more = hot_spots(built), hot_spots(larger)
+    apart = {name: np.abs(T - more[name]).max() for name, T in fewer.items()}
+    rated_only, here, beside = left(built, {}), left(built, contacts), left(larger, contacts)
+    assert all(off <= FEEDBACK * (here[name] + beside[name]) for name, off in apart.items())
+    assert any(off > FEEDBACK * (rated_only[name] + beside[name]) for name, off in apart.items())
 
 
 def test_what_was_looked_at_once_is_kept(built, looks, found, monkeypatch):

@@ -184,6 +184,17 @@ def test_water_under_pressure_is_liquid_above_100_degC():
         steady(network(circuit(coolant="water")), {}, {"ambient": 20.0, "inlet": 110.0})
 
 
+@pytest.mark.parametrize("kind", ["ethylene", "propylene"])
+def test_glycol_ends_at_100_degC_with_its_source_and_says_so(kind):
+    """Melinder's tables and those of ASHRAE in CoolProp end there, so no pressure carries a mixture further."""
+    warm = network(circuit(coolant={"name": f"{kind} glycol", "mass_percent": 50}))
+    with pytest.warns(RangeWarning, match=r"its coolant at 12\d.* degC outside -3\d[.\d]* to 100"):
+        steady(warm, {}, {"ambient": 20.0, "inlet": 110.0})
+    tables = pytest.importorskip("CoolProp.CoolProp").PropsSI
+    for name in ("MEG", "AEG", "MPG", "APG"):
+        assert tables("Tmax", f"INCOMP::{name}-50%") - 273.15 == pytest.approx(100.0, abs=0.1)
+
+
 @pytest.mark.parametrize("inlet", [-15.0, 5.0, 20.0, 60.0])
 def test_films_follow_the_coolant_s_temperature(inlet):
     """What holds at rest with films fixed at the mean temperature of the coolant holds with films that follow it.

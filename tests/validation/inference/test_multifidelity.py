@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from playground import Truth, network, wind
 
+from lumped.condensation.error_budget import ErrorBudget, PlaceError
 from lumped.transfer.laws import Fixed
 from measured.case import LowFidelity
 from validation import diagnose
@@ -65,6 +66,16 @@ def test_a_hidden_effect_is_named_as_by_the_large_network():
     assert small.candidates[0].value == pytest.approx(large.candidates[0].value, rel=0.1)
     assert small.candidates[0].ci95[0] < WIND * 1.2
     assert small.candidates[0].ci95[1] > WIND / 1.2
+
+
+def test_its_error_is_in_the_budget_that_is_printed():
+    large, small = answers(True)
+    sensors = {c.name for t in case().training().tests for c in t.channels}
+    assert small.small_network_K.keys() == sensors
+    assert large.small_network_K == {}
+    budget = ErrorBudget((PlaceError("flange", 0.1, 0.2, 0.01), PlaceError("air", None, None, 0.02)))
+    sums = budget.with_condensation({"flange": 0.5, "air": 0.3}).total_K
+    assert sums == pytest.approx({"flange": 0.81, "air": 0.32})
 
 
 def test_nothing_hidden_is_adequate_as_by_the_large_network():

@@ -102,6 +102,7 @@ def diagnosed(
         folder.case, folder.settings.kinds, tell, budget=worst, scope=scope, quick=quick, report=report or untold
     )
     header = {"case": folder.case.name, "revision": folder.case.model.revision}
+    budgets = {name: budget.with_condensation(diagnosis.small_network_K) for name, budget in budgets.items()}
     document = {**header, **diagnosis.document(), "error_budget": documents(budgets), **sampling(folder)}
     document["strained"] = strain_words(folder.case)
     if not quick:
