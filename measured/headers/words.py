@@ -41,6 +41,7 @@ PHRASES = {
     for word, phrases in VOCABULARY["phrases"].items()
     for phrase in phrases.split(",")
 }
+WOUND = frozenset({*"uvw", "rtd", "pt", "ntc", "ptc", "kty"})  # phases, and what is put between the wires of one
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
@@ -107,6 +108,9 @@ def roles_of(name: str) -> list[Role]:
     Of an outer winding the winding, and of the room of a test bed the room: words for outside and for a test bed come
     last.
     """
+    parts = PATH.split(name)
+    if parts[1:] and (last := roles_of(parts[-1])):  # base/ambient is the room
+        return last + [role for role in roles_of(" ".join(parts[:-1])) if role not in last]
     words = tokens(name)
     hits = {}
     for role, terms in ROLES.items():
@@ -117,13 +121,23 @@ def roles_of(name: str) -> list[Role]:
         ]
         if at:
             hits[role] = min(at)
-    if [*hits] == [Role.IRON] and OUTER & {*words} and {*"uvw"} & {*words}:  # Stator U1
+    if [*hits] == [Role.IRON] and OUTER & {*words} and WOUND & {*words}:  # Stator U1, Stator RTD 2
         return [Role.WINDING]
     if not hits and OUTSIDE.search(name):
         return [Role.AMBIENT]
     if not hits and END_OF_SHAFT.search(name):
         return [Role.BEARING]
     return sorted(hits, key=lambda role: hits[role])
+
+
+def is_outer(name: str) -> bool:
+    """Is it of the air outside?"""
+    return any(w in OUTER or _inside(w, OUTER) for w in tokens(name))
+
+
+def is_stator(name: str) -> bool:
+    """Does it name the stator, and neither its iron nor its winding?"""
+    return roles_of(name)[:1] == [Role.IRON] and not is_spoken(name, ROLES[Role.IRON] - OUTER)
 
 
 def is_setpoint(name: str) -> bool:

@@ -14,11 +14,11 @@ from measured.headers.words import INLET, is_setpoint, is_spoken, quantities_of,
 from measured.importing.aligned import Recording
 from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
+    AS_WINDING,
     BY_READINGS,
     CERTAIN,
     CODES_ALONE,
     ELSE,
-    FASTEST,
     NO_UNIT,
     NUMBERED,
     OF_INSTRUMENT,
@@ -44,7 +44,7 @@ NO_PART = "its name says no part of a machine"
 UNIT = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 NO_INLET = "taken as the coolant that flows in, though its name says no inlet"
 OUTLET = "it warms with the machine: an outlet?"
-PLACES = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
+PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
@@ -86,7 +86,7 @@ def may_be_temperature(source: Source, g: Guess) -> bool:
 
 def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
-    if any(Role.WINDING in roles or is_whole(g.column) or FASTEST in g.doubt for roles, g in hot):
+    if any(Role.WINDING in roles or is_whole(g.column) or AS_WINDING in g.doubt for roles, g in hot):
         return {}
     wound = [(r, g) for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
     lost = [g.column for r, g in wound if may_be_temperature(r.source, g)]
