@@ -48,6 +48,7 @@ LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it 
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
+SHORT = re.compile(r"[A-Z][a-z]{1,3}(T)")  # MotT, as flight controllers write it
 OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
 END_OF_SHAFT = re.compile(r"(?<![A-Za-z])(?:N?DE|[AB]S)(?![A-Za-z])")  # drive and non-drive end, or A-Seite and B-Seite
 DESIRED = re.compile(r"(?<=[^\W\d])(?:[_ ][Dd]es|Des)(?=\s*(?:$|[\\(\[]))")  # last: in French it is an article
@@ -99,7 +100,8 @@ def quantities_of(name: str) -> list[str]:
     quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
     if quantities == ["water_flow"] and WORDS["air"] & {*words}:
         return ["air_flow"]
-    return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
+    letter = LETTERED.search(name) or SHORT.fullmatch(name)
+    return quantities or (["temperature" if letter[1] == "T" else "power"] if letter else [])
 
 
 def roles_of(name: str) -> list[Role]:
