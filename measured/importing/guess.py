@@ -83,6 +83,8 @@ THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
+WHOLE = "names no part: the winding?"
+BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
@@ -426,10 +428,10 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
         weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
-        return "temperature", "name of a part", "by its letters alone" if weak else ""
+        return "temperature", "name of a part", BY_LETTERS if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
-        return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not worded else ""
+        return by_name[0], "name", BY_LETTERS if LETTERED.search(label) and not worded else ""
     if label in target.places_by_header:  # told by its readings, or by hand
         return "", "", ""
     place, _ = target.place_of(label)
@@ -489,7 +491,7 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
         return base.without("no place of the model fits its name")
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
-    whole = "names no part: the winding?" if is_whole(label) else ""
+    whole = WHOLE if is_whole(label) else ""
     room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
