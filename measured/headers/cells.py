@@ -158,8 +158,8 @@ def split_unit(header: str) -> tuple[str, str]:
     """
     for match in reversed([*BRACKETS.finditer(header)]):
         inside = next(g for g in match.groups() if g)
-        numbered = inside == "1" and (match.end() < len(header) or roles_of(header))  # Y[1] Frame, Wdg_Avg(1)
-        if is_unit(inside) and not numbered:
+        is_number = inside == "1" and (match.end() < len(header) or roles_of(header))  # Y[1] Frame, Wdg_Avg(1)
+        if is_unit(inside) and not is_number:
             return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
                 inside
             ) or inside.strip()

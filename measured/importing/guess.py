@@ -196,8 +196,8 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     first = not target.places  # of a network that is to be made from the columns
     if any(Role.WINDING in roles for roles in hot.values()):
         return every
-    drawn = target.places_by_header.keys()
-    if stators := {c for c in hot if is_stator(label := source.labels[c]) and (first or label in drawn)}:
+    headers = target.places_by_header.keys()
+    if stators := {c for c in hot if is_stator(label := source.labels[c]) and (first or label in headers)}:
         doubts = {g.column: OF_STATOR if first or not g.doubt else g.doubt for g in every}
         return [replace(g, doubt=doubts[g.column]) if g.column in stators else g for g in every]
     if not heats or any(is_whole(source.labels[c]) for c in hot):

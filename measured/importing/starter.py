@@ -152,8 +152,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     G = watts / max(*rises.values(), 1.0)
     inside = [FirstTerm(pair, 5 * G) for pair in itertools.pairwise(nodes)]
     outside = [FirstTerm((n, b), G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
-    named = {place for s, g, place in hot if roles_of(s.labels[g.column])[:1] == [Role.WINDING]}
-    wound = frozenset({place for _, g, place in hot if AS_WINDING in g.doubt} | named)
+    by_name = {place for s, g, place in hot if roles_of(s.labels[g.column])[:1] == [Role.WINDING]}
+    wound = frozenset({place for _, g, place in hot if AS_WINDING in g.doubt} | by_name)
     capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
     return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts, wound=wound)
 

@@ -197,8 +197,8 @@ class _TermTable:
         nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
         links, losses = link_powers(columns.inputs, form.shapes), loss_powers(columns.inputs)
         stirs = [may_stir([measures(f.input) for f in of]) for of in links]
-        known = {measures(name) for name in columns.inputs}
-        heats = [may_heat([measures(f.input) for f in of], known) for of in losses]
+        quantities = {measures(name) for name in columns.inputs}
+        heats = [may_heat([measures(f.input) for f in of], quantities) for of in losses]
         bodies = [
             *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
             *columns.boundaries,
@@ -305,13 +305,13 @@ def may_stir(quantities: Sequence[str]) -> bool:
     return not set(quantities) & set(ELECTRICAL)
 
 
-def may_heat(quantities: Sequence[str], known: Container[str] = ()) -> bool:
+def may_heat(quantities: Sequence[str], beside: Container[str] = ()) -> bool:
     """May a loss follow these together?  Two currents do not, a current and a speed, or a voltage, do.
 
-    known : all that was recorded; beside a current a voltage alone heats nothing
+    beside : all that was recorded; beside a current a voltage alone heats nothing
     """
     electrical = [q for q in quantities if q in ELECTRICAL]
-    if electrical == ["voltage"] and "current" in known:
+    if electrical == ["voltage"] and "current" in beside:
         return False
     return not set(quantities) & set(FLOWS) and (len(electrical) < 2 or set(electrical) == {"current", "voltage"})
 
