@@ -196,7 +196,7 @@ def each_book_once() -> Iterator[None]:
 def workbook_rows(file: Path, worksheet: str) -> list[list[Any]]:
     """Rows of a worksheet: of the first where its name is ""."""
     if BOOKS_READ.get() is not None and worksheet in (rows_of := {"": [], **worksheets(file)}):
-        return rows_of[worksheet or next(iter(rows_of.keys() - {""}), "")]
+        return rows_of[worksheet or next((name for name in rows_of if name), "")]
     with _workbook(file) as book:
         sheets = {sheet.title: sheet for sheet in book.worksheets}
         if worksheet and worksheet not in sheets:
