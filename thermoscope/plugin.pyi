@@ -190,6 +190,7 @@ from measured.recordings.data_table import (
 from measured.recordings.electrical import meter_of as meter_of, saturation_of as saturation_of
 from measured.recordings.formats import (
     SUFFIXES as SUFFIXES,
+    each_book_once as each_book_once,
     read_csv as read_csv,
     read_recording as read_recording,
     recording as recording,

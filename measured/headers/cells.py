@@ -147,6 +147,7 @@ SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its se
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
 RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec|min|h|hr)$")  # speed_rad_s, flow_l_per_min
+JOINT = re.compile(r"([Tt]ime)(US|MS|NS)")  # of flight controllers
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[a-z0-9]+)?)$")
 
 
@@ -157,7 +158,8 @@ def split_unit(header: str) -> tuple[str, str]:
     """
     for match in reversed([*BRACKETS.finditer(header)]):
         inside = next(g for g in match.groups() if g)
-        if is_unit(inside) and (inside != "1" or match.end() == len(header)):  # Y[1] Frame is numbered
+        is_number = inside == "1" and (match.end() < len(header) or roles_of(header))  # Y[1] Frame, Wdg_Avg(1)
+        if is_unit(inside) and not is_number:
             return f"{header[: match.start()].strip()} {header[match.end() :].strip()}".strip(" _/,"), unit_of(
                 inside
             ) or inside.strip()
@@ -177,7 +179,8 @@ def split_unit(header: str) -> tuple[str, str]:
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):
         return last[1].strip(), unit_of(last[2])
-    return header.strip(), ""
+    joint = JOINT.fullmatch(header)
+    return (joint[1], joint[2].lower()) if joint else (header.strip(), "")
 
 
 def _surely(word: str) -> bool:

@@ -41,12 +41,14 @@ PHRASES = {
     for word, phrases in VOCABULARY["phrases"].items()
     for phrase in phrases.split(",")
 }
+WOUND = frozenset({*"uvw", "rtd", "pt", "ntc", "ptc", "kty"})  # phases, and what is put between the wires of one
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
+SHORT = re.compile(r"[A-Z][a-z]{1,3}(T)")  # MotT, as flight controllers write it
 OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air
 END_OF_SHAFT = re.compile(r"(?<![A-Za-z])(?:N?DE|[AB]S)(?![A-Za-z])")  # drive and non-drive end, or A-Seite and B-Seite
 DESIRED = re.compile(r"(?<=[^\W\d])(?:[_ ][Dd]es|Des)(?=\s*(?:$|[\\(\[]))")  # last: in French it is an article
@@ -98,7 +100,8 @@ def quantities_of(name: str) -> list[str]:
     quantities = quantities or sorted((q for q in inside if inside[q]), key=lambda q: -inside[q])
     if quantities == ["water_flow"] and WORDS["air"] & {*words}:
         return ["air_flow"]
-    return quantities or (["temperature" if m[1] == "T" else "power"] if (m := LETTERED.search(name)) else [])
+    letter = LETTERED.search(name) or SHORT.fullmatch(name)
+    return quantities or (["temperature" if letter[1] == "T" else "power"] if letter else [])
 
 
 def roles_of(name: str) -> list[Role]:
@@ -107,6 +110,9 @@ def roles_of(name: str) -> list[Role]:
     Of an outer winding the winding, and of the room of a test bed the room: words for outside and for a test bed come
     last.
     """
+    parts = PATH.split(name)
+    if parts[1:] and (last := roles_of(parts[-1])):  # base/ambient is the room
+        return last + [role for role in roles_of(" ".join(parts[:-1])) if role not in last]
     words = tokens(name)
     hits = {}
     for role, terms in ROLES.items():
@@ -117,13 +123,23 @@ def roles_of(name: str) -> list[Role]:
         ]
         if at:
             hits[role] = min(at)
-    if [*hits] == [Role.IRON] and OUTER & {*words} and {*"uvw"} & {*words}:  # Stator U1
+    if [*hits] == [Role.IRON] and OUTER & {*words} and WOUND & {*words}:  # Stator U1, Stator RTD 2
         return [Role.WINDING]
     if not hits and OUTSIDE.search(name):
         return [Role.AMBIENT]
     if not hits and END_OF_SHAFT.search(name):
         return [Role.BEARING]
     return sorted(hits, key=lambda role: hits[role])
+
+
+def is_outer(name: str) -> bool:
+    """Is it of the air outside?"""
+    return any(w in OUTER or _inside(w, OUTER) for w in tokens(name))
+
+
+def is_stator(name: str) -> bool:
+    """Does it name the stator, and neither its iron nor its winding?"""
+    return roles_of(name)[:1] == [Role.IRON] and not is_spoken(name, ROLES[Role.IRON] - OUTER)
 
 
 def is_setpoint(name: str) -> bool:

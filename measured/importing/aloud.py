@@ -14,17 +14,20 @@ from measured.headers.words import INLET, is_setpoint, is_spoken, quantities_of,
 from measured.importing.aligned import Recording
 from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
+    AS_WINDING,
+    BY_LETTERS,
     BY_READINGS,
     CERTAIN,
     CODES_ALONE,
     ELSE,
-    FASTEST,
+    HARDLY,
     NO_UNIT,
     NUMBERED,
     OF_INSTRUMENT,
     OF_SENSOR,
     THAT_CAN_BE,
     UNTOLD,
+    WHOLE,
     Guess,
     in_memory,
     is_whole,
@@ -44,7 +47,12 @@ NO_PART = "its name says no part of a machine"
 UNIT = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 NO_INLET = "taken as the coolant that flows in, though its name says no inlet"
 OUTLET = "it warms with the machine: an outlet?"
-PLACES = (NO_PART, NUMBERED, BY_READINGS, FASTEST)
+SHEETS = "tests/*.toml"  # where each column has its doubt
+PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
+WEAK = (
+    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT),
+    "gives coolant already",
+)
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 ROOMS = ([Role.AMBIENT], [Role.COOLANT])
@@ -52,6 +60,27 @@ ROOMS = ([Role.AMBIENT], [Role.COOLANT])
 
 def first_lines(drafts: Sequence[Draft]) -> list[str]:
     """A sentence for each kind of doubt, of the first test that has it, the gravest first."""
+    return list(dict.fromkeys(_doubts_of(drafts).values()))
+
+
+def short_lines(drafts: Sequence[Draft], learnt: bool) -> list[str]:
+    """Those of them that may change a verdict, and one line of the rest.
+
+    learnt : the network was made from the readings, so that a unit scales its numbers alone
+    """
+    doubts = _doubts_of(drafts)
+    weak = [kind for kind in doubts if any(words in kind for words in (*WEAK, *[NO_UNIT] * learnt))]
+    grave = list(dict.fromkeys(words for kind, words in doubts.items() if kind not in weak))
+    if not weak:
+        return grave
+    if grave:
+        return [*grave, f"weaker guesses stand in {SHEETS}"]
+    others = f"; {len(weak) - 1} more in {SHEETS}" if weak[1:] else ""
+    return [f"{doubts[weak[0]].partition('; --place')[0]}{others}"]
+
+
+def _doubts_of(drafts: Sequence[Draft]) -> dict[str, str]:
+    """Kind of doubt -> its sentence."""
     out: dict[str, str] = {}
     for draft in drafts:
         columns = [(r, g) for r in draft.records for g in r.guesses]
@@ -73,7 +102,7 @@ def first_lines(drafts: Sequence[Draft]) -> list[str]:
     alike = sum(any(ASSUMED_ROOM in note for note in draft.notes) for draft in drafts)
     if alike > 1 and "ambient" in out:
         out["ambient"] += f"; {alike} tests alike"
-    return list(dict.fromkeys(out.values()))
+    return out
 
 
 def may_be_temperature(source: Source, g: Guess) -> bool:
@@ -86,7 +115,7 @@ def may_be_temperature(source: Source, g: Guess) -> bool:
 
 def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
-    if any(Role.WINDING in roles or is_whole(g.column) or FASTEST in g.doubt for roles, g in hot):
+    if any(Role.WINDING in roles or is_whole(g.column) or AS_WINDING in g.doubt for roles, g in hot):
         return {}
     wound = [(r, g) for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
     lost = [g.column for r, g in wound if may_be_temperature(r.source, g)]

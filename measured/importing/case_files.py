@@ -22,7 +22,7 @@ from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
 from measured.headers.cells import unit_of
-from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, tokens
+from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, roles_of, tokens
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
@@ -34,6 +34,10 @@ from measured.recordings.grid import LONGEST_S
 from measured.recordings.sheet import MAX_GAP_S
 
 TIME = "time_s"
+FEW = 12  # rows that show no relation
+TOGETHER, ALWAYS = 0.95, 0.98  # correlation of two powers that pass through one machine; share of rows
+EFFICIENCY = 0.5  # of a machine, at least
+IDLE = 0.02  # of the largest
 ROLES = ("calibrate", "validate", "hold-out")
 
 
@@ -130,10 +134,15 @@ def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, C
 
 
 def with_loss(source: Source) -> Source:
-    """With what goes in less what comes out as a loss, and a note, where no loss and no current was recorded."""
+    """With what goes in less what comes out as a loss, and a note, where no loss and no current was recorded.
+
+    Of two powers that go together and say no side the larger goes in.
+    """
     units, words = source.units, {c: {*tokens(label)} for c, label in source.labels.items() if source.is_numeric(c)}
     ends = [c for side in (GOES_IN, COMES_OUT) for c in words if unit_of(units[c]) in ("W", "kW") and words[c] & side]
     heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
+    powers = [c for c in words if unit_of(units[c]) in ("W", "kW") and not roles_of(source.labels[c])]
+    ends = _sides(source, powers) if len(ends) != 2 and len(powers) == 2 and not heats else ends
     if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
         return source
     loss = source.numbers(ends[0]) - source.numbers(ends[1])
@@ -143,6 +152,22 @@ def with_loss(source: Source) -> Source:
     cells, notes = {**source.cells, name: source.cells[name] if equal else loss}, (*source.notes, note)
     labels = {**source.labels, name: f"loss {name}" if equal else name}
     return replace(source, cells=cells, labels=labels, units={**units, name: units[ends[0]]}, notes=notes, values={})
+
+
+def _sides(source: Source, powers: list[str]) -> list[str]:
+    """The two powers in the order in which they pass through a machine; none where they do not go together."""
+    a, b = (source.numbers(c) for c in powers)
+    good = np.isfinite(a) & np.isfinite(b)
+    if good.sum() < FEW or np.ptp(a[good]) == 0.0 or np.ptp(b[good]) == 0.0:
+        return []
+    if not np.corrcoef(a[good], b[good])[0, 1] > TOGETHER:
+        return []
+    a, b = a[good], b[good]
+    on = np.abs(a) > IDLE * np.abs(a).max()
+    more, ratio = float(np.mean((a >= b)[on])), float(np.abs(b[on]).sum() / np.abs(a[on]).sum())
+    if more > ALWAYS and ratio > EFFICIENCY:
+        return powers
+    return powers[::-1] if more < 1.0 - ALWAYS and ratio < 1.0 / EFFICIENCY else []
 
 
 def with_clock(source: Source, period_s: float | None = None) -> tuple[Source, Clock]:

@@ -32,9 +32,11 @@ from measured.headers.words import (
     SPREAD,
     SUPPLY,
     axis_of,
+    is_outer,
     is_rise,
     is_setpoint,
     is_spoken,
+    is_stator,
     quantities_of,
     roles_of,
     tokens,
@@ -81,6 +83,8 @@ THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
+WHOLE = "names no part: the winding?"
+BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
@@ -91,7 +95,8 @@ PASSES = "a product of other columns: it passes through"
 NO_UNIT = "no unit"
 FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
-FASTEST = "follows the heat fastest: taken as the winding"
+AS_WINDING = "taken as the winding"
+FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
 QUICK = 0.6  # of the fastest: windings of the same machine
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
@@ -183,12 +188,19 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
 
 
 def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
-    """With a doubt at the columns that follow the heat fastest, where none is of a winding by its name."""
+    """With a doubt at those of the stator, or that follow the heat fastest, where none is of a winding by its name."""
     hot = {
         g.column: roles_of(source.labels[g.column]) for g in every if g.quantity == "temperature" and g.why != "values"
     }
     heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
-    if not heats or any(Role.WINDING in roles or is_whole(source.labels[c]) for c, roles in hot.items()):
+    first = not target.places  # of a network that is to be made from the columns
+    if any(Role.WINDING in roles for roles in hot.values()):
+        return every
+    headers = target.places_by_header.keys()
+    if stators := {c for c in hot if is_stator(label := source.labels[c]) and (first or label in headers)}:
+        doubts = {g.column: OF_STATOR if first or not g.doubt else g.doubt for g in every}
+        return [replace(g, doubt=doubts[g.column]) if g.column in stators else g for g in every]
+    if not heats or any(is_whole(source.labels[c]) for c in hot):
         return every
     edges = ([Role.AMBIENT], [Role.COOLANT])
     parts = [g for g in every if hot.get(g.column, edges[0])[:1] not in edges]
@@ -198,7 +210,6 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     quick = [c for c, score in scores.items() if score > QUICK * most > 0.0]
     if len(quick) == len(scores) or any(hot[c] for c in quick):
         return every
-    first = not target.places  # of a network that is to be made from the columns
     doubts = {g.column: FASTEST if first or not g.doubt else f"{g.doubt}; {FASTEST}" for g in every}
     return [replace(g, doubt=doubts[g.column]) if g.column in quick and (first or g.place) else g for g in every]
 
@@ -417,10 +428,10 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
         weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
-        return "temperature", "name of a part", "by its letters alone" if weak else ""
+        return "temperature", "name of a part", BY_LETTERS if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
-        return by_name[0], "name", "by its letters alone" if LETTERED.search(label) and not worded else ""
+        return by_name[0], "name", BY_LETTERS if LETTERED.search(label) and not worded else ""
     if label in target.places_by_header:  # told by its readings, or by hand
         return "", "", ""
     place, _ = target.place_of(label)
@@ -480,7 +491,7 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
         return base.without("no place of the model fits its name")
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
-    whole = "names no part: the winding?" if is_whole(label) else ""
+    whole = WHOLE if is_whole(label) else ""
     room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
@@ -508,8 +519,9 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
-        outer = bool(g.place) and g.place not in words
-        return is_setpoint(g.column), later, not READ & words, inlet, outer, g.why != SUREST
+        other = bool(g.place) and g.place not in words
+        outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
+        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")

@@ -17,7 +17,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
-from measured.importing.guess import AXES, FASTEST, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
+from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -152,7 +152,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     G = watts / max(*rises.values(), 1.0)
     inside = [FirstTerm(pair, 5 * G) for pair in itertools.pairwise(nodes)]
     outside = [FirstTerm((n, b), G / len(nodes) / len(boundaries)) for n in nodes for b in boundaries]
-    wound = frozenset(place for _, g, place in hot if FASTEST in g.doubt)
+    by_name = {place for s, g, place in hot if roles_of(s.labels[g.column])[:1] == [Role.WINDING]}
+    wound = frozenset({place for _, g, place in hot if AS_WINDING in g.doubt} | by_name)
     capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
     return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts, wound=wound)
 

@@ -60,6 +60,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
         return *table, notes, None
     lines = text.splitlines(keepends=True)
+    del text  # of a large file a hundred megabytes
     if sum(line.count('"') for line in lines) % 2:
         at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
         notes.append(f"{file.name}: a quotation mark in line {at} has no partner; such marks are left out")
@@ -173,8 +174,10 @@ def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | N
         return None
     if sign != ",":
         content = content.replace(",", ".").replace(sign, ",")
+    raw = content.encode()
+    del content
     try:
-        return Body(file, plan.width).columns(content.encode())
+        return Body(file, plan.width).columns(raw)
     except csv.Error:
         return None
 

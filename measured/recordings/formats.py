@@ -12,6 +12,7 @@ import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -43,6 +44,7 @@ ABOUT = (("label", "name", "signal"), ("unit", "units"))  # of a signal, in stru
 Signal = tuple[str, Array, Array]
 Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them, see DataTable
 BOOK = "an Excel workbook"
+BOOKS_READ: ContextVar[dict[Path, dict[str, list[list[Any]]]] | None] = ContextVar("books read so far", default=None)
 EPOCH = np.datetime64(0, "s")  # 1970
 TIMELESS = "no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
 
@@ -171,12 +173,30 @@ def _xlsx(file: Path, worksheet: str) -> Contents:
 
 def worksheets(file: Path) -> dict[str, list[list[Any]]]:
     """Name -> rows of every worksheet that has any."""
+    books = BOOKS_READ.get()
+    if books is not None and file in books:
+        return dict(books[file])
     with _workbook(file) as book:
-        return {sheet.title: rows for sheet in book.worksheets if (rows := _rows(sheet, file))}
+        sheets = {sheet.title: rows for sheet in book.worksheets if (rows := _rows(sheet, file))}
+    if books is not None:
+        books[file] = sheets
+    return dict(sheets)
+
+
+@contextmanager
+def each_book_once() -> Iterator[None]:
+    """A workbook that is read again in here is not opened again."""
+    token = BOOKS_READ.set({})
+    try:
+        yield
+    finally:
+        BOOKS_READ.reset(token)
 
 
 def workbook_rows(file: Path, worksheet: str) -> list[list[Any]]:
     """Rows of a worksheet: of the first where its name is ""."""
+    if BOOKS_READ.get() is not None and worksheet in (rows_of := {"": [], **worksheets(file)}):
+        return rows_of[worksheet or next((name for name in rows_of if name), "")]
     with _workbook(file) as book:
         sheets = {sheet.title: sheet for sheet in book.worksheets}
         if worksheet and worksheet not in sheets:

@@ -21,6 +21,8 @@ from validation.comparison.predict import Watch
 from validation.threads import side_by_side
 
 NONE = np.empty(0)
+RECORDED = 2**15  # samples as recorded, of which a stretch has a factor for every law; some copies, once a variant
+FEWEST = 32  # instants of a stretch
 NUMBERS = 2**20  # of a stretch: 8 MB, and some copies, stay near the processor; a longer one waits for its memory
 
 
@@ -63,7 +65,9 @@ class Deviations:
     def stretches(self) -> Iterator[tuple[Array, Array]]:
         """Temperatures (m, n) and what moves them (m, n, k): never in memory as a whole, whatever the test's length."""
         test = self.watch.test
+        recorded = test.recorded.time.size if test.recorded else test.time.size
         length = stretch(len(test.channels), self.size.size + len(self.beside), NUMBERS)
+        length = max(min(length, RECORDED * test.time.size // recorded), FEWEST)
         for stop in range(length, test.time.size + length, length):
             look = partial(Watch.until, stop=min(stop, test.time.size))
             plain, *variants = side_by_side(look, (self.watch, *self.beside))

@@ -12,7 +12,7 @@ together: one number, the mean heat, is given.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -197,7 +197,8 @@ class _TermTable:
         nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
         links, losses = link_powers(columns.inputs, form.shapes), loss_powers(columns.inputs)
         stirs = [may_stir([measures(f.input) for f in of]) for of in links]
-        heats = [may_heat([measures(f.input) for f in of]) for of in losses]
+        quantities = {measures(name) for name in columns.inputs}
+        heats = [may_heat([measures(f.input) for f in of], quantities) for of in losses]
         bodies = [
             *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
             *columns.boundaries,
@@ -304,9 +305,14 @@ def may_stir(quantities: Sequence[str]) -> bool:
     return not set(quantities) & set(ELECTRICAL)
 
 
-def may_heat(quantities: Sequence[str]) -> bool:
-    """May a loss follow these together?  Two currents do not, a current and a speed, or a voltage, do."""
+def may_heat(quantities: Sequence[str], beside: Container[str] = ()) -> bool:
+    """May a loss follow these together?  Two currents do not, a current and a speed, or a voltage, do.
+
+    beside : all that was recorded; beside a current a voltage alone heats nothing
+    """
     electrical = [q for q in quantities if q in ELECTRICAL]
+    if electrical == ["voltage"] and "current" in beside:
+        return False
     return not set(quantities) & set(FLOWS) and (len(electrical) < 2 or set(electrical) == {"current", "voltage"})
 
 

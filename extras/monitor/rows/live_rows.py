@@ -19,6 +19,7 @@ from thermoscope.plugin import (
     DataTable,
     Sheet,
     Stream,
+    each_book_once,
     imported_table,
     notes,
     numbers,
@@ -145,13 +146,14 @@ def table_of(
         raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
     sheets = sheets if like is None else {like: sheets[like]}
     plain, imported = _readers(follow, most, next(iter(sheets.values())).worksheet)
-    try:
-        return _fitting(follow, plain(), sheets, network)
-    except InputError as fault:
-        try:  # as a recorder writes it, which `new` has read too
-            return _fitting(follow, imported(), sheets, network)
-        except InputError:
-            raise fault from None
+    with each_book_once():
+        try:
+            return _fitting(follow, plain(), sheets, network)
+        except InputError as fault:
+            try:  # as a recorder writes it, which `new` has read too
+                return _fitting(follow, imported(), sheets, network)
+            except InputError:
+                raise fault from None
 
 
 def _readers(follow: str, most: int, worksheet: str) -> tuple[Callable[[], Iterator[DataTable]], ...]:

@@ -12,6 +12,7 @@ from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
 from measured.importing.source import read_source
+from measured.recordings import formats
 from measured.recordings.alignment import clock_shift
 from measured.recordings.formats import joined, read_recording, recording
 from measured.recordings.sheet import read_sheet
@@ -301,3 +302,17 @@ def test_rows_that_a_file_claims_and_does_not_hold_cost_nothing(tmp_path, ending
         words = "the limit 'rows'" if claimed > 10**7 else f"claims {claimed:,} rows and holds 77"
         with pytest.raises(InputError, match=words):
             read_source(file)
+
+
+def test_a_book_that_is_read_again_is_opened_once(tmp_path, monkeypatch):
+    file, opened, plain = tmp_path / "a.xlsx", [], formats._workbook
+    book = openpyxl.Workbook()
+    for row in (["t [s]", "T [degC]"], [0, 20], [1, 21], [2, 22]):
+        book.active.append(row)
+    book.save(file)
+    monkeypatch.setattr(formats, "_workbook", lambda file: opened.append(file) or plain(file))
+    with formats.each_book_once():
+        assert formats.workbook_rows(file, "") == next(iter(formats.worksheets(file).values()))
+    assert opened == [file]
+    assert formats.workbook_rows(file, "")[0] == ["t [s]", "T [degC]"]
+    assert len(opened) == 2

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from measured.importing.aligned import Recording, shift
-from measured.importing.aloud import first_lines
+from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import read_runs
 from measured.importing.draft import Draft
 from measured.importing.guess import guesses
@@ -111,6 +111,28 @@ def test_a_loss_that_is_what_goes_in_less_what_comes_out(tmp_path):
     g = by_column(tmp_path, {"P_in [W]": out + lost, "P_shaft [W]": out, "P_v [W]": lost, "T_winding [°C]": W1})
     assert g["P_v [W]"].feeds == "power_W"
     assert len(g) == 4
+
+
+def test_of_two_powers_that_say_no_side_the_larger_goes_in(tmp_path):
+    out, lost = 30 * LOAD, np.round(LOAD**2 + 1)
+    g = by_column(tmp_path, {"P1 [W]": out, "P2 [W]": out + lost, "T_winding [°C]": W1})
+    assert g["loss P2 [W] - P1 [W]"].feeds == "power_W"
+    g = by_column(tmp_path, {"P1 [W]": out, "P2 [W]": np.roll(out, 300), "T_winding [°C]": W1})
+    assert len(g) == 3
+
+
+def test_a_sensor_of_the_stator_is_the_windings_where_no_other_is(tmp_path):
+    hot = {"stator [°C]": W1, "frame [°C]": FRAME, "T_room [°C]": ROOM, "I [A]": LOAD}
+    assert by_column(tmp_path, hot)["stator [°C]"].doubt.endswith("of the stator: taken as the winding")
+    assert "taken" not in by_column(tmp_path, {"T_winding [°C]": W2, **hot})["stator [°C]"].doubt
+
+
+def test_a_comparison_repeats_what_may_change_its_verdict(tmp_path):
+    weak = {"T_winding [°C]": W1, "Qwzrt": FRAME, "T_room [°C]": ROOM, "I": LOAD}
+    drafts = [Draft("a", (record(tmp_path, {"t [s]": T, **weak}),))]
+    assert short_lines(drafts, learnt=True) == ["'Qwzrt': a temperature, by its readings alone; 1 more in tests/*.toml"]
+    grave = short_lines(drafts, learnt=False)
+    assert grave == ["no unit: 'I' is taken in A", "weaker guesses stand in tests/*.toml"]
 
 
 def test_what_is_warm_where_all_others_are_cold_is_doubted(tmp_path):

@@ -20,7 +20,7 @@ from geom.table import Table
 from lumped.machine.loss_sources import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
-from measured.importing.aloud import first_lines
+from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
@@ -263,7 +263,8 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
     with folder_whole(folder) as partial:
         tell("writing the case")
         warnings = first_lines(drafts)
-        write_case(partial, folder.name, model.put, drafts, " ".join(sentences(warnings)))
+        doubts = sentences(short_lines(drafts, bool(model.first)))
+        write_case(partial, folder.name, model.put, drafts, " ".join(doubts))
         settings = read_settings(partial)
         with _as_recorded(partial, drafts):
             patients = [patient_of(entry) for entry in settings.tests]
