@@ -141,7 +141,7 @@ def sentence(sure: Sequence[Difference], tests: int) -> str:
 
 
 def needs(d: Difference) -> str:
-    """ "film of joint 2.7 times theirs (6 standard deviations)"; beyond five times tangents only tell the side."""
+    """ "the film of joint to be 2.7 times theirs (6 standard deviations)"; beyond five times only the side is sure."""
     if d.relative:
         by = d.here / d.others
         size = (
@@ -153,4 +153,4 @@ def needs(d: Difference) -> str:
         )
     else:
         size = f"{d.here - d.others:+.2g}{'' if d.unit == '1' else f' {d.unit}'} beside theirs"
-    return f"{d.words} {size} ({abs(d.sd):.1f} standard deviations)"
+    return f"the {d.words} to be {size} ({abs(d.sd):.1f} standard deviations)"

@@ -116,8 +116,8 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
     cosine : (n, n)
     """
     c = np.abs(np.asarray(cosine, float))
-    side = 0.34 * len(names) + 2.4
-    figure, (ax,) = paper.subplots(side + 0.6, side)
+    side = 0.42 * len(names)
+    figure, (ax,) = paper.subplots(side + 4.2, side + 1.0)  # beside it the labels
     ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
     for i, j in np.ndindex(c.shape):
         if i != j and c[i, j] >= 0.5:
