@@ -409,8 +409,8 @@ def of_steps(
     felt = any(np.sqrt(np.mean(x**2)) > small * s.model_K for x, s in zip(whole, plain, strict=False))
     nothing = [np.zeros_like(s.r) for s in plain]
     mine = [s for here, s in every if felt and here]
-    moved = [with_more(test, s) if s.hidden else with_steps(test, steps, [s]) for s in mine]
-    after = iter(zip(mine, run_by_run(run, moved, network.size), strict=True))  # often one test alone has steps
+    variants = [with_more(test, s) if s.hidden else with_steps(test, steps, [s]) for s in mine]
+    after = iter(zip(mine, run_by_run(run, variants, network.size), strict=True))  # often one test alone has steps
     each = ((plain if s.hidden else early, now) for s, now in after)
     columns = [changed(*next(each)) if felt and here else nothing for here, _ in every]
     return {
