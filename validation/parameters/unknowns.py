@@ -27,7 +27,8 @@ LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 3  # in a sentence
 POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
-KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "contact": "contact", "k": "conduction of"}
+KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conduction of"}
+KINDS |= {"contact": "contact", "link": "link"}
 POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 

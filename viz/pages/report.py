@@ -105,13 +105,14 @@ def _error(r: Report) -> str:
     plain = None if r.comparison is None else best_plain_K(r.comparison)
     last = r.history[-1]
     most = max(error for path in errors.error_paths(r.history).values() for error in path)
-    bars = errors.before_after(last["tests"], floor_K=floor, most_K=most)
+    # a step back to the model as declared has no errors of its own
+    bars = errors.before_after(last["tests"], floor_K=floor, most_K=most) if last["tests"] else None
     title = f"Last step: {last['words']}. Tests in bold were never used."
     stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
         "The error, step by step",
         html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),
-        html.plot(bars, "bars", title),
+        html.plot(bars, "bars", title) if bars else "",
         html.text(words.ending(None if r.earlier else r.diagnosis)),
     )
 
@@ -158,7 +159,7 @@ def _missing(r: Report) -> str:
     errors_words = "Errors: without the effect → with it, all else fitted anew each time."
     parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
     alike = [
-        {**c, "confused_with": [texts.get(name, name) for name in c["confused_with"]]}
+        {**c, "confused_with": "; ".join(texts.get(name, name) for name in c["confused_with"])}
         for c in by_odds
         if c["confused_with"]
     ]
