@@ -130,7 +130,7 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
                 fontsize=7.5,
                 color="white" if c[i, j] > 0.6 else "black",
             )
-    ax.set_xticks(range(len(names)), range(1, len(names) + 1))
+    ax.set_xticks(range(len(names)), [str(i + 1) for i in range(len(names))])
     ax.set_yticks(range(len(names)), [f"{textwrap.fill(name, LABEL)}  {i}" for i, name in enumerate(names, 1)])
     ax.grid(False)
     ax.set_title("Signatures in common (1: cannot be told apart)")
