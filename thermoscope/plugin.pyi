@@ -295,6 +295,7 @@ from thermoscope.case_folder.history import (
     save_history as save_history,
 )
 from thermoscope.case_folder.runs import (
+    added_words as added_words,
     at_revision as at_revision,
     before_last as before_last,
     by_interest as by_interest,
@@ -303,6 +304,7 @@ from thermoscope.case_folder.runs import (
     mean_rows as mean_rows,
     named_rows as named_rows,
     sensors as sensors,
+    step_words as step_words,
 )
 from thermoscope.case_folder.settings import Settings as Settings, read_settings as read_settings
 from thermoscope.case_folder.workbook import tables as tables, write_csvs as write_csvs, write_xlsx as write_xlsx

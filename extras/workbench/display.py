@@ -10,7 +10,8 @@ from extras.workbench import tables as rows
 from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
-from thermoscope.plugin import DARK, LIGHT, History, Theme, by_interest, confusion, matrix
+from thermoscope import InputError
+from thermoscope.plugin import DARK, LIGHT, History, Theme, added_words, by_interest, confusion, matrix
 from thermoscope.plugin import sensor as sensor_figure
 
 CONFUSED = 8  # names that a row holds
@@ -80,8 +81,10 @@ class Display:
             self.state.test, self.state.sensor = rows.worst(look)
         self.look, self.state.limits = look, look.limits
         last, errors = history.last, look.errors
-        self.state.effects, self.state.revision = list(last.effects), last.number
-        self.state.steps, self.state.can_undo = rows.steps(history), len(ledger.effective(history)) > 1
+        case = self.bench.folder.case
+        self.state.effects = [{"code": name, "words": added_words(case, [name])} for name in last.effects]
+        self.state.revision, self.state.steps = last.number, rows.steps(history, case)
+        self.state.can_undo = len(ledger.effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
         (test, sensor), scale = rows.largest(look), self._scale
         ever = [error for r in history.revisions for pair in r.rmse_K.values() for error in pair]
@@ -119,7 +122,16 @@ class Display:
     def show_bench(self, file: Path) -> None:
         """What runs on the bench, or ran there last."""
         if (of_run := state_and_picture(file, self.theme)) is not None:
-            self.state.live, self.state.live_curve = of_run
+            live, self.state.live_curve = of_run
+            odds = [{**o, "words": self._words(o["cause"])} for o in live["odds"]]
+            self.state.live = {**live, "odds": odds, "unseen": ", ".join(map(self._words, live["unseen"]))}
+
+    def _words(self, cause: str) -> str:
+        """A cause as the journal of a bench names it, as an engineer says it."""
+        try:
+            return added_words(self.bench.folder.case, cause.split(" + "))
+        except InputError:  # "nothing" and the like are words already
+            return cause
 
     def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:
         """The candidates of a diagnosis, or none."""
@@ -127,8 +139,9 @@ class Display:
             self.state.update({"verdict": None, "candidates": [], "has_confusion": False})
             return
         self.state.verdict = rows.conclusion(diagnosis)
-        self.state.candidates = rows.candidates(diagnosis, tuple(self.state.effects))
+        self.state.candidates = rows.candidates(diagnosis, {e["code"] for e in self.state.effects})
         names = [c["effect"] for c in diagnosis["candidates"] if c["effect"] in diagnosis["confusion"]][:CONFUSED]
         self.state.has_confusion = len(names) > 1
-        figure = confusion(names, matrix(diagnosis["confusion"], names), theme=self.theme)
+        words = {c["effect"]: c.get("words") or c["effect"] for c in diagnosis["candidates"]}
+        figure = confusion([words[n] for n in names], matrix(diagnosis["confusion"], names), theme=self.theme)
         self.state.confusion = figure.to_plotly_json()

@@ -33,7 +33,7 @@ def state_and_picture(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[st
         "minutes": f"{run.minutes(last):.0f}",
         "odds": [{"cause": n, "p": percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]],
         "over": ", ".join(last["over"]),
-        "unseen": ", ".join(last["unseen"]),
+        "unseen": last["unseen"],
         "left": "" if last.get("stop") else f"about {last['left_min']:.0f} min left",
         "stop": fault or last.get("stop", ""),
         "fault": bool(fault),

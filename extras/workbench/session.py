@@ -17,7 +17,15 @@ from extras.workbench.dropped import Dropped
 from extras.workbench.jobs import FailedError, Job, StoppedError
 from extras.workbench.machines import Bench, Drawing
 from thermoscope import InputError, ThermoscopeError
-from thermoscope.plugin import Folder, History, current_diagnosis, load_history, save_diagnosis, save_history
+from thermoscope.plugin import (
+    Folder,
+    History,
+    added_words,
+    current_diagnosis,
+    load_history,
+    save_diagnosis,
+    save_history,
+)
 from thermoscope.plugin import StoredRevision as Revision
 
 REMEMBERED = 8  # revisions whose comparison is at hand
@@ -94,14 +102,15 @@ class Session:
         effects = {"add": {c["effect"] for c in self.state.candidates}, "remove": set(self.history.last.effects)}
         if effect not in effects.get(action, {""}):
             return
-        title = f"{TITLES[action]} {effect}".strip()
+        words = added_words(self.folder.case, [effect] if effect else [])
+        title = f"{TITLES[action]} {words}".strip()
         result = await self._calculate(title, steps.stepped, self.folder, action, effect)
         if result is None:
             return
         revision, document, look = result
         good = bool(document["accepted"]) or action == "remove"
         verdict = "accepted" if good else "not accepted"
-        text = f"{f'{action} {effect}'.strip()}: {verdict}; {document['why']}"
+        text = f"{f'{action} {words}'.strip()}: {verdict}; {document['why']}"
         self._refused = None if good else revision
         with self.state:
             self.state.outcome = {

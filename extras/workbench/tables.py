@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from extras.workbench.appearance import Appearance
-from thermoscope.plugin import History, amplitude, fall, offers, short, verdict
+from thermoscope.plugin import History, MeasuredCase, amplitude, fall, offers, short, step_words, verdict
 from thermoscope.plugin import percent as odds
 
 Row = dict[str, Any]
@@ -63,27 +63,28 @@ def largest(look: Appearance) -> tuple[float, float]:
     return max(t["rmse_K"] for t in rows), max(c["rmse_K"] for t in rows for c in t["channels"])
 
 
-def steps(history: History) -> list[Row]:
+def steps(history: History, case: MeasuredCase) -> list[Row]:
     """The revisions, the last first."""
     words = [
-        {"number": r.number, "text": f"{r.action} {r.effect}".strip(), "why": r.why.replace("->", "→")}
+        {"number": r.number, "text": step_words(case, r), "code": r.effect, "why": r.why.replace("->", "→")}
         for r in history.revisions
     ]
-    return [*reversed(words), {"number": 0, "text": "as declared", "why": ""}]
+    return [*reversed(words), {"number": 0, "text": "as declared", "code": "", "why": ""}]
 
 
-def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[Row]:
+def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[Row]:
     """The table of a diagnosis, best first."""
+    words = {c["effect"]: c.get("words") or c["effect"] for c in diagnosis["candidates"]}
     return [
         {
             "effect": c["effect"],
-            "words": c.get("words", ""),
+            "words": words[c["effect"]],
             "score": odds(c["probability"]),
             "width": percent(c["probability"], 1.0),
             "amplitude": amplitude(c),
             "error": fall(c["rmse_K"]),
             "held": fall(c["holdout_rmse_K"]),
-            "alike": ", ".join(c["confused_with"][:3]),
+            "alike": ", ".join(words.get(name, name) for name in c["confused_with"][:3]),
             "decision": c["decision"],
             "test": c.get("isolating_test", ""),
             "inside": c["effect"] in effects,
@@ -95,7 +96,7 @@ def candidates(diagnosis: Mapping[str, Any], effects: tuple[str, ...]) -> list[R
 def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
     tone, sentence = verdict(diagnosis, None)
-    hidden = [h["effect"] for h in diagnosis["cannot_see"]]
+    hidden = [h["words"] for h in diagnosis["cannot_see"]]
     further_tests = [
         f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
         for o in offers(diagnosis)[:3]

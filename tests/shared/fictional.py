@@ -116,7 +116,9 @@ def documents() -> tuple[dict, dict]:
         "verdict": "named",
         "candidates": candidates(),
         "where": [{"place": "flange.right", "evidence_nats": 41.0}],
-        "cannot_see": [{"effect": "contact@yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}],
+        "cannot_see": [
+            {"effect": "contact@yoke", "words": "worse contact at yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}
+        ],
         "next_tests": [{"test": "blower on", "separates": ["radiation@flange.right"], "predicted_gain": 44.0}],
     }
     return compare, diagnose

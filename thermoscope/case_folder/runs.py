@@ -29,7 +29,7 @@ from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
-from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, working
+from validation.parameters.unknowns import effects_of, parameter_words, scene_of, standing, to_value, working
 from validation.threads import side_by_side
 
 if TYPE_CHECKING:
@@ -40,8 +40,6 @@ ORDER = {"hold-out": 0, "validate": 1, "calibrate": 2}  # of tests by what they 
 HOT = "hottest point of "
 RANGE_FRAMES = 25  # of a test: between two of them a machine moves by less than colours are rounded
 BLIND = 0.9  # an interval this wide, compared with the one expected before, taught nothing
-KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "contact": "contact", "k": "conduction of"}
-POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 
 
 def by_interest(folder: Folder) -> list[Test]:
@@ -291,15 +289,11 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
 
 
 def value_words(case: Case, name: str) -> str:
-    """A value of the model as an engineer says it: "heat capacity of rotor"; a name that was chosen freely as it is."""
-    words, powered, exponent = name.partition("^")
-    kind, dot, place = words.partition(".")
+    """A value of the model as an engineer says it: "heat capacity of rotor"."""
+    words, power = parameter_words(name)
     if words in [e.name for e in case.model.effects]:
         words = added_words(case, [words])
-    elif dot and kind in KINDS:
-        words = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
-    power = POWERS.get(exponent, f"exponent of {exponent}".replace("_", " "))
-    return f"{words}, {power}" if powered else words
+    return f"{words}, {power}" if power else words
 
 
 def sensors(folder: Folder) -> dict[str, Channel]:

@@ -28,7 +28,7 @@ from validation.comparison.predict import heat_model, record
 from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
 from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.parameters.reference import mean_factor
-from validation.threads import side_by_side
+from validation.threads import run_by_run, side_by_side
 
 SQUARED = ("current", "torque")  # quantities whose square makes heat
 SMOOTH = 1e-3  # of its mean square: an input that jumps by less is as good as straight
@@ -398,18 +398,21 @@ def of_steps(
     steps = [s for here, s in every if here and not s.hidden]
     early = segments(network, [with_steps(test, steps)], values) if steps else plain
 
-    def changed(before: Sequence[Segment], now: Test) -> list[Array]:
-        new = segments(network, [now], values)
-        return [doubt["step in sample"] * (a.r - b.r) for a, b in zip(before, new, strict=True)]
+    def changed(before: Sequence[Segment], now: Sequence[Segment]) -> list[Array]:
+        return [doubt["step in sample"] * (a.r - b.r) for a, b in zip(before, now, strict=True)]
 
-    def column(s: InputStep) -> list[Array]:
-        return changed(plain, with_more(test, s)) if s.hidden else changed(early, with_steps(test, steps, [s]))
+    def run(now: Test) -> list[Segment]:
+        return segments(network, [now], values)
 
-    whole = changed(early, with_steps(test, steps, steps)) if steps else []
+    whole = changed(early, run(with_steps(test, steps, steps))) if steps else []
     small = FELT * np.sqrt(max(len(steps), 1))  # moved together, they do so much more than each by chance
     felt = any(np.sqrt(np.mean(x**2)) > small * s.model_K for x, s in zip(whole, plain, strict=False))
     nothing = [np.zeros_like(s.r) for s in plain]
-    columns = [column(s) if felt and here else nothing for here, s in every]
+    mine = [s for here, s in every if felt and here]
+    variants = [with_more(test, s) if s.hidden else with_steps(test, steps, [s]) for s in mine]
+    after = iter(zip(mine, run_by_run(run, variants, network.size), strict=True))  # often one test alone has steps
+    each = ((plain if s.hidden else early, now) for s, now in after)
+    columns = [changed(*next(each)) if felt and here else nothing for here, _ in every]
     return {
         s.channel: np.column_stack([np.empty((s.r.size, 0)), *(c[i] for c in columns)]) for i, s in enumerate(plain)
     }

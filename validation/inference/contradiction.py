@@ -18,7 +18,7 @@ from measured.case import Test
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
 from validation.inference.score import fit_score
-from validation.parameters.unknowns import to_value
+from validation.parameters.unknowns import parameter_words, to_value
 from validation.tables import TableRow
 
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ
@@ -35,6 +35,7 @@ class Difference(TableRow):
     """
 
     parameter: str
+    words: str
     test: str
     others: float
     here: float
@@ -90,8 +91,19 @@ def _row(network: Network, q: Parameter, test: str, x: float, a: float, sd: floa
     wide = (a / q.prior_sd) ** 2
     nats = 0.5 * z**2 - 0.5 * float(np.log1p((q.prior_sd / sd) ** 2)) - 0.5 * wide / (1.0 + (q.prior_sd / sd) ** 2)
     here = float(np.clip(x + a, -20.0, 20.0)) if q.mapping == "log" else x + a
+    law, power = parameter_words(q.name)
+    words = f"{power} in the {law}" if power else law
     return Difference(
-        q.name, test, to_value(q, x), to_value(q, here), q.unit, z, nats, can_differ(network, q), q.mapping == "log"
+        q.name,
+        words,
+        test,
+        to_value(q, x),
+        to_value(q, here),
+        q.unit,
+        z,
+        nats,
+        can_differ(network, q),
+        q.mapping == "log",
     )
 
 
@@ -129,7 +141,7 @@ def sentence(sure: Sequence[Difference], tests: int) -> str:
 
 
 def needs(d: Difference) -> str:
-    """ "link.joint 2.7 times theirs (6 standard deviations)"; beyond a factor of five tangents only tell the side."""
+    """ "the film of joint to be 2.7 times theirs (6 standard deviations)"; beyond five times only the side is sure."""
     if d.relative:
         by = d.here / d.others
         size = (
@@ -141,4 +153,4 @@ def needs(d: Difference) -> str:
         )
     else:
         size = f"{d.here - d.others:+.2g}{'' if d.unit == '1' else f' {d.unit}'} beside theirs"
-    return f"{d.parameter} {size} ({abs(d.sd):.1f} standard deviations)"
+    return f"the {d.words} to be {size} ({abs(d.sd):.1f} standard deviations)"

@@ -79,6 +79,7 @@ class DetectionLimit(TableRow):
     """An effect that these tests could not have shown unless it were larger than this."""
 
     effect: str
+    words: str
     smallest_detectable: float
     unit: str
     absorbed_by: str | None = None

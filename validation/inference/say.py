@@ -287,7 +287,11 @@ def hidden_effects(e: Evidence) -> tuple[DetectionLimit, ...]:
     rows = [int(k) for k in np.argsort(-unusual) if unusual[k] > UNSEEN or twins[k]]
     return tuple(
         DetectionLimit(
-            e.names[k], float(size[k]), e.parameters[k].unit, twins[k] or absorbers[min(e.score.absorber[k], e.p)]
+            e.names[k],
+            e.effects[k].statement,
+            float(size[k]),
+            e.parameters[k].unit,
+            twins[k] or absorbers[min(e.score.absorber[k], e.p)],
         )
         for k in rows
         if not isinstance(e.effects[k], During)

@@ -27,6 +27,9 @@ LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 3  # in a sentence
 POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
+KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conduction of"}
+KINDS |= {"contact": "contact", "link": "link"}
+POWERS = {"dT": "exponent of its difference", "T": "slope with temperature"}
 FREE = 30.0  # prior deviations of what the data alone shall say: wide enough to leave no trace
 
 
@@ -310,10 +313,20 @@ def strain_words(case: Case) -> str:
 
 
 def _value_words(name: str, value: float, unit: str) -> str:
-    """What became of a parameter; of an exponent the law that it makes."""
-    law, of, quantity = name.partition("^")
-    shift = f"the {name} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
-    return f"{law} had to follow {quantity}^{value:.3g}" if of else shift
+    """What became of a parameter; an exponent is told as it is."""
+    law, power = parameter_words(name)
+    shift = f"the {law} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
+    return f"the {power} in the {law} had to be {value:.3g}" if power else shift
+
+
+def parameter_words(name: str) -> tuple[str, str]:
+    """What a value scales and what of it, if it is a power: ("loss of iron", "exponent of speed rpm"), ("film of gap",
+    ""); a name that was chosen freely as it is."""
+    law, powered, exponent = name.partition("^")
+    kind, dot, place = law.partition(".")
+    if dot and kind in KINDS:
+        law = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
+    return law, POWERS.get(exponent, f"exponent of {exponent}".replace("_", " ")) if powered else ""
 
 
 def with_model(case: Case, model: Model) -> Case:

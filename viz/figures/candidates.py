@@ -78,7 +78,7 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
     contradiction : the contradiction of a diagnosis or comparison
     """
     rows = contradiction["differences"][:most][::-1]
-    names = [f"{d['parameter']} in {d['test']}" for d in rows]
+    names = [f"{d.get('words', d['parameter'])} in {d['test']}" for d in rows]
     figure, ax = _bars(names, [d["sd"] for d in rows], [BLUE if d["possible"] else VERMILION for d in rows])
     for y, d in enumerate(rows):
         side = "left" if d["sd"] > 0 else "right"
@@ -116,8 +116,8 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
     cosine : (n, n)
     """
     c = np.abs(np.asarray(cosine, float))
-    side = 0.34 * len(names) + 2.4
-    figure, (ax,) = paper.subplots(side + 0.6, side)
+    side = 0.42 * len(names)
+    figure, (ax,) = paper.subplots(side + 4.2, side + 1.0)  # beside it the labels
     ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
     for i, j in np.ndindex(c.shape):
         if i != j and c[i, j] >= 0.5:
@@ -130,8 +130,8 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
                 fontsize=7.5,
                 color="white" if c[i, j] > 0.6 else "black",
             )
-    ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
-    ax.set_yticks(range(len(names)), names)
+    ax.set_xticks(range(len(names)), [str(i + 1) for i in range(len(names))])
+    ax.set_yticks(range(len(names)), [f"{textwrap.fill(name, LABEL)}  {i}" for i, name in enumerate(names, 1)])
     ax.grid(False)
     ax.set_title("Signatures in common (1: cannot be told apart)")
     return paper.save(figure, png)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
     from measured.case import Channel
+
+LABEL = 30  # letters of a label's line
 
 
 def channel_of(comparison: Comparison, name: str) -> Channel:
@@ -101,7 +104,7 @@ def confusion(names: Sequence[str], cosine: Array, *, theme: Theme = LIGHT) -> g
     c = np.abs(np.asarray(cosine, float))
     out = figure(theme, title={"text": "Traces in common (1: cannot be told apart)", "x": 0.02, "font": {"size": 13}})
     numbers = [str(i) for i in range(1, len(names) + 1)]
-    labels = [f"{as_text(name)}  {i}" for name, i in zip(names, numbers, strict=True)]
+    labels = [f"{'<br>'.join(map(as_text, wrap(name, LABEL)))}  {i}" for name, i in zip(names, numbers, strict=True)]
     out.add_heatmap(
         z=[plain(row) for row in c],
         x=numbers,

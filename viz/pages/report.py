@@ -105,13 +105,14 @@ def _error(r: Report) -> str:
     plain = None if r.comparison is None else best_plain_K(r.comparison)
     last = r.history[-1]
     most = max(error for path in errors.error_paths(r.history).values() for error in path)
-    bars = errors.before_after(last["tests"], floor_K=floor, most_K=most)
+    # a step back to the model as declared has no errors of its own
+    bars = errors.before_after(last["tests"], floor_K=floor, most_K=most) if last["tests"] else None
     title = f"Last step: {last['words']}. Tests in bold were never used."
     stairs = errors.staircase(r.history, floor_K=floor, plain_K=plain)
     return html.section(
         "The error, step by step",
         html.plot(stairs, "stairs", "Rms error of every test over the revisions of the model."),
-        html.plot(bars, "bars", title),
+        html.plot(bars, "bars", title) if bars else "",
         html.text(words.ending(None if r.earlier else r.diagnosis)),
     )
 
@@ -157,11 +158,15 @@ def _missing(r: Report) -> str:
         parts.append(html.plot(bands.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
     errors_words = "Errors: without the effect → with it, all else fitted anew each time."
     parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
-    alike = [c for c in by_odds if c["confused_with"]]
-    likeness = html.table(Table.of("", alike, "effect | looks like=confused_with"))
+    alike = [
+        {**c, "confused_with": "; ".join(texts.get(name, name) for name in c["confused_with"])}
+        for c in by_odds
+        if c["confused_with"]
+    ]
+    likeness = html.table(Table.of("", alike, "effect | looks like=confused_with"), texts)
     names = [c["effect"] for c in by_score[:10]]
     if d.get("confusion"):
-        likely = candidates.confusion(names, candidates.matrix(d["confusion"], names))
+        likely = candidates.confusion([texts.get(n, n) for n in names], candidates.matrix(d["confusion"], names))
         likeness += html.plot(likely, "confusion", "Likeness of their traces.")
     parts.append(html.more("Which of them look alike", likeness) if likeness else "")
     return html.section("What was missing before the last step" if r.earlier else "What is missing", *parts)
@@ -180,7 +185,8 @@ def _hidden(r: Report) -> str:
     """What these tests cannot see, and which test would show more."""
     if r.diagnosis is None:
         return ""
-    limits = html.table(tables.limits_table(r.diagnosis.get("cannot_see", [])))
+    hidden = r.diagnosis.get("cannot_see", [])
+    limits = html.table(tables.limits_table(hidden), {h["effect"]: h["words"] for h in hidden if "words" in h})
     return html.section(
         "What these tests cannot see, and what would help",
         limits and html.more("Effects that could be there unseen", limits),
@@ -196,13 +202,14 @@ def _values(r: Report) -> str:
         "values of readings, clocks and starts": [p for p in fixed if p.get("of_measurement")],
         "values that the data do not fix": [p for p in r.parameters if p not in fixed],
     }
+    words = {p["name"]: p["words"] for p in r.parameters if p.get("words", p["name"]) != p["name"]}
     priors = [p for p in r.parameters if p["prior"] and not p.get("of_measurement")]
     return html.section(
         "Calibrated values",
         html.plot(intervals(priors), "sizes", "Values on the scale of what was expected of them.") if priors else "",
-        html.table(tables.parameters_table("", model)),
+        html.table(tables.parameters_table("", model), words),
         *(
-            html.more(f"{len(group)} {name}", html.table(tables.parameters_table("", group)))
+            html.more(f"{len(group)} {name}", html.table(tables.parameters_table("", group), words))
             for name, group in groups.items()
             if group
         ),

@@ -817,7 +817,7 @@ const NEAR = 12, STILL = 4;  // pixels from a dot that mean its sensor; that a p
 const SMALL = 560;  // pixels of a picture below which three sensors have labels: six would cover the machine
 const WIDE = 1100;  // pixels from which machine and network stand side by side
 const TINTS = data.tints;  // within, hot, cold, unknown: red, green, blue from 0 to 1
-const signed = (v) => v === null ? "–" : (v < 0 ? "−" : "+") + Math.abs(v).toFixed(1);
+const signed = (v) => v === null ? "–" : (v <= -0.05 ? "−" : "+") + Math.abs(v).toFixed(1);
 
 function line(name, value, colour, act, on) {  // a dot of the colour, the name, the value; on or off where it can be chosen
   const li = document.createElement("li"), b = document.createElement("button");

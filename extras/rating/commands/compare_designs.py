@@ -178,6 +178,7 @@ def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell
             {"place": n, "degC": float(t)} for n, t in sorted(zip(heated, T, strict=True), key=lambda r: -r[1])
         ],
         "rating": None if rating is None else {"input": op.main, **row(one.folder, op, rating, None, posterior)},
+        "asks_for_bands": bool(limits) and sure is None and not banded,
     }
 
 
@@ -224,11 +225,13 @@ def designs_summary(document: Mapping[str, Any]) -> Summary:
     ]
     every = dict.fromkeys(m for d in designs for m in d["masses_kg"])
     materials = [(m, *(d["masses_kg"].get(m) for d in designs)) for m in every]
+    bare = " and ".join(d["name"] for d in designs if d["asks_for_bands"])
     differ = [(r["parameter"], *("" if v is None else v for v in r["values"])) for r in document["dimensions"]]
     return Summary(
         f"{_verdict(designs)} Assumed of all: {around}.",
         [
             f"At rest under the rated load, {loads}.",
+            f"The rating of {bare} has no band yet: --bands reads the tests for it, a minute or so." if bare else "",
             Table("", ["", *names], figures, keep=names),
             Table("What differs in the files", ["key", *names], differ, keep=names),
             Table("Mass by material (kg)", ["material", *names], materials, keep=names),

@@ -28,7 +28,13 @@ def test_masses_by_material_are_those_of_the_parts():
 def described(name, value, hottest):
     rating = {"form": "S1", "input": "current_A", "value": value, "ci95": None, "at": "winding"}
     spots = [{"place": "winding", "degC": hottest}]
-    figures = {"masses_kg": {"steel": 10.0}, "pump_and_fan_W": 5.0, "inputs": {"current_A": 20.0}, "settles": True}
+    figures = {
+        "masses_kg": {"steel": 10.0},
+        "pump_and_fan_W": 5.0,
+        "inputs": {"current_A": 20.0},
+        "settles": True,
+        "asks_for_bands": False,
+    }
     return {"name": name, "hottest": spots, "rating": rating, **figures}
 
 
@@ -36,6 +42,8 @@ def test_the_better_one_is_named_first():
     document = {"dimensions": [], "boundaries": {"ambient": 40.0}}
     document["designs"] = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
     assert designs_summary(document).sentence.startswith("b carries most: current_A = 22, limited by winding.")
+    document["designs"][1]["asks_for_bands"] = True
+    assert "The rating of b has no band yet: --bands reads" in designs_summary(document).parts[1]
     for one in document["designs"]:
         one["rating"] = None
     assert designs_summary(document).sentence.startswith("b stays coolest: 120.0 degC")

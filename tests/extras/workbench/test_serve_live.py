@@ -40,7 +40,7 @@ def test_it_asks_for_the_next_set_point_until_that_is_there(written):
     assert state["asks"]
     assert [(s["name"], s["value"]) for s in state["set"]] == [("current_A", "8"), ("speed_rpm", "3000")]
     assert (state["minutes"], state["left"], state["stop"]) == ("1", "about 12 min left", "")
-    assert (state["over"], state["unseen"]) == ("T_core", "windage@rotor")
+    assert (state["over"], state["unseen"]) == ("T_core", ["windage@rotor"])
     assert not live.state_and_picture(written(*RUN, DONE), LIGHT)[0]["asks"]
     assert not live.state_and_picture(written({"event": "run", "drive": True}, *RUN[1:]), LIGHT)[0]["asks"]
 

@@ -124,6 +124,14 @@ def test_sections_follow_the_parts_given(page):
     assert re.findall(r"<h2>", render(Report("empty"))) == []
 
 
+def test_a_step_back_to_the_model_as_declared_has_no_bars():
+    """Its errors were never written: undo in the workbench, then the report."""
+    back = {**HISTORY[-1], "action": "step back", "effect": "", "words": "step back", "tests": []}
+    page = render(Report("r", history=[*HISTORY, back]))
+    assert "The error, step by step" in page
+    assert "Last step: " not in page
+
+
 def test_evidence_of_each_has_words_before_its_code():
     compare, diagnose = documents()
     one = {**diagnose["candidates"][0], "words": "wind at the flange", "decision": "cannot-tell"}

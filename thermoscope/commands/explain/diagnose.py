@@ -125,7 +125,7 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
-    hidden = [f"{h['effect']} below {cell(h['smallest_detectable'])} {h['unit']}" for h in document["cannot_see"]]
+    hidden = [f"{h['words']} below {limit(h)}" for h in document["cannot_see"]]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     events, explained = document.get("events", []), document.get("explanations", [])
     explanations = tables.explanations_table(explained, partners=False)
@@ -193,4 +193,4 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
 
 def limit(candidate: Mapping[str, Any]) -> str:
     """The smallest size that the tests would show, with its unit."""
-    return f"{cell(candidate['smallest_detectable'])} {tables.unit_of(candidate['amplitude'])}".strip()
+    return f"{cell(candidate['smallest_detectable'])} {tables.unit_of(candidate.get('amplitude', candidate))}".strip()

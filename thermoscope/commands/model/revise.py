@@ -108,7 +108,8 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
         write_columns(folder, longer.last.effects)
         if result.action == "add":
             after = replace(folder, case=at_revision(folder, longer.last), history=longer)
-            finding = finding_words(after, result.after.document())
+            # of a machine the whole comparison is kept, and the next command asks for it
+            finding = finding_words(after, (after.compared if after.built else result.after).document())
     places = unmeasured(folder, result)
     nuisance_words = strain_words(replace(folder.case, model=result.model))
     more = {"case": folder.case.name, "written": keep, "unmeasured": places, "strained": nuisance_words}

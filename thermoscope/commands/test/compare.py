@@ -132,9 +132,10 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
-    words = [doubts, plain["warning"], document["words"], document.get("strained", "")]
+    before, verdict = [doubts, plain["warning"]], [document["words"], document.get("strained", "")]
+    words = "\n".join(filter(None, (" ".join(filter(None, some)) for some in (before, verdict))))
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
-    return Summary(" ".join(filter(None, words)), parts, more, every)
+    return Summary(words, parts, more, every)
 
 
 def bands_table(rows: Sequence[Mapping[str, Any]]) -> Table:

@@ -370,7 +370,7 @@ def new_case_summary(document: Mapping[str, Any]) -> Summary:
         f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
         "used. All of this is guessed: change it in tests/*.toml."
     )
-    sentence = " ".join([*sentences(document["warnings"]), sentence])
+    sentence = "\n".join(filter(None, [" ".join(sentences(document["warnings"])), sentence]))
     table = Table.of(
         "", columns, "column | *goes to=place | *unit | quantity | *doubt", place=lambda c: _goes(c) or "left out"
     )
