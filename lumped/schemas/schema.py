@@ -1,7 +1,7 @@
 """JSON Schemas of all TOML files: for editors, and for what error messages say a key means.
 
-Their text is in KIND.json beside this file, without what goes without saying: see `_spelt_out`. bounds.py has the bounds
-of all numbers, and the families of machines have the keys of theirs.
+Their text is in KIND.json beside this file, without what goes without saying: see `_spelt_out`. bounds.py has the
+bounds of all numbers, and the families of machines have the keys of theirs.
 
 python -m lumped.schemas.schema FOLDER    writes the schemas, out/schemas where no folder is named
 """
@@ -36,7 +36,7 @@ def schema(name: str) -> Schema:
 
 
 def _spelt_out(node: Any, parts: Mapping[str, Schema]) -> Any:
-    """A schema with its repeated parts in full; what has properties is a table, with no keys but these unless it says."""
+    """A schema with its repeated parts in full; a table has no keys but its own unless it says so."""
     if isinstance(node, list):
         return [_spelt_out(inner, parts) for inner in node]
     if not isinstance(node, Mapping):
