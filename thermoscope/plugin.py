@@ -1,5 +1,7 @@
 """What extras and packages of others build on, beside `import thermoscope as ts`: names of the rooms, loaded when used.
 
+    from thermoscope import plugin as th
+
 plugin.pyi lists them with their modules. What is missing there is added there; nothing else of the rooms is promised.
 """
 
@@ -23,7 +25,9 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'; plugin.pyi lists what it has")
     module, original = _homes()[name]
     home = import_module(module)
-    return getattr(home, original) if hasattr(home, original) else import_module(f"{module}.{original}")
+    found = getattr(home, original) if hasattr(home, original) else import_module(f"{module}.{original}")
+    globals()[name] = found  # the next look at it costs what any other name does
+    return found
 
 
 def __dir__() -> list[str]:

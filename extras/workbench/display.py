@@ -10,8 +10,7 @@ from extras.workbench import tables as rows
 from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
-from thermoscope.plugin import DARK, LIGHT, History, Theme, by_interest, confusion, matrix
-from thermoscope.plugin import sensor as sensor_figure
+from thermoscope import plugin as th
 
 CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
@@ -62,7 +61,7 @@ class Display:
         self.bench, self.server, self.look = bench, server, None
         self._scale = 0.0, 0.0
         self.state.update({**START, "case_name": bench.folder.case.name, "why_flat": bench.why_flat})
-        self.state.test, self.state.revision = by_interest(bench.folder)[0].name, bench.folder.history.last.number
+        self.state.test, self.state.revision = th.by_interest(bench.folder)[0].name, bench.folder.history.last.number
         self.state.test_names = [test.name for test in bench.folder.case.tests]
         self.state.change("test")(lambda **_: self.choose_test())
 
@@ -71,10 +70,10 @@ class Display:
         return self.server.state
 
     @property
-    def theme(self) -> Theme:
-        return DARK if self.state.dark else LIGHT
+    def theme(self) -> th.Theme:
+        return th.DARK if self.state.dark else th.LIGHT
 
-    def model(self, history: History, look: Appearance) -> None:
+    def model(self, history: th.History, look: Appearance) -> None:
         """Another model: its errors, curves and temperatures."""
         if self.look is None:
             self.state.test, self.state.sensor = rows.worst(look)
@@ -102,7 +101,7 @@ class Display:
         if self.look is None or not names:
             return
         self.state.sensor = name if name in names else names[0]
-        figure = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
+        figure = th.sensor(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
         self.state.curve = figure.to_plotly_json()
 
     def next_sensor(self, step: int) -> None:
@@ -130,5 +129,5 @@ class Display:
         self.state.candidates = rows.candidates(diagnosis, tuple(self.state.effects))
         names = [c["effect"] for c in diagnosis["candidates"] if c["effect"] in diagnosis["confusion"]][:CONFUSED]
         self.state.has_confusion = len(names) > 1
-        figure = confusion(names, matrix(diagnosis["confusion"], names), theme=self.theme)
+        figure = th.confusion(names, th.matrix(diagnosis["confusion"], names), theme=self.theme)
         self.state.confusion = figure.to_plotly_json()
