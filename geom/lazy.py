@@ -39,13 +39,13 @@ def loaded_when_used(
         if name not in typed_homes(Path(file)):
             if name in offered():
                 return offered()[name]
-            known = [*names(), *offered()]
-            right = f"known: {', '.join(known)}" if len(known) < LISTED else f"{Path(file).name} lists what it has"
+            every = [*names(), *offered()]
+            right = f"known: {', '.join(every)}" if len(every) < LISTED else f"{Path(file).name} lists what it has"
             raise AttributeError(f"module '{package}' has no attribute '{name}'; {right}")
         module, original = typed_homes(Path(file))[name]
         home = import_module(module)
-        found = getattr(home, original) if hasattr(home, original) else import_module(f"{module}.{original}")
-        setattr(sys.modules[package], name, found)  # the next look costs what any other name does
-        return found
+        value = getattr(home, original) if hasattr(home, original) else import_module(f"{module}.{original}")
+        setattr(sys.modules[package], name, value)  # the next look costs what any other name does
+        return value
 
     return attribute, names
