@@ -11,9 +11,6 @@ Coverage of a kind is the share of instants inside, meaned over places and machi
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
-import platform
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,6 +23,7 @@ from hidden.user import case_of
 
 from lumped.model.network import Row
 from measured.case import Case
+from scripts.published import write_rows
 from validation import calibrate
 from validation.bands import Place, bands, parameter_posterior
 
@@ -152,20 +150,7 @@ def main() -> None:
                 )
     table = rows(held)
     print(markdown(table))
-    if a.json:
-        computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
-        a.json.write_text(
-            json.dumps(
-                {
-                    "benchmark": "bands",
-                    "computer": computer,
-                    "seeds": a.seeds,
-                    "date": datetime.date.today().isoformat(),
-                    "rows": table,
-                },
-                indent=1,
-            )
-        )
+    write_rows(a.json, "bands", table, seeds=a.seeds)
 
 
 if __name__ == "__main__":

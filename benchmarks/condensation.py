@@ -12,10 +12,8 @@ least a tenth of the machine's largest; after a step of loss, hot spots and poin
 from __future__ import annotations
 
 import argparse
-import datetime
 import json
 import os
-import platform
 import sys
 import tempfile
 import time
@@ -33,7 +31,7 @@ from lumped.build.network_size import NetworkSize, smallest_network
 from lumped.build.pipeline import Meshing
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from scripts.published import publish
+from scripts.published import publish, write_rows
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -203,16 +201,7 @@ def main() -> None:
         rows += [shown(r) for r in offline_rows()] if given.offline else []
         for name in [] if given.offline else given.machines or library():
             rows += [shown(r) for r in machine_rows(name, COARSE if given.coarse else {}, given.accuracy)]
-    document = {
-        "benchmark": "condensation",
-        "computer": f"{platform.machine()}, Python {platform.python_version()}",
-        "date": datetime.date.today().isoformat(),
-        "rows": rows,
-    }
-    if given.json == "-":
-        json.dump(document, sys.stdout, indent=1)
-    elif given.json:
-        Path(given.json).write_text(json.dumps(document, indent=1))
+    write_rows(given.json, "condensation", rows)
     if given.table:
         publish(Path(given.table), "accuracy", table(rows))
 

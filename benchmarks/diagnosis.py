@@ -10,9 +10,6 @@ With `--case` the diagnosis of that case instead, with its whole catalogue and w
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
-import platform
 import resource
 import time
 import tracemalloc
@@ -29,6 +26,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
+from scripts.published import write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -190,16 +188,9 @@ def main() -> None:
     parser.add_argument("--case", type=Path)
     options = parser.parse_args()
     found = rows_of(options.case) if options.case else rows(options.samples)
-    document = {
-        "benchmark": "diagnosis",
-        "computer": platform.processor() or platform.machine(),
-        "date": datetime.date.today().isoformat(),
-        "rows": found,
-    }
     for r in found:
         print(f"{r['case']:34} {r['measure']:34} {r['ours']:10.2f} {r['unit']}   limit {r['peer']:g}")
-    if options.json:
-        options.json.write_text(json.dumps(document, indent=1))
+    write_rows(options.json, "diagnosis", found)
 
 
 if __name__ == "__main__":

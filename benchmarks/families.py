@@ -16,15 +16,11 @@ each within its own range. What a refusal asks for is done and the machine built
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
-import platform
 import re
 import sys
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,6 +35,7 @@ from geom.families.random_geometry import random_geometry
 from geom.machine_file import families, machine_from
 from geom.meshing.partition import partition
 from geom.meshing.voids import filled
+from scripts.published import write_rows
 
 WITHIN = 0.01  # of the exact volume
 WIDER = 1.5  # bounds of ratios, beyond which machines are drawn
@@ -229,10 +226,7 @@ def main() -> None:
             found += rows(family, args.machines, args.prisms, args.partitions, args.beyond)
             for line in found[-20:]:
                 print(f"{line['case']:12} {line['measure']:44} {line['ours']:10.4g}", flush=True)
-    if args.json:
-        computer = f"{platform.machine()}, Python {platform.python_version()}"
-        head = {"benchmark": "families", "computer": computer, "date": datetime.date.today().isoformat()}
-        Path(args.json).write_text(json.dumps({**head, "rows": found}, indent=1))
+    write_rows(args.json, "families", found)
 
 
 if __name__ == "__main__":

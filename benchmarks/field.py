@@ -12,10 +12,8 @@ Before, the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split a
 from __future__ import annotations
 
 import argparse
-import datetime
 import importlib.util
 import json
-import platform
 import resource
 import subprocess
 import sys
@@ -34,6 +32,7 @@ from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
 from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients
+from scripts.published import write_rows
 
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}
@@ -154,16 +153,7 @@ def main() -> None:
     rows = [] if given.stack else shown(motor_rows())
     for case, n in {**SIZES, **(LARGE if given.large else {})}.items():
         rows += shown(stack_rows(case, n))
-    document = {
-        "benchmark": "field",
-        "computer": f"{platform.machine()}, Python {platform.python_version()}",
-        "date": datetime.date.today().isoformat(),
-        "rows": rows,
-    }
-    if given.json == "-":
-        json.dump(document, sys.stdout, indent=1)
-    elif given.json:
-        Path(given.json).write_text(json.dumps(document, indent=1))
+    write_rows(given.json, "field", rows)
 
 
 if __name__ == "__main__":

@@ -11,10 +11,7 @@ that was never meshed. CPU time is that of both processes; wall time depends on 
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import os
-import platform
 import resource
 import subprocess
 import sys
@@ -26,6 +23,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+
+from scripts.published import write_rows
 
 ROOT = Path(__file__).resolve().parents[1]
 HUST, TCLAB = ROOT / "cases" / "hust-ipmsm", ROOT / "cases" / "tclab"
@@ -236,10 +235,7 @@ def main() -> None:
             print(f"| {trial.name} | {took['cpu']:.1f} s | {took['wall']:.1f} s |", flush=True)
             print(f"    {took['answer']}", file=sys.stderr)
             rows += [row(trial.name, unit, float(took[unit])) for unit in ("cpu", "wall")]
-    if options.json:
-        about = {"benchmark": "first_comparison", "computer": platform.machine(), "date": str(datetime.date.today())}
-        options.json.parent.mkdir(parents=True, exist_ok=True)
-        options.json.write_text(json.dumps({**about, "rows": rows}, indent=1))
+    write_rows(options.json, "first_comparison", rows)
 
 
 if __name__ == "__main__":

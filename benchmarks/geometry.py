@@ -9,15 +9,10 @@ Single-thread CPU seconds, best of two. "volume error" is the worst part of the 
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import os
-import platform
-import sys
 import tempfile
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,6 +33,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
+from scripts.published import write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -139,14 +135,8 @@ def main() -> None:
     parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
     target = parser.parse_args().json
     found = [*motor_rows(), *library_rows()]
-    computer = f"{platform.machine()}, Python {platform.python_version()}"
-    document = {"benchmark": "geometry", "computer": computer, "date": datetime.date.today().isoformat(), "rows": found}
-    if target == "-":
-        json.dump(document, sys.stdout, indent=1)
-    elif target:
-        Path(target).write_text(json.dumps(document, indent=1))
+    write_rows(target, "geometry", found)
     if target != "-":
-        print(computer)
         for line in found:
             print(f"{line['case']:36} {line['measure']:30} {line['ours']:12.4g} {line['unit']}")
 

@@ -10,9 +10,6 @@ goes on where it stopped, `--score` only scores. Sizes were measured on machines
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
-import platform
 from pathlib import Path
 
 from hidden import sizes, sums, temper
@@ -22,6 +19,8 @@ from hidden.odds import reliability
 from hidden.page import diagram, markdown
 from hidden.run import Wanted, answered, pairs, run, run_folders
 from hidden.score import met, rows
+
+from scripts.published import write_rows
 
 
 def arguments() -> argparse.Namespace:
@@ -82,17 +81,7 @@ def main() -> None:
             )
             + "\n"
         )
-    if a.json:
-        computer = f"{platform.machine()}, {platform.processor() or platform.system()}"
-        document = {
-            "benchmark": "hidden effects",
-            "computer": computer,
-            "date": datetime.date.today().isoformat(),
-            "seeds": a.seeds,
-            "cases": len(answered(out)),
-            "rows": table,
-        }
-        a.json.write_text(json.dumps(document, indent=1))
+    write_rows(a.json, "hidden effects", table, seeds=a.seeds, cases=len(answered(out)))
 
 
 if __name__ == "__main__":

@@ -11,10 +11,7 @@ three for us, after compiling; ensembles and first calls are wall seconds.
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import os
-import platform
 import subprocess
 import sys
 import tempfile
@@ -31,6 +28,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
+from scripts.published import write_rows
 
 MEMBERS = 1000
 
@@ -207,13 +205,7 @@ def main() -> None:
         rows += found
         for r in found:
             shown(r, sys.stderr if target == "-" else sys.stdout)
-    computer = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
-    document = {"benchmark": "network", "computer": computer, "date": datetime.date.today().isoformat(), "rows": rows}
-    if target == "-":
-        json.dump(document, sys.stdout, indent=1)
-        return
-    if target:
-        Path(target).write_text(json.dumps(document, indent=1))
+    write_rows(target, "network", rows)
 
 
 if __name__ == "__main__":

@@ -13,10 +13,8 @@ of the same mesh, which cuts it anew for every frame.
 from __future__ import annotations
 
 import argparse
-import datetime
 import json
 import os
-import platform
 import sys
 import tempfile
 import time
@@ -32,6 +30,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
+from scripts.published import write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -163,19 +162,12 @@ def main() -> None:
     load = os.getloadavg()[0]
     mesh = build_mesh(load_machine("series-dc-100kw"), size_m=1e-3 * options.size_mm, segments=options.segments)
     nodes, rows = pictures(mesh)
-    document = {
-        "benchmark": "rendering",
-        "computer": f"{platform.machine()}, {platform.processor() or platform.system()}",
-        "date": datetime.date.today().isoformat(),
-        "load": load,
-        "rows": [*rows, *recording(nodes), *click(nodes)],
-    }
-    print(f"{document['computer']}, {os.cpu_count()} cores, load {load:.1f}, {document['date']}")
-    for r in document["rows"]:
+    rows = [*rows, *recording(nodes), *click(nodes)]
+    print(f"{os.cpu_count()} cores, load {load:.1f}")
+    for r in rows:
         peer = f"  {r['peer_name']} {r['peer']:.3g}  ratio {r['ratio']:.2g}" if r["peer"] else ""
         print(f"{r['case']:60s} {r['measure']:20s} {r['ours']:.3g} {r['unit']}{peer}")
-    if options.json:
-        options.json.write_text(json.dumps(document, indent=1))
+    write_rows(options.json, "rendering", rows, load=load)
 
 
 if __name__ == "__main__":

@@ -16,11 +16,8 @@ from __future__ import annotations
 
 import argparse
 import base64
-import datetime
 import io
-import json
 import os
-import platform
 import shutil
 import socket
 import subprocess
@@ -40,6 +37,7 @@ from geom import build_mesh, load_machine
 from geom.plugins import plugins
 from lumped.model.network import Row
 from measured.case import Channel, Test
+from scripts.published import write_rows
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
@@ -316,20 +314,13 @@ def main() -> None:
         print("skipped: needs playwright and a browser: apt-get install -y chromium")
         return
     found = rows(asked.size_mm / 1e3, asked.seconds)
-    document = {
-        "benchmark": "viz",
-        "computer": f"{platform.machine()}, Python {platform.python_version()}",
-        "date": datetime.date.today().isoformat(),
-        "load": os.getloadavg()[0],
-        "rows": found,
-    }
+    load = os.getloadavg()[0]
     for one in found:
         beside = f" {one['peer_name']} {one['peer']:8.3g}" if "peer" in one else ""
         beside += f"  ratio {one['ratio']:.2g}" if "ratio" in one else ""
         beside += f"  {one['remark']}" if "remark" in one else ""
         print(f"{one['measure']:38} {one['ours']:8.3g} {one['unit']:4}{beside}")
-    if asked.json:
-        asked.json.write_text(json.dumps(document, indent=1))
+    write_rows(asked.json, "viz", found, load=load)
 
 
 if __name__ == "__main__":

@@ -8,38 +8,41 @@ mesh = build_mesh(machine, **COARSE)
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from geom.lazy import loaded_when_used
 
-_HOME = {
-    "load_machine": "machine_file",
-    "library": "machine_file",
-    "Machine": "description.machine",
-    "import_step": "machine_file",
-    "import_draft": "machine_file",
-    "Part": "description.part",
-    "Material": "description.materials",
-    "material": "description.materials",
-    "material_table": "description.materials",
-    "winding_conductivity": "description.materials",
-    "build_mesh": "meshing.mesher",
-    "COARSE": "meshing.mesher",
-    "FINE": "meshing.mesher",
-    "mesh_quality": "meshing.quality",
-    "export_cad": "solids.cad",
-    "check_cad": "solids.surfaces",
-    "part_table": "meshing.areas",
-    "PartRow": "meshing.areas",
-    "thumbnail_of": "drawings.gallery",
-    "catalogue": "drawings.gallery",
-    "write_library": "drawings.gallery",
-    "NamedMesh": "meshing.mesh",
-    "Patch": "meshing.mesh",
-    "Contact": "meshing.mesh",
-    "InputError": "errors",
-    "ThermoscopeError": "errors",
-    "MissingDependency": "errors",
-    "read_vtu": "meshing.meshio_io",
-    "write_vtu": "meshing.meshio_io",
-}
-__all__ = [*_HOME]
-__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="geom.")
+if TYPE_CHECKING:
+    from geom.description.machine import Machine as Machine
+    from geom.description.materials import (
+        Material as Material,
+        material as material,
+        material_table as material_table,
+        winding_conductivity as winding_conductivity,
+    )
+    from geom.description.part import Part as Part
+    from geom.drawings.gallery import (
+        catalogue as catalogue,
+        thumbnail_of as thumbnail_of,
+        write_library as write_library,
+    )
+    from geom.errors import (
+        InputError as InputError,
+        MissingDependency as MissingDependency,
+        ThermoscopeError as ThermoscopeError,
+    )
+    from geom.machine_file import (
+        import_draft as import_draft,
+        import_step as import_step,
+        library as library,
+        load_machine as load_machine,
+    )
+    from geom.meshing.areas import PartRow as PartRow, part_table as part_table
+    from geom.meshing.mesh import Contact as Contact, NamedMesh as NamedMesh, Patch as Patch
+    from geom.meshing.mesher import COARSE as COARSE, FINE as FINE, build_mesh as build_mesh
+    from geom.meshing.meshio_io import read_vtu as read_vtu, write_vtu as write_vtu
+    from geom.meshing.quality import mesh_quality as mesh_quality
+    from geom.solids.cad import export_cad as export_cad
+    from geom.solids.surfaces import check_cad as check_cad
+
+__getattr__, __dir__ = loaded_when_used(__name__, __file__)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from geom.lazy import loaded_when_used, typed_homes
+from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
     from lumped.declarations.network import load_circuits as load_circuits, load_network as load_network
@@ -34,6 +34,4 @@ if TYPE_CHECKING:
         Source as Source,
     )
 
-_HOME = {name: module for name, (module, _) in typed_homes(__file__).items() if name not in globals()}
-__all__ = sorted(_HOME)
-__getattr__, __dir__ = loaded_when_used(__name__, _HOME)
+__getattr__, __dir__ = loaded_when_used(__name__, __file__)

@@ -10,7 +10,10 @@ The front page and the page of hust-ipmsm take theirs from one run, so they cann
 from __future__ import annotations
 
 import argparse
+import datetime
 import json
+import os
+import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -48,6 +51,18 @@ def machine_arguments(description: str | None) -> argparse.Namespace:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
     parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
     return parser.parse_args()
+
+
+def write_rows(file: Path | str | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:
+    """The rows of a benchmark with its name, this computer and the date, as JSON; "-" is stdout, None nowhere."""
+    computer = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    head = {"benchmark": benchmark, "computer": computer, "date": datetime.date.today().isoformat(), **more}
+    text = json.dumps({**head, "rows": rows}, indent=1)
+    if str(file) == "-":
+        print(text)
+    elif file:
+        Path(file).parent.mkdir(parents=True, exist_ok=True)
+        Path(file).write_text(text)
 
 
 def publish(page: Path, marker: str, table: str) -> None:

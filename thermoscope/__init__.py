@@ -18,69 +18,38 @@ right.
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.rooms import register_rooms
 
 if TYPE_CHECKING:
-    from geom.errors import InputError, MissingDependency, ThermoscopeError
-    from lumped.declarations.network import load_network, read_network
-    from lumped.integration.record import Record
-    from lumped.integration.simulate import Run, simulate
-    from lumped.integration.steady import Steady, steady
-    from lumped.model.network import Network, Parameter
-    from thermoscope.interface.case import Case, effects, open
-    from thermoscope.interface.machine import Field, Machine, build, machines
-    from validation.comparison.compare import Comparison
-    from validation.effects.base import Effect
-    from validation.inference.result import Candidate, Diagnosis
-    from validation.revision.revise import Revision
-
-__all__ = [
-    "Candidate",
-    "Case",
-    "Comparison",
-    "Diagnosis",
-    "Effect",
-    "Field",
-    "InputError",
-    "Machine",
-    "MissingDependency",
-    "Network",
-    "Parameter",
-    "Record",
-    "Revision",
-    "Run",
-    "Steady",
-    "ThermoscopeError",
-    "build",
-    "effects",
-    "load_network",
-    "machines",
-    "open",
-    "read_network",
-    "simulate",
-    "steady",
-]
+    from geom.errors import (
+        InputError as InputError,
+        MissingDependency as MissingDependency,
+        ThermoscopeError as ThermoscopeError,
+    )
+    from lumped.declarations.network import load_network as load_network, read_network as read_network
+    from lumped.integration.record import Record as Record
+    from lumped.integration.simulate import Run as Run, simulate as simulate
+    from lumped.integration.steady import Steady as Steady, steady as steady
+    from lumped.model.network import Network as Network, Parameter as Parameter
+    from thermoscope.interface.case import Case as Case, effects as effects, open as open
+    from thermoscope.interface.machine import Field as Field, Machine as Machine, build as build, machines as machines
+    from validation.comparison.compare import Comparison as Comparison
+    from validation.effects.base import Effect as Effect
+    from validation.inference.result import Candidate as Candidate, Diagnosis as Diagnosis
+    from validation.revision.revise import Revision as Revision
 
 register_rooms()
 
 
 def __getattr__(name: str) -> Any:
-    if name not in __all__:
-        from geom.plugins import plugins
+    from geom.lazy import loaded_when_used
+    from geom.plugins import plugins
 
-        offered = plugins("names")  # of extras, such as `compare_designs`
-        if name in offered:
-            return offered[name]
-        raise AttributeError(
-            f"module 'thermoscope' has no attribute '{name}'; known: {', '.join([*__all__, *offered])}"
-        )
-    from geom.lazy import typed_homes
-
-    return getattr(import_module(typed_homes(__file__)[name][0]), name)
+    # Extras add names, too, such as `compare_designs`.
+    return loaded_when_used(__name__, __file__, lambda: plugins("names"))[0](name)
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return list(__getattr__("__all__"))

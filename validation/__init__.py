@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from geom.lazy import loaded_when_used, typed_homes
+from geom.lazy import loaded_when_used
 
 if TYPE_CHECKING:
     from validation.comparison.compare import Comparison as Comparison, compare as compare
@@ -22,6 +22,4 @@ if TYPE_CHECKING:
     from validation.inference.result import Diagnosis as Diagnosis
     from validation.revision.revise import Revision as Revision, add as add, calibrate as calibrate, remove as remove
 
-_HOME = {name: module for name, (module, _) in typed_homes(__file__).items() if name not in globals()}
-__all__ = sorted(_HOME)
-__getattr__, __dir__ = loaded_when_used(__name__, _HOME)
+__getattr__, __dir__ = loaded_when_used(__name__, __file__)

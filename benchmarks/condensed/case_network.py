@@ -9,22 +9,18 @@ from 30 s to two hours, in percent of the machine's largest rise at that time. R
 
 from __future__ import annotations
 
-import datetime
 import json
-import platform
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
 from lumped.model.network import Array, Network
-from scripts.published import machine_arguments, publish
+from scripts.published import machine_arguments, publish, write_rows
 from thermoscope.case_folder.folder import load_machine_file
 
 PAGE = Path("docs/condensation.md")
@@ -104,10 +100,7 @@ def main() -> None:
             found.append(row)
             case = f"{machine}, {row['states']} states, {row['case']}, {row['kind']}"
             print(f"{case:70} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
-        if given.json:
-            computer = f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}"
-            head = {"benchmark": "case_network", "computer": computer, "date": datetime.date.today().isoformat()}
-            given.json.write_text(json.dumps({**head, "rows": found}, indent=1))
+        write_rows(given.json, "case_network", found)
     if given.page:
         publish(PAGE, "case-network", table(found, max))
         publish(PAGE, "small-network", table(found, min))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import halfnorm
 
-from thermoscope.plugin import BLUE, LIGHT, VERMILION, paper
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,25 +21,24 @@ if TYPE_CHECKING:
     from extras.bench.measuring.drift import Drift
     from extras.bench.steady_law.law import SteadyLaw
     from extras.bench.steady_law.steady_tests import SteadyTests
-    from thermoscope.plugin import BenchRun
 
 Row = Mapping[str, Any]
 TOP = 8  # bars that can be read
-SERIES = (BLUE, VERMILION, "#009e73", "#cc79a7", "#e69f00", "#56b4e9", LIGHT.ink)  # Okabe and Ito
+SERIES = (th.BLUE, th.VERMILION, "#009e73", "#cc79a7", "#e69f00", "#56b4e9", th.LIGHT.ink)  # Okabe and Ito
 LENTH = (("margin", "Lenth, each", "--"), ("simultaneous", "Lenth, all at once", ":"))
 
 
-@paper.styled
+@th.paper.styled
 def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path | None = None) -> Figure:
     """Half-normal plot and Pareto chart of the effects on one response, with Lenth's limits.
 
     effects : {"margin", "simultaneous", "effects": [{"effect", "words", "value", "active"}]}, as `screen` gives it
     """
     rows = sorted(effects["effects"], key=lambda e: abs(e["value"]))
-    figure, (left, right) = paper.subplots(9.6, 4.0, columns=2)
+    figure, (left, right) = th.paper.subplots(9.6, 4.0, columns=2)
     size = np.array([abs(e["value"]) for e in rows])
     x = halfnorm.ppf((np.arange(len(rows)) + 0.5) / len(rows))
-    left.scatter(size, x, s=22, c=[BLUE if e["active"] else LIGHT.faint for e in rows], zorder=3)
+    left.scatter(size, x, s=22, c=[th.BLUE if e["active"] else th.LIGHT.faint for e in rows], zorder=3)
     for i in [i for i, e in enumerate(rows) if e["active"]][-TOP:]:
         left.annotate(rows[i]["effect"], (size[i], x[i]), (6, 0), textcoords="offset points", va="center", fontsize=8)
     left.set(ylabel="half-normal quantile", ylim=(0, None))
@@ -47,66 +46,66 @@ def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path 
         right,
         [e["words"] for e in rows[-TOP:]],
         [abs(e["value"]) for e in rows[-TOP:]],
-        [BLUE if e["active"] else LIGHT.faint for e in rows[-TOP:]],
+        [th.BLUE if e["active"] else th.LIGHT.faint for e in rows[-TOP:]],
     )
     for ax in (left, right):
         for key, words, line in LENTH:
-            ax.axvline(effects[key], color=LIGHT.ink, lw=1.0, ls=line, label=words)
+            ax.axvline(effects[key], color=th.LIGHT.ink, lw=1.0, ls=line, label=words)
         ax.set_xlabel(f"|high - low| ({unit})")
     left.legend(fontsize=8, frameon=False, loc="lower right")
     left.set_title(title)
-    return paper.save(figure, png)
+    return th.paper.save(figure, png)
 
 
-@paper.styled
+@th.paper.styled
 def ranking(rows: Sequence[Row], *, measure: str, title: str = "", png: str | Path | None = None) -> Figure:
     """Factors by their share or size, with 95 % intervals: [{"factor", "measure", "conf95"}], as Morris or Sobol."""
     up = sorted(rows, key=lambda r: r["measure"])
-    figure, (ax,) = paper.subplots(6.4, 0.4 * len(up) + 1.2)
+    figure, (ax,) = th.paper.subplots(6.4, 0.4 * len(up) + 1.2)
     sizes = [r["measure"] for r in up]
-    _bars(ax, [r["factor"] for r in up], sizes, [BLUE] * len(up))
-    ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=LIGHT.ink, lw=1.0)
+    _bars(ax, [r["factor"] for r in up], sizes, [th.BLUE] * len(up))
+    ax.errorbar(sizes, range(len(up)), xerr=[r["conf95"] for r in up], fmt="none", ecolor=th.LIGHT.ink, lw=1.0)
     ax.set(xlabel=measure, title=title, xlim=(0, None))
-    return paper.save(figure, png)
+    return th.paper.save(figure, png)
 
 
-@paper.styled
+@th.paper.styled
 def two_tests(result: Drift, *, png: str | Path | None = None) -> Figure:
     """A panel per sensor, what changed first: the earlier test with the band of equal ones, and the later test."""
     first = [c.channel for c in result.changes]
     sensors = sorted(result.sensors, key=lambda s: first.index(s.changes[0].channel))[:TOP]
     titles = f"{result.later} against {result.earlier}: {result.verdict}", "time (min)", "rise over ambient (K)"
-    figure, axes = paper.panels(len(sensors), 3, (3.4, 2.4), *titles)
+    figure, axes = th.paper.panels(len(sensors), 3, (3.4, 2.4), *titles)
     for ax, s in zip(axes, sensors, strict=False):
         changed = any(c.verdict == "changed" for c in s.changes)
-        ax.fill_between(s.minutes, s.earlier - s.band, s.earlier + s.band, color=LIGHT.faint, alpha=0.3, lw=0)
-        ax.plot(s.minutes, s.earlier, color=LIGHT.ink, lw=1.0, label=result.earlier)
-        ax.plot(s.minutes, s.later, color=VERMILION if changed else BLUE, label=result.later)
+        ax.fill_between(s.minutes, s.earlier - s.band, s.earlier + s.band, color=th.LIGHT.faint, alpha=0.3, lw=0)
+        ax.plot(s.minutes, s.earlier, color=th.LIGHT.ink, lw=1.0, label=result.earlier)
+        ax.plot(s.minutes, s.later, color=th.VERMILION if changed else th.BLUE, label=result.later)
         ax.set_title(s.changes[0].place)
         rise = f"{100 * s.changes[0].change:+.1f} ± {100 * s.changes[0].U95:.1f} %"
         ax.set_title(rise, loc="right", fontweight="normal", fontsize=8.5)
     axes[0].legend(fontsize=8, frameon=False, loc="lower right")
-    return paper.save(figure, png)
+    return th.paper.save(figure, png)
 
 
-@paper.styled
-def odds_over_time(run: BenchRun, *, png: str | Path | None = None) -> Figure:
+@th.paper.styled
+def odds_over_time(run: th.BenchRun, *, png: str | Path | None = None) -> Figure:
     """The odds of a live bench over bench time, and the set points beneath, each as a share of its largest."""
-    figure, (upper, lower) = paper.subplots(7.2, 4.6, rows=2)
+    figure, (upper, lower) = th.paper.subplots(7.2, 4.6, rows=2)
     for name, minutes, percent in run.odds:
         upper.plot(minutes, percent, label=name)
     for name, minutes, percent in run.set_points:
         lower.step(minutes, percent, where="post", label=name)
-    upper.axhline(90.0, color=LIGHT.faint, lw=1.0, ls="--")
+    upper.axhline(90.0, color=th.LIGHT.faint, lw=1.0, ls="--")
     upper.set(ylabel="odds (%)", ylim=(0, 101))
     lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
     for ax in (upper, lower):
         ax.set_xlim(0.0, run.end)
         ax.legend(fontsize=8, frameon=False, loc="center left")
-    return paper.save(figure, png)
+    return th.paper.save(figure, png)
 
 
-@paper.styled
+@th.paper.styled
 def cooling_law(law: SteadyLaw, further: SteadyTests | None = None, *, png: str | Path | None = None) -> Figure:
     """Conductance to the coolant over the input with most levels: a panel per inlet, a line per level of the others.
 
@@ -125,7 +124,7 @@ def cooling_law(law: SteadyLaw, further: SteadyTests | None = None, *, png: str 
         f"{name} ({unit})",
         "W/K to the coolant",
     )
-    figure, axes = paper.panels(len(inlets), 3, (3.8, 3.2), *words)
+    figure, axes = th.paper.panels(len(inlets), 3, (3.8, 3.2), *words)
     for ax, inlet in zip(axes, inlets, strict=True):
         lines = np.unique(np.vstack(groups)[np.concatenate(groups)[:, 0] == inlet], axis=0)
         for colour, group in zip(SERIES, lines, strict=False):
@@ -143,7 +142,7 @@ def cooling_law(law: SteadyLaw, further: SteadyTests | None = None, *, png: str 
         ax.set(title=f"coolant {inlet:g} degC", ylim=(0.0, None))
     if units:
         axes[0].legend(fontsize=8, frameon=False)
-    return paper.save(figure, png)
+    return th.paper.save(figure, png)
 
 
 def _bars(ax: Axes, words: Sequence[str], sizes: Sequence[float], colours: Sequence[str]) -> None:

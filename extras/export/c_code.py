@@ -10,24 +10,7 @@ import numpy as np
 
 from extras.export.flat import Flat, flat
 from extras.export.model import Model, Output, Signal
-from thermoscope.plugin import (
-    COLD,
-    CONVERGED_K,
-    END,
-    FILMS,
-    FIRST_C,
-    FULL_UNITS,
-    HOT,
-    LAST,
-    LEAST,
-    PLACE,
-    POINT,
-    ROW,
-    STEP_K,
-    c_comment,
-    stages,
-    starts,
-)
+from thermoscope import plugin as th
 
 RUNTIME = Path(__file__).resolve().parent / "runtime"
 SOURCES = ("thermal_network.h", "thermal_network.c")
@@ -56,21 +39,21 @@ def sizes(model: Model) -> str:
         "ROWS": T.begin.size - 1,
     }
     numbers = {
-        "C21": stages.C21,
-        "C31": stages.C31,
-        "C32": stages.C32,
-        "SLOPE2": stages.SLOPE2,
-        "END1": stages.END1,
-        "END2": stages.END2,
-        "END3": stages.END3,
+        "C21": th.stages.C21,
+        "C31": th.stages.C31,
+        "C32": th.stages.C32,
+        "SLOPE2": th.stages.SLOPE2,
+        "END1": th.stages.END1,
+        "END2": th.stages.END2,
+        "END3": th.stages.END3,
         "ERROR_K": model.tolerance[0],
         "ERROR_SHARE": model.tolerance[1],
-        "REST_K": CONVERGED_K,
+        "REST_K": th.CONVERGED_K,
     }
     lines = [f"#define THERMAL_{k} {v}" for k, v in counts.items()]
     lines += [f"#define THERMAL_{k} {v:.17g}" for k, v in numbers.items()]
     macro = "THERMAL_NETWORK_SIZES_H"
-    return "\n".join([c_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
+    return "\n".join([th.c_comment(heading(model)), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def data(model: Model) -> str:
@@ -86,30 +69,30 @@ def data(model: Model) -> str:
         ints("ENTRY_START", T.begin),
         ints("ENTRY_AT", T.at),
         reals("ENTRY_WEIGHT", T.weight),
-        ints("ROW_FIRST", T.part[:, ROW]),
-        ints("ROW_END", T.part[:, END]),
+        ints("ROW_FIRST", T.part[:, th.ROW]),
+        ints("ROW_END", T.part[:, th.END]),
         ints("ROW", T.row),
-        ints("HOT", T.part[:, HOT]),
-        ints("COLD", T.part[:, COLD]),
+        ints("HOT", T.part[:, th.HOT]),
+        ints("COLD", T.part[:, th.COLD]),
         ints("LAW", T.kind[:, 0]),
         reals("LAW_A", T.par[:, 0]),
         reals("LAW_B", T.par[:, 1]),
-        ints("POINT_START", T.part[:, POINT]),
-        ints("POINT_END", T.part[:, LAST]),
+        ints("POINT_START", T.part[:, th.POINT]),
+        ints("POINT_END", T.part[:, th.LAST]),
         reals("POINT_X", T.point[:, 0]),
         reals("POINT_Y", T.point[:, 1]),
-        ints("PLACE", T.part[:, PLACE]),
+        ints("PLACE", T.part[:, th.PLACE]),
         ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
         reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
         *_functions(F),
-        ints("OUTPUT_START", starts([r.index for r in rows])),
+        ints("OUTPUT_START", th.starts([r.index for r in rows])),
         ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)),
-        f"#define FILMS {FILMS}",
-        f"#define FILM_FIRST ((thermal_real){FIRST_C})",
-        f"#define FILM_STEP ((thermal_real){STEP_K})",
-        f"#define LEAST ((thermal_real){LEAST})",
-        f"#define FULL_UNITS ((thermal_real){FULL_UNITS})",
+        f"#define FILMS {th.FILMS}",
+        f"#define FILM_FIRST ((thermal_real){th.FIRST_C})",
+        f"#define FILM_STEP ((thermal_real){th.STEP_K})",
+        f"#define LEAST ((thermal_real){th.LEAST})",
+        f"#define FULL_UNITS ((thermal_real){th.FULL_UNITS})",
     ]
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
 

@@ -11,22 +11,7 @@ import numpy as np
 from extras.export.c_code import heading
 from extras.export.model import Model, Output
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum, Tabulated
-from thermoscope.plugin import (
-    COLD,
-    END,
-    FILM,
-    FILMS,
-    FIRST_C,
-    HOT,
-    LAST,
-    PLACE,
-    POINT,
-    ROW,
-    STEP_K,
-    STREAM,
-    Array,
-    Terms,
-)
+from thermoscope import plugin as th
 
 KINDS: dict[type, str] = {
     Powered: "power",
@@ -72,21 +57,21 @@ def _output(o: Output) -> dict[str, Any]:
 
 def _term(model: Model, e: int) -> dict[str, Any]:
     T = model.terms
-    first, end = T.part[e, [ROW, END]]
+    first, end = T.part[e, [th.ROW, th.END]]
     entries = slice(T.begin[first], T.begin[end])
     return {
         "name": model.term_names[e],
         "row": np.repeat(T.row[first:end], np.diff(T.begin[first : end + 1])),
         "col": T.at[entries],
         "val": T.weight[entries],
-        "hot": _weighted_sum(T, T.part[e, HOT]),
-        "cold": _weighted_sum(T, T.part[e, COLD]),
+        "hot": _weighted_sum(T, T.part[e, th.HOT]),
+        "cold": _weighted_sum(T, T.part[e, th.COLD]),
         "law": _law(model, e),
         "factor": factor(model.factors[e]),
     }
 
 
-def _weighted_sum(T: Terms, row: int) -> dict[str, Any]:
+def _weighted_sum(T: th.Terms, row: int) -> dict[str, Any]:
     some = slice(T.begin[row], T.begin[row + 1])
     return {"col": T.at[some], "val": T.weight[some]}
 
@@ -94,24 +79,24 @@ def _weighted_sum(T: Terms, row: int) -> dict[str, Any]:
 def _law(model: Model, e: int) -> dict[str, Any]:
     T = model.terms
     code, (a, b) = int(T.kind[e, 0]), T.par[e]
-    points = T.point[slice(*T.part[e, [POINT, LAST]])]
+    points = T.point[slice(*T.part[e, [th.POINT, th.LAST]])]
     out = {"kind": LAWS[code], "a": float(a), "b": float(b), "x": points[:, 0], "y": points[:, 1]}
-    if code == FILM:
+    if code == th.FILM:
         return {**out, **_films(points)}
-    return {**out, **_stream(model, e, points)} if code == STREAM else out
+    return {**out, **_stream(model, e, points)} if code == th.STREAM else out
 
 
-def _films(points: Array) -> dict[str, Any]:
-    films = FIRST_C + STEP_K * np.arange(FILMS)
-    return {"x": points[: len(points) // FILMS, 0], "films": films, "y": points[:, 1].reshape(FILMS, -1)}
+def _films(points: th.Array) -> dict[str, Any]:
+    films = th.FIRST_C + th.STEP_K * np.arange(th.FILMS)
+    return {"x": points[: len(points) // th.FILMS, 0], "films": films, "y": points[:, 1].reshape(th.FILMS, -1)}
 
 
-def _stream(model: Model, e: int, points: Array) -> dict[str, Any]:
+def _stream(model: Model, e: int, points: th.Array) -> dict[str, Any]:
     """u = |input|, or `size` without one: at ln(u) - shift over hot + cold; b: see StreamTable; or still air."""
     T = model.terms
-    of, size = model.sizes[T.part[e, PLACE] - len(model.factors)]
+    of, size = model.sizes[T.part[e, th.PLACE] - len(model.factors)]
     nt, nd = int(T.par[e, 0]), int(max(-T.par[e, 1], 0.0))
-    end = len(points) - FILMS * nd - (nd > 0)
+    end = len(points) - th.FILMS * nd - (nd > 0)
     grid = points[nt : nt + (end - nt) // (1 + nt), 0]
     y = points[nt + len(grid) : end, 1].reshape(nt, -1)
     still = {"still": _films(points[end:-1]), "exponent": points[-1, 0]} if nd else {}

@@ -14,7 +14,7 @@ from extras.export.c_code import RUNTIME, c_files
 from extras.export.compilers import here, library
 from extras.export.model import Model
 from thermoscope import Network, Record, ThermoscopeError, simulate
-from thermoscope.plugin import Array, initial_state
+from thermoscope import plugin as th
 
 AGREES_K = 0.05  # largest difference to the simulation
 
@@ -30,7 +30,7 @@ class Compiled:
             file.write_bytes(library(files, here(), extra))
             self.code = ctypes.CDLL(str(file))
 
-    def run(self, time: Array, u: Array, x0: Array) -> Array:
+    def run(self, time: th.Array, u: th.Array, x0: th.Array) -> th.Array:
         """(n_time, n_output) degC from signals u (n_time, n_signal) and first states (n_state,)."""
         y = np.empty((time.size, len(self.model.outputs)))
         arrays = [np.ascontiguousarray(a, float) for a in (time, u, x0)]
@@ -40,9 +40,9 @@ class Compiled:
         return y
 
 
-def signals_of(model: Model, record: Record) -> Array:
+def signals_of(model: Model, record: Record) -> th.Array:
     """(n_time, n_signal)"""
-    signals: Mapping[str, Array | float] = {**record.inputs, **record.boundaries}
+    signals: Mapping[str, th.Array | float] = {**record.inputs, **record.boundaries}
     return np.column_stack(
         [np.broadcast_to(np.asarray(signals[s.name], float), record.time.shape) for s in model.signals]
     )
@@ -57,5 +57,5 @@ def difference(code: Compiled, network: Network, record: Record, values: Mapping
     """Largest difference (K) between the code and the simulation over a record."""
     model = code.model
     run = simulate(network, record, values, [o.row for o in model.outputs])
-    y = code.run(record.time, signals_of(model, record), initial_state(network, record.initial))
+    y = code.run(record.time, signals_of(model, record), th.initial_state(network, record.initial))
     return float(np.abs(y - run.y).max())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum
-from thermoscope.plugin import Array, Ints, starts
+from thermoscope import plugin as th
 
 POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED = range(5)
 
@@ -21,13 +21,13 @@ class Flat:
     parameters (nf, 2) : (at, exponent), (offset, slope) or (way, 0);  x, y : of all tables
     """
 
-    product_start: Ints
-    coefficient: Array
-    function_start: Ints
-    function: Ints
-    parameters: Array
-    x: Array
-    y: Array
+    product_start: th.Ints
+    coefficient: th.Array
+    function_start: th.Ints
+    function: th.Ints
+    parameters: th.Array
+    x: th.Array
+    y: th.Array
 
 
 def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
@@ -36,12 +36,12 @@ def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
     functions = [f for p in products for f in p.functions]
     xs = [_points(f)[0] for f in functions]
     ys = [_points(f)[1] for f in functions]
-    at_x, at_y = starts(xs), starts(ys)
+    at_x, at_y = th.starts(xs), th.starts(ys)
     table = [_integers(f, signals, at_x[i], at_y[i]) for i, f in enumerate(functions)]
     return Flat(
-        starts(factors),
+        th.starts(factors),
         np.array([p.coefficient for p in products]),
-        starts([p.functions for p in products]),
+        th.starts([p.functions for p in products]),
         np.array(table, np.int64).reshape(-1, 8),
         np.array([_numbers(f) for f in functions], float).reshape(-1, 2),
         np.concatenate([np.empty(0), *xs]),

@@ -17,7 +17,7 @@ from extras.export.c_code import RUNTIME, c_files, heading
 from extras.export.compilers import PLATFORMS, Platform, here, library
 from extras.export.model import Model, Signal
 from thermoscope import MissingDependency
-from thermoscope.plugin import visible, xml_text
+from thermoscope import plugin as th
 
 STILL = (1980, 1, 1, 0, 0, 0)  # the date of every member: equal models give equal files
 TOOL = "thermoscope"
@@ -113,7 +113,7 @@ def fmu(model: Model, version: int, targets: Sequence[Platform] = PLATFORMS) -> 
             _put(archive, f"sources/{file}", text)
         if version == 3:
             _put(archive, "sources/buildDescription.xml", _build(name, files))
-        _put(archive, "documentation/README.txt", "\n".join([*map(visible, heading(model)), ""]))
+        _put(archive, "documentation/README.txt", "\n".join([*map(th.visible, heading(model)), ""]))
     return out.getvalue(), folders
 
 
@@ -126,7 +126,7 @@ def _put(archive: zipfile.ZipFile, name: str, content: str | bytes) -> None:
 def _text(root: Element) -> bytes:
     indent(root)
     for element in root.iter():
-        element.attrib = {key: xml_text(value) for key, value in element.attrib.items()}
+        element.attrib = {key: th.xml_text(value) for key, value in element.attrib.items()}
     return bytes(tostring(root, "UTF-8", xml_declaration=True))
 
 

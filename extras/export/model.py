@@ -11,28 +11,7 @@ from numpy.typing import NDArray
 from extras.export.products import Product, Sum
 from extras.export.tables import Ranges, factors
 from thermoscope import InputError, Network
-from thermoscope.plugin import LAW_RUNNING as RUNNING
-from thermoscope.plugin import (
-    QUANTITIES,
-    RUN,
-    Array,
-    Assembly,
-    Folder,
-    Ints,
-    Reference,
-    Row,
-    Terms,
-    assembly,
-    capacity_multipliers,
-    errors,
-    mean_rows,
-    model_of,
-    multipliers,
-    sensors,
-    standing_reference,
-    state_units,
-    suggestion,
-)
+from thermoscope import plugin as th
 
 USUAL_C = 20.0  # where a run starts unless it is told
 WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded
@@ -58,7 +37,7 @@ class Output:
     """
 
     name: str
-    row: Row
+    row: th.Row
     limit: float | None = None
     error_K: float | None = None
     role: str = ""
@@ -77,18 +56,18 @@ class Model:
     revision: int
     effects: tuple[str, ...]
     states: tuple[str, ...]
-    C: Array
-    K0: Array
-    terms: Terms
+    C: th.Array
+    K0: th.Array
+    terms: th.Terms
     term_names: tuple[str, ...]
     factors: tuple[Sum, ...]
     inputs: tuple[Signal, ...]
     boundaries: tuple[Signal, ...]
     outputs: tuple[Output, ...]
-    unit: Array
-    node: Ints
+    unit: th.Array
+    node: th.Ints
     sizes: tuple[tuple[str | None, float], ...] = ()
-    tolerance: tuple[float, float] = (RUN.error_K, RUN.error_share)
+    tolerance: tuple[float, float] = (th.RUN.error_K, th.RUN.error_share)
     initial_degC: float = USUAL_C
 
     @property
@@ -97,17 +76,17 @@ class Model:
         return (*self.inputs, *self.boundaries)
 
 
-def exported(folder: Folder, limits: Mapping[str, float]) -> Model:
+def exported(folder: th.Folder, limits: Mapping[str, float]) -> Model:
     """The model of a case as it stands. Raises InputError for a law that has no form outside this tool."""
-    network, values = model_of(folder)
-    model = packed(network, values, standing_reference(folder.case), outputs(network, folder, limits))
+    network, values = th.model_of(folder)
+    model = packed(network, values, th.standing_reference(folder.case), outputs(network, folder, limits))
     effects = tuple(e.name for e in folder.case.model.effects)
     return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects)
 
 
-def packed(network: Network, values: Mapping[str, float], reference: Reference, looks: Sequence[Output]) -> Model:
+def packed(network: Network, values: Mapping[str, float], reference: th.Reference, looks: Sequence[Output]) -> Model:
     """A network at some values of its parameters; reference: which ranges of inputs it was fitted over."""
-    every, m = assembly(network), multipliers(network, values)
+    every, m = th.assembly(network), th.multipliers(network, values)
     acting = np.array([m.get(name, 1.0) for name in every.names])
     steady = np.array([not p.bends and not p.law.reads for p in every.patterns], bool)
     live = ~steady & (acting != 0.0)
@@ -121,7 +100,7 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
         0,
         (),
         network.states,
-        network.C * capacity_multipliers(network, m),
+        network.C * th.capacity_multipliers(network, m),
         every.matrix(acting * np.array(constant)),
         every.packed(live, steady),
         tuple(n for n, on in zip(every.names, live, strict=True) if on),
@@ -129,14 +108,14 @@ def packed(network: Network, values: Mapping[str, float], reference: Reference, 
         inputs,
         tuple(Signal(b, "degC", *_range(reference, b)) for b in network.boundaries),
         tuple(looks),
-        state_units(network),
+        th.state_units(network),
         (~hidden).astype(np.int64),
         tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws),
         initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
     )
 
 
-def _read(every: Assembly, live: NDArray[np.bool_]) -> list[str]:
+def _read(every: th.Assembly, live: NDArray[np.bool_]) -> list[str]:
     return sorted({name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads})
 
 
@@ -147,11 +126,11 @@ def reach_of(signal: Signal) -> float:
 
 def _reaches(signals: Sequence[Signal]) -> Ranges:
     """Input -> how far tables have to reach; what marks a single test is no input."""
-    reach = {s.name: (s, reach_of(s)) for s in signals if not s.name.startswith(RUNNING)}
+    reach = {s.name: (s, reach_of(s)) for s in signals if not s.name.startswith(th.LAW_RUNNING)}
     return {name: (-end if s.low and s.low < 0.0 else 0.0, end) for name, (s, end) in reach.items()}
 
 
-def _factors(every: Assembly, live: NDArray[np.bool_], acting: Array, reach: Ranges) -> list[Sum]:
+def _factors(every: th.Assembly, live: NDArray[np.bool_], acting: th.Array, reach: Ranges) -> list[Sum]:
     pairs = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
     return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in pairs]
 
@@ -160,7 +139,7 @@ def _times(one: Product, by: float) -> Product:
     return replace(one, coefficient=by * one.coefficient)
 
 
-def _range(reference: Reference, name: str) -> tuple[float | None, float | None]:
+def _range(reference: th.Reference, name: str) -> tuple[float | None, float | None]:
     one = reference.signals.get(name)
     return (None, None) if one is None else (one.low, one.high)
 
@@ -168,19 +147,21 @@ def _range(reference: Reference, name: str) -> tuple[float | None, float | None]
 def unit_of(network: Network, name: str) -> str:
     """The unit of an input, as memory holds it; "1" where nobody says."""
     quantity = network.measures(name)
-    units = QUANTITIES[quantity].units if quantity in QUANTITIES else {}
+    units = th.QUANTITIES[quantity].units if quantity in th.QUANTITIES else {}
     return next(iter(units), "1")
 
 
-def outputs(network: Network, folder: Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
+def outputs(network: Network, folder: th.Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
     """All named temperatures with their limits and, where a sensor sits, its error when the model was fitted."""
     case = folder.case
     of_sensors = (
-        errors(case).sensor_errors if case.model.reference is None and case.tests else standing_reference(case).errors
+        th.errors(case).sensor_errors
+        if case.model.reference is None and case.tests
+        else th.standing_reference(case).errors
     )
     error_of = {f"sensor {name}": error for name, error in of_sensors.items()}
-    rows = mean_rows(network) | {f"sensor {n}": c.row for n, c in sorted(sensors(folder).items())}
+    rows = th.mean_rows(network) | {f"sensor {n}": c.row for n, c in sorted(th.sensors(folder).items())}
     for place in limits:
         if place not in rows:
-            raise InputError(f"no temperature '{place}' to limit", "--limit", suggestion(place, rows))
+            raise InputError(f"no temperature '{place}' to limit", "--limit", th.suggestion(place, rows))
     return tuple(Output(n, row, limits.get(n), *error_of.get(n, (None, ""))) for n, row in rows.items())

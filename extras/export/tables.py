@@ -13,7 +13,7 @@ import numpy as np
 from extras.export.expansion import expanded
 from extras.export.products import Mapped, Product, Sum, Tabulated
 from thermoscope import InputError
-from thermoscope.plugin import FARTHEST, Array, ExponentError, Inputs, Law, within_silence
+from thermoscope import plugin as th
 
 Ranges = Mapping[str, tuple[float, float]]
 TOLERANCE = 2e-4  # of the largest factor: a table adds as little as the parabolas of a simulation miss
@@ -23,7 +23,7 @@ DOUBLINGS = 10  # a thousand times the level: a root of the third order has grow
 CHECKED = np.array([0.25, 0.5, 0.75])  # of every cell
 
 
-def factors(name: str, law: Law, ranges: Ranges) -> Sum:
+def factors(name: str, law: th.Law, ranges: Ranges) -> Sum:
     """The input factor of the law of a link or source; tables of unknown laws reach over the given ranges of inputs.
 
     Raises InputError for a law that has no such form.
@@ -33,22 +33,22 @@ def factors(name: str, law: Law, ranges: Ranges) -> Sum:
     for one in law.reads:
         if one not in ranges:
             raise _refused(f"'{name}' follows '{one}', which belongs to one test and not to the machine")
-    if isinstance(law, ExponentError):
+    if isinstance(law, th.ExponentError):
         turn = _line(name, ExponentRatio(law), law.input, {law.input: saturated(law, *ranges[law.input])})
         return tuple(p.times(turn) for p in factors(name, law.base, ranges))
     expansion = expanded(law)
     return _table(name, law, ranges) if expansion is None else expansion
 
 
-def saturated(law: ExponentError, low: float, high: float) -> tuple[float, float]:
+def saturated(law: th.ExponentError, low: float, high: float) -> tuple[float, float]:
     """The range of an input wide enough that beyond it the ratio of an exponent does not change, as far as it ever is.
 
     A table that ended with the tests' range would be another model beyond it.
     """
     ratio, end = ExponentRatio(law), max(abs(low), abs(high), law.reference[law.input])
-    with within_silence():  # a table reaches beyond what correlations know; whoever runs there is told
+    with th.within_silence():  # a table reaches beyond what correlations know; whoever runs there is told
         for _ in range(DOUBLINGS):
-            if float(np.abs(ratio.factor({law.input: np.array([end])}))[0]) >= FARTHEST:
+            if float(np.abs(ratio.factor({law.input: np.array([end])}))[0]) >= th.FARTHEST:
                 break
             end *= 2.0
     return (-end if low < 0.0 else 0.0), end
@@ -59,25 +59,25 @@ def _refused(what: str) -> InputError:
 
 
 @dataclass(frozen=True)
-class ExponentRatio(Law):
+class ExponentRatio(th.Law):
     """By what an exponent of one input moves a law, over the law itself; it depends on that input alone."""
 
-    error: ExponentError
+    error: th.ExponentError
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
         return (self.error.input,)
 
-    def factor(self, inputs: Inputs) -> Array | float:
+    def factor(self, inputs: th.Inputs) -> th.Array | float:
         now = np.abs(np.asarray(inputs[self.error.input], float))
         level = {k: np.full_like(now, v) for k, v in self.error.reference.items()}
         at, right = (
             np.abs(np.asarray(self.error.base.size(u), float)) for u in ({**level, self.error.input: now}, level)
         )
-        return np.asarray(np.clip(np.log(np.maximum(at, 1e-12 * right) / right), -FARTHEST, FARTHEST))
+        return np.asarray(np.clip(np.log(np.maximum(at, 1e-12 * right) / right), -th.FARTHEST, th.FARTHEST))
 
 
-def _table(name: str, law: Law, ranges: Ranges) -> Sum:
+def _table(name: str, law: th.Law, ranges: Ranges) -> Sum:
     reads = tuple(dict.fromkeys(law.reads))
     if len(reads) == 1:
         return (Product(1.0, (_line(name, law, reads[0], ranges),)),)
@@ -91,7 +91,7 @@ def _table(name: str, law: Law, ranges: Ranges) -> Sum:
     )
 
 
-def _line(name: str, law: Law, of: str, ranges: Ranges) -> Tabulated:
+def _line(name: str, law: th.Law, of: str, ranges: Ranges) -> Tabulated:
     """A law of one input, its table refined until it is within TOLERANCE everywhere."""
     low, high = ranges[of]
     at = np.linspace(low, high, FIRST)
@@ -109,11 +109,11 @@ def _line(name: str, law: Law, of: str, ranges: Ranges) -> Tabulated:
     raise _coarse(name, law, [of])
 
 
-def _plane(name: str, law: Law, reads: tuple[str, ...], ranges: Ranges) -> Mapped:
+def _plane(name: str, law: th.Law, reads: tuple[str, ...], ranges: Ranges) -> Mapped:
     """A law of two inputs on a grid, refused where that is not within ten times TOLERANCE in the middles."""
     x1, x2 = (_denser_at_zero(*ranges[n]) for n in reads)
 
-    def at(a: Array, b: Array) -> Array:
+    def at(a: th.Array, b: th.Array) -> th.Array:
         A, B = np.meshgrid(a, b, indexing="ij")
         flat = np.asarray(law.factor({reads[0]: A.ravel(), reads[1]: B.ravel()}), float)
         return np.broadcast_to(flat, A.size).reshape(A.shape)
@@ -126,13 +126,13 @@ def _plane(name: str, law: Law, reads: tuple[str, ...], ranges: Ranges) -> Mappe
     return Mapped(reads[0], reads[1], tuple(x1.tolist()), tuple(x2.tolist()), tuple(y.ravel().tolist()), False)
 
 
-def _denser_at_zero(low: float, high: float) -> Array:
+def _denser_at_zero(low: float, high: float) -> th.Array:
     """Points along an input: films and exchangers start as roots."""
     share = np.linspace(0.0, 1.0, GRID) ** 2
     return np.unique(np.concatenate([low * share, high * share]))
 
 
-def _coarse(name: str, law: Law, reads: Iterable[str]) -> InputError:
+def _coarse(name: str, law: th.Law, reads: Iterable[str]) -> InputError:
     return InputError(
         f"the law {type(law).__name__} of '{name}' over {', '.join(reads)} is too rough for a table",
         "--as",

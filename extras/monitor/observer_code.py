@@ -16,9 +16,7 @@ from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import LONGEST_S, Process
 from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import InputError, MissingDependency, Network
-from thermoscope.plugin import COLDEST, HOTTEST, TEMPER, Array, Channel, MeasuredLoss, Reference, c_comment, plugins
-from thermoscope.plugin import USUAL_DOUBT as USUAL
-from thermoscope.plugin import heat_source as heat
+from thermoscope import plugin as th
 
 MOST_BYTES = 10_000  # of what has to live from step to step on a controller
 FILES = ("thermal_observer.h", "thermal_observer.c")
@@ -28,9 +26,9 @@ REAL, SINGLE = 8, 4  # bytes
 
 def code_writer() -> Any:
     """What writes a network in C, of the extra `export`. Raises MissingDependency where it is not installed."""
-    if "c" not in plugins("code"):
+    if "c" not in th.plugins("code"):
         raise MissingDependency("an observer in C needs the extra 'export': pip install 'thermoscope[export]'")
-    return plugins("code")["c"]
+    return th.plugins("code")["c"]
 
 
 @dataclass(frozen=True)
@@ -44,11 +42,11 @@ class ObserverModel:
     model: Any  # of the writer
     process: Process
     noise: ProcessNoise
-    table_sd: Array
+    table_sd: th.Array
     rise_K: float
-    sensors: tuple[Channel, ...]
+    sensors: tuple[th.Channel, ...]
     heats: tuple[str, ...]
-    bias: Array
+    bias: th.Array
 
     @property
     def input_names(self) -> tuple[str, ...]:
@@ -66,12 +64,12 @@ class ObserverModel:
 def observer_model(
     process: Process,
     noise: ProcessNoise,
-    table_sd: Array,
+    table_sd: th.Array,
     rise_K: float,
-    sensors: Sequence[Channel],
-    reference: Reference,
+    sensors: Sequence[th.Channel],
+    reference: th.Reference,
     looks: Sequence[Any],
-    bias: Array | None = None,
+    bias: th.Array | None = None,
 ) -> ObserverModel:
     """Raises InputError where it would not fit on a controller."""
     writer = code_writer()
@@ -90,8 +88,8 @@ def observer_model(
 def with_missing_heat(network: Network, bodies: Sequence[str]) -> tuple[Network, tuple[str, ...]]:
     """The network with an input (W) for the missing heat of every body."""
     names = tuple(f"missing heat {body}" for body in bodies)
-    laws = [MeasuredLoss(((1.0, (name,)),)) for name in names]
-    sources = [heat(network, n, "missing", b, law) for n, b, law in zip(names, bodies, laws, strict=True)]
+    laws = [th.MeasuredLoss(((1.0, (name,)),)) for name in names]
+    sources = [th.heat_source(network, n, "missing", b, law) for n, b, law in zip(names, bodies, laws, strict=True)]
     return network.extended(sources=sources), names
 
 
@@ -122,7 +120,7 @@ def _sizes(of: ObserverModel) -> str:
     ]
     lines = [f"#define THERMAL_{name} {n}" for name, n in counts.items()]
     macro = "THERMAL_OBSERVER_SIZES_H"
-    return "\n".join([c_comment(comments), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
+    return "\n".join([th.c_comment(comments), f"#ifndef {macro}", f"#define {macro}", *lines, "#endif", ""])
 
 
 def _data(of: ObserverModel) -> str:
@@ -132,14 +130,14 @@ def _data(of: ObserverModel) -> str:
     network, rows = of.process.network, [c.row for c in of.sensors]
     sigma = np.array([c.sigma_K for c in of.sensors])
     names = tuple(c.name for c in of.sensors)
-    odds = hypotheses(names, sigma, np.hypot(sigma, USUAL["gain"] * of.rise_K), of.process.bodies, of.table_sd)
+    odds = hypotheses(names, sigma, np.hypot(sigma, th.USUAL_DOUBT["gain"] * of.rise_K), of.process.bodies, of.table_sd)
     numbers: Mapping[str, float] = {
         "NOISE_S": of.noise.time_s,
         "LONGEST_S": LONGEST_S,
         "HELD_FOR_S": CORRELATION_S,
-        "START_K": USUAL["start"],
-        "COLDEST_C": COLDEST,
-        "HOTTEST_C": HOTTEST,
+        "START_K": th.USUAL_DOUBT["start"],
+        "COLDEST_C": th.COLDEST,
+        "HOTTEST_C": th.HOTTEST,
         "OUTLIER_SD": faults.OUTLIER,
         "LOST_AFTER_S": faults.LOST_S,
         "BACK_AFTER_S": faults.BACK_S,
@@ -149,8 +147,8 @@ def _data(of: ObserverModel) -> str:
         "FORGETS_AFTER_S": tests_of.FORGETS_S,
         "SURE_FROM": tests_of.SURE,
         "DOUBT_SD": tests_of.TOLERANCE,
-        "TEMPER_BY": TEMPER["temper"].share,
-        "TEMPER_PER_NAT": TEMPER["temper per nat"].share,
+        "TEMPER_BY": th.TEMPER["temper"].share,
+        "TEMPER_PER_NAT": th.TEMPER["temper per nat"].share,
     }
     m = len(of.process.bodies)
     root = "},\n{".join(", ".join(f"{v:.17g}" for v in row) for row in of.noise.root)

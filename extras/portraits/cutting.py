@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from extras.portraits.body import Body
-from thermoscope.plugin import Array, Wedge
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     import pyvista
 
 SMOOTH = 32.0  # degrees between facets up to which a surface is shaded as a round one
-Plane = tuple[Array, Array]  # a point (m) and the normal of the side that stays
+Plane = tuple[th.Array, th.Array]  # a point (m) and the normal of the side that stays
 
 
-def cut_body(body: Body, wedge: Wedge | None) -> tuple[pyvista.PolyData, pyvista.PolyData | None] | None:
+def cut_body(body: Body, wedge: th.Wedge | None) -> tuple[pyvista.PolyData, pyvista.PolyData | None] | None:
     """Surface and caps of a body without a wedge, no caps where it is whole; None where nothing stays."""
     mesh = _mesh(body)
     if wedge is None:

@@ -9,14 +9,14 @@ from extras.portraits.body import Body, Finish
 from extras.portraits.making import ball, bolt, box, extruded, revolved, rod, rounded
 from extras.portraits.outlines import Outlines
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Part, Role
+from thermoscope import plugin as th
 
 RIBS, BOLTS, COVER_BOLTS = 8, 8, 4  # for the eye only
 EXTENSION = 1.6  # diameters of a shaft that drives something, as in IEC 60072-1
 STUB = 0.75  # diameters of overhang from which a shaft counts as extended already
 
 
-def shield(o: Outlines, part: Part) -> list[Body]:
+def shield(o: Outlines, part: th.Part) -> list[Body]:
     """The shield itself, rounded, and on it a bearing cover, ribs and bolts."""
     side, sections = o.side(part), o.section(part) or []
     disc = [revolved(rounded(section, 0.003, 0.004)) for section in sections]
@@ -26,7 +26,9 @@ def shield(o: Outlines, part: Part) -> list[Body]:
     thick = min(section.bounds[3] - section.bounds[1] for section in sections)
     thick = min(thick, 0.2 * rim)
     # Radius (m) of what stands in front of a shield: a fan's cowl
-    fronts = [p for p in o.machine.parts if p is not part and o.role(p) in (Role.HOUSING, Role.FAN) and o.section(p)]
+    fronts = [
+        p for p in o.machine.parts if p is not part and o.role(p) in (th.Role.HOUSING, th.Role.FAN) and o.section(p)
+    ]
     outside = [
         p for p in fronts if (p.span[0] >= part.span[1] - 1e-6 if side > 0 else p.span[1] <= part.span[0] + 1e-6)
     ]
@@ -48,9 +50,9 @@ def shield(o: Outlines, part: Part) -> list[Body]:
     ]
 
 
-def _cover(o: Outlines, part: Part, seat: float, thick: float, side: int) -> Shape:
+def _cover(o: Outlines, part: th.Part, seat: float, thick: float, side: int) -> Shape:
     """A boss around the bearing and the cover in it, its own z from the shield's outer face."""
-    shaft = max((s.bounds[2] for p in o.parts(Role.SHAFT) for s in _cut_at(o, p, part)), default=0.5 * seat)
+    shaft = max((s.bounds[2] for p in o.parts(th.Role.SHAFT) for s in _cut_at(o, p, part)), default=0.5 * seat)
     boss = shapely.box(seat, -0.1 * thick, 1.3 * seat, 0.3 * thick)
     lid = shapely.box(shaft + 0.0015, -0.02 * thick, 1.12 * seat, 0.5 * thick)
     ring = revolved(rounded(shapely.union_all([boss, lid]), 0.0015, 0.0015))
@@ -62,7 +64,7 @@ def _cover(o: Outlines, part: Part, seat: float, thick: float, side: int) -> Sha
     return whole if side > 0 else whole.flipped()
 
 
-def _cut_at(o: Outlines, shaft: Part, part: Part) -> list[shapely.Polygon]:
+def _cut_at(o: Outlines, shaft: th.Part, part: th.Part) -> list[shapely.Polygon]:
     """The shaft's section where the shield is."""
     z = sum(part.span) / 2
     return [s for s in o.section(shaft) or [] if s.bounds[1] <= z <= s.bounds[3]]
@@ -79,7 +81,7 @@ def _rib(start: float, end: float, thick: float, side: int, number: int) -> Shap
     return (upright if side > 0 else upright.flipped()).turned(2 * np.pi * number / RIBS)
 
 
-def bearing(o: Outlines, part: Part) -> list[Body]:
+def bearing(o: Outlines, part: th.Part) -> list[Body]:
     """Two rings with balls between them."""
     section = (o.section(part) or [])[0]
     r0, z0, r1, z1 = section.bounds
@@ -96,16 +98,16 @@ def bearing(o: Outlines, part: Part) -> list[Body]:
     ]
 
 
-def shaft(o: Outlines, part: Part) -> list[Body]:
+def shaft(o: Outlines, part: th.Part) -> list[Body]:
     """With chamfered steps, and at its longer end an extension with a key."""
     sections = o.section(part)
     if not sections:
         return [Body(part.name, Finish.STEEL, joined([extruded(o.of(p), *p[1:], 0.001) for p in part.prisms]))]
     body = Body(part.name, Finish.STEEL, joined([revolved(rounded(_chamfered(s), 0.0, 0.0)) for s in sections]))
-    shields = o.parts(Role.END_SHIELD, Role.BEARING)
+    shields = o.parts(th.Role.END_SHIELD, th.Role.BEARING)
     left = min((p.span[0] for p in shields), default=part.span[0]) - part.span[0]
     right = part.span[1] - max((p.span[1] for p in shields), default=part.span[1])
-    side = 1 if right >= left - 1e-6 or any(p.span[1] < o.middle for p in o.parts(Role.FAN)) else -1
+    side = 1 if right >= left - 1e-6 or any(p.span[1] < o.middle for p in o.parts(th.Role.FAN)) else -1
     end = part.span[1] if side > 0 else part.span[0]
     radius = max(s.bounds[2] for s in sections if s.bounds[1] <= end <= s.bounds[3])
     there = right if side > 0 else left

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, maximum_filter
 
 from extras.portraits.shape import Shape
-from thermoscope.plugin import Array, Theme
+from thermoscope import plugin as th
 
 PIXELS = 256  # along the longer side of the shadow
 DARK = 0.55  # of the middle of the shadow
@@ -19,7 +19,7 @@ SOFT = 0.035  # share of the machine's size over which the shadow fades
 FADE = 0.04  # share of its size beyond which nothing of the shadow of what stands there is seen
 
 
-def shadow(shapes: Sequence[Shape], theme: Theme) -> Any:
+def shadow(shapes: Sequence[Shape], theme: th.Theme) -> Any:
     """A flat actor under a machine's lowest point; y is up."""
     import pyvista
 
@@ -52,14 +52,14 @@ def shadow(shapes: Sequence[Shape], theme: Theme) -> Any:
     return actor
 
 
-def shaded(points: Array, low_m: float) -> Array:
+def shaded(points: th.Array, low_m: float) -> th.Array:
     """(4, 3) m corners on the ground, at the height low_m, of what the shadow of some points darkens."""
     low, high = points.min(axis=0), points.max(axis=0)
     fade = FADE * float(max(high[0] - low[0], high[2] - low[2]))
     return np.array([[x, low_m, z] for x in (low[0] - fade, high[0] + fade) for z in (low[2] - fade, high[2] + fade)])
 
 
-def _scattered(shapes: Sequence[Shape]) -> Array:
+def _scattered(shapes: Sequence[Shape]) -> th.Array:
     """(SAMPLES, 3) m, about evenly over all surfaces."""
     corners = np.concatenate([s.points[s.triangles] for s in shapes])
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)

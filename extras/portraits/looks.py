@@ -18,8 +18,7 @@ from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.portrait import framed
 from extras.portraits.shape import Shape
-from thermoscope.plugin import QUARTER, Array, Ints, SplitMesh, Wedge, packed_integers, packed_numbers, recalled, store
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     import pyvista
@@ -31,7 +30,7 @@ LOST = 0.04  # of its volume by which a body of fewer triangles may differ: a hu
 
 
 def packed_looks(
-    machine: Machine, nodes: SplitMesh, wedge: Wedge = QUARTER, cache: Path | None = None
+    machine: th.MachineDescription, nodes: th.SplitMesh, wedge: th.Wedge = th.QUARTER, cache: Path | None = None
 ) -> dict[str, Any]:
     """points (m), their two nodes and the second one's share, triangles; per part how many, and how many of them lie
     in the cut; frame : lowest and highest corner (m) of what a picture must hold
@@ -43,18 +42,20 @@ def packed_looks(
     looks = cached_looks(machine, nodes, cache, wedge)
     if looks is None:
         looks = _packed(machine, nodes, wedge)
-        store(_file(machine, nodes, wedge, cache), json.dumps(looks))
+        th.store(_file(machine, nodes, wedge, cache), json.dumps(looks))
     return looks
 
 
-def cached_looks(machine: Machine, nodes: SplitMesh, cache: Path, wedge: Wedge = QUARTER) -> dict[str, Any] | None:
+def cached_looks(
+    machine: th.MachineDescription, nodes: th.SplitMesh, cache: Path, wedge: th.Wedge = th.QUARTER
+) -> dict[str, Any] | None:
     """The same from the cache; None where this machine was not shaped before."""
-    return recalled(
+    return th.recalled(
         _file(machine, nodes, wedge, cache), lambda path: dict(json.loads(path.read_text(encoding="utf-8")))
     )
 
 
-def _file(machine: Machine, nodes: SplitMesh, wedge: Wedge, cache: Path) -> Path:
+def _file(machine: th.MachineDescription, nodes: th.SplitMesh, wedge: th.Wedge, cache: Path) -> Path:
     # Of all that decides: the machine, its nodes and parts, the cut, and the code that draws
     content = hashlib.sha256(repr((machine, nodes.parts, wedge)).encode())
     for array in (nodes.points, nodes.owner):
@@ -69,7 +70,7 @@ def drawing_code() -> bytes:
     return b"".join(file.read_bytes() for file in sorted(here.parent.glob("*.py")))
 
 
-def _packed(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> dict[str, Any]:
+def _packed(machine: th.MachineDescription, nodes: th.SplitMesh, wedge: th.Wedge) -> dict[str, Any]:
     bodies = dressed(machine)
     outer: list[list[pyvista.PolyData]] = [[] for _ in nodes.parts]
     caps: list[list[pyvista.PolyData]] = [[] for _ in nodes.parts]
@@ -88,9 +89,9 @@ def _packed(machine: Machine, nodes: SplitMesh, wedge: Wedge) -> dict[str, Any]:
             size += len(place)
     corners = framed(machine, bodies)
     return {
-        "points": packed_numbers(np.concatenate(points), STEP_M),
-        "mix": packed_integers(np.concatenate(weights)),
-        "triangles": packed_integers(np.concatenate(triangles)),
+        "points": th.packed_numbers(np.concatenate(points), STEP_M),
+        "mix": th.packed_integers(np.concatenate(weights)),
+        "triangles": th.packed_integers(np.concatenate(triangles)),
         "counts": counts,
         "wedge": [wedge.start, wedge.span],
         "frame": [corners.min(axis=0).tolist(), corners.max(axis=0).tolist()],
@@ -110,7 +111,7 @@ def coarse(body: Body) -> Body:
     return body
 
 
-def _mix(nodes: SplitMesh, part: int, points: Array) -> Ints:
+def _mix(nodes: th.SplitMesh, part: int, points: th.Array) -> th.Ints:
     """(n, 3) the two nearest nodes of a part, and the second one's share in SHARES, by the inverse of the distance."""
     from scipy.spatial import cKDTree
 

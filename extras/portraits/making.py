@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Array, Ints
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -38,7 +38,7 @@ def revolved(section: Polygon, sections: int = SECTIONS) -> Shape:
     return joined([_turned(ring, sections) for ring in rings])
 
 
-def _turned(ring: Array, sections: int) -> Shape:
+def _turned(ring: th.Array, sections: int) -> Shape:
     """One closed line of radius and place, turned: points on the axis are one point each."""
     n, angle = len(ring), 2 * np.pi * np.arange(sections) / sections
     r, z = ring.T
@@ -74,7 +74,7 @@ def extruded(outline: Polygon, z0: float, z1: float, round_m: float = 0.0) -> Sh
     return _stacked(layers, heights, end)
 
 
-def _inset(ring: Array) -> Array:
+def _inset(ring: th.Array) -> th.Array:
     """(n, 2) how far each corner moves when all sides move outwards by one; less at sharp corners."""
     along = np.roll(ring, -1, axis=0) - ring
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
@@ -84,7 +84,7 @@ def _inset(ring: Array) -> Array:
     return middle / np.maximum((middle * out).sum(axis=1, keepdims=True), 0.5)
 
 
-def _stacked(layers: list[list[Array]], heights: list[float], end: Polygon) -> Shape:
+def _stacked(layers: list[list[th.Array]], heights: list[float], end: Polygon) -> Shape:
     sizes = [len(ring) for ring in layers[0]]
     total = sum(sizes)
     points = np.concatenate(
@@ -105,7 +105,7 @@ def _stacked(layers: list[list[Array]], heights: list[float], end: Polygon) -> S
     return Shape(points, np.concatenate([*sides, lid[:, ::-1], lid + total * (len(heights) - 1)]))
 
 
-def filled(outline: Polygon) -> Ints:
+def filled(outline: Polygon) -> th.Ints:
     """Triangles that fill an outline, by the numbers of its corners: outer ring, then holes; anticlockwise."""
     import shapely
 
@@ -118,7 +118,7 @@ def filled(outline: Polygon) -> Ints:
     return np.asarray(np.where(left[:, None], corners, corners[:, ::-1]), np.int64)
 
 
-def swept(path: Array, across: Array, section: Array, shut: bool = False) -> Shape:
+def swept(path: th.Array, across: th.Array, section: th.Array, shut: bool = False) -> Shape:
     """A section along a line; its own x along `across` (n, 3), its y square to that and to the line.
 
     path : (n, 3) m;  section : (m, 2) m, anticlockwise and convex;  shut : the line's end meets its start
@@ -140,7 +140,7 @@ def swept(path: Array, across: Array, section: Array, shut: bool = False) -> Sha
     return Shape(points.reshape(-1, 3), triangles)
 
 
-def oval(width: float, height: float, corners: int = 14, power: float = 3.0) -> Array:
+def oval(width: float, height: float, corners: int = 14, power: float = 3.0) -> th.Array:
     """(corners, 2) m, a rounded rectangle: a superellipse (Lame)."""
     t = 2 * np.pi * (np.arange(corners) + 0.5) / corners
     c, s = np.cos(t), np.sin(t)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermoscope.plugin import ArcGrid, Part, Prism, Role
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -18,28 +17,28 @@ if TYPE_CHECKING:
 SEGMENTS = 120  # of a full turn
 RAYS = 40  # around the axis along which a part is looked at
 ROUND = 0.02  # share of its volume by which a part may miss a body of revolution: bores, not fins
-STANDING = frozenset({Role.FOOT, Role.BASE})
+STANDING = frozenset({th.Role.FOOT, th.Role.BASE})
 
 
 @dataclass(frozen=True)
 class Outlines:
     """The prisms of a machine as polygons (m), all on one grid."""
 
-    machine: Machine
+    machine: th.MachineDescription
 
     @cached_property
-    def grid(self) -> ArcGrid:
-        return ArcGrid([profile for part in self.machine.parts for profile, _, _ in part.prisms], SEGMENTS)
+    def grid(self) -> th.ArcGrid:
+        return th.ArcGrid([profile for part in self.machine.parts for profile, _, _ in part.prisms], SEGMENTS)
 
-    def of(self, prism: Prism) -> Polygon:
+    def of(self, prism: th.Prism) -> Polygon:
         """An invalid outline (a fin of no width) is mended."""
         outline = prism[0].to_polygon(self.grid)
         return outline if outline.is_valid else max(_pieces(outline.buffer(0)), key=lambda p: p.area)
 
-    def role(self, part: Part) -> Role | None:
+    def role(self, part: th.Part) -> th.Role | None:
         return part.identity.role if part.identity else None
 
-    def parts(self, *roles: Role) -> list[Part]:
+    def parts(self, *roles: th.Role) -> list[th.Part]:
         return [part for part in self.machine.parts if self.role(part) in roles]
 
     @cached_property
@@ -48,11 +47,11 @@ class Outlines:
         spans = [part.span for part in self.machine.parts if self.role(part) not in STANDING]
         return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
 
-    def side(self, part: Part) -> int:
+    def side(self, part: th.Part) -> int:
         """-1 left, 1 right of the machine's middle."""
         return 1 if sum(part.span) / 2 > self.middle else -1
 
-    def section(self, part: Part) -> list[Polygon] | None:
+    def section(self, part: th.Part) -> list[Polygon] | None:
         """Radius and place along the axis of a round part (m), None where it is not round.
 
         Small bores and cuts do not count: what most rays from the axis meet is the section, if its volume is right.
@@ -67,7 +66,7 @@ class Outlines:
             return None
         return _pieces(shapely.union_all([shapely.box(r0, z0, r1, z1) for r0, r1, z0, z1 in common]))
 
-    def reach(self, part: Part) -> float:
+    def reach(self, part: th.Part) -> float:
         """Largest distance from the axis (m)."""
         return max(float(np.hypot(*np.asarray(self.of(p).exterior.coords).T[:2]).max()) for p in part.prisms)
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermoscope import plugin as th
+
 if TYPE_CHECKING:
-    from thermoscope.plugin import Subject
+    pass
 
 
-def machine_picture(s: Subject, png: Path) -> None:
+def machine_picture(s: th.Subject, png: Path) -> None:
     """The machine cut open."""
     from extras.portraits.portrait import portrait
 
@@ -17,7 +19,7 @@ def machine_picture(s: Subject, png: Path) -> None:
     portrait(s.built.machine, title=s.built.machine.name, png=png).close()
 
 
-def temperature_picture(s: Subject, png: Path) -> None:
+def temperature_picture(s: th.Subject, png: Path) -> None:
     """The same, coloured by temperature at the end of the most telling test."""
     from extras.portraits.portrait import portrait
 

@@ -14,44 +14,26 @@ from extras.portraits.body import Body, Finish
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.ground import shaded, shadow
-from thermoscope.plugin import (
-    LIGHT,
-    NOTE,
-    QUARTER,
-    TITLE,
-    Array,
-    Role,
-    Room,
-    SplitMesh,
-    Theme,
-    View,
-    Wedge,
-    on_nodes,
-    rounded,
-    scene,
-)
-from thermoscope.plugin import MachineDescription as Machine
-from thermoscope.plugin import framed as near
-from thermoscope.plugin import heat_colours as heat
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     import pyvista
 
 NEAREST = 4  # nodes of the meshed part whose temperatures a point of the picture mixes
 CAPTION = "details are for the eye only: the mesh has none of them"
-VIEW = View(direction=(-1.0, 0.45, 0.85), angle=18.0, margin=1.1)
+VIEW = th.View(direction=(-1.0, 0.45, 0.85), angle=18.0, margin=1.1)
 
 
 def portrait(
-    machine: Machine,
+    machine: th.MachineDescription,
     *,
-    nodes: SplitMesh | None = None,
-    T: Array | None = None,
+    nodes: th.SplitMesh | None = None,
+    T: th.Array | None = None,
     limits: tuple[float, float] | None = None,
-    wedge: Wedge | None = QUARTER,
-    view: View = VIEW,
-    theme: Theme = LIGHT,
-    size: tuple[int, int] = scene.SIZE,
+    wedge: th.Wedge | None = th.QUARTER,
+    view: th.View = VIEW,
+    theme: th.Theme = th.LIGHT,
+    size: tuple[int, int] = th.scene.SIZE,
     title: str = "",
     caption: str = CAPTION,
     png: str | Path | None = None,
@@ -61,23 +43,23 @@ def portrait(
     nodes, T : a mesh and temperatures (degC) per node; limits : of the colour scale (degC)
     caption : below the picture
     """
-    warm = None if nodes is None or T is None else Warm(nodes, on_nodes(nodes, T), limits)
-    room = Room(0.0, 0.1 if warm else 0.0, TITLE if title else 0.0, NOTE if caption else 0.0)
+    warm = None if nodes is None or T is None else Warm(nodes, th.on_nodes(nodes, T), limits)
+    room = th.Room(0.0, 0.1 if warm else 0.0, th.TITLE if title else 0.0, th.NOTE if caption else 0.0)
     p = staged(machine, warm, wedge, view, theme, size, room)[0]
-    scene.headline(p, title, theme)
-    scene.footnote(p, caption, theme)
-    scene.save(p, png)
+    th.scene.headline(p, title, theme)
+    th.scene.footnote(p, caption, theme)
+    th.scene.save(p, png)
     return p
 
 
 def staged(
-    machine: Machine,
+    machine: th.MachineDescription,
     warm: Warm | None,
-    wedge: Wedge | None,
-    view: View,
-    theme: Theme,
+    wedge: th.Wedge | None,
+    view: th.View,
+    theme: th.Theme,
     size: tuple[int, int],
-    room: Room,
+    room: th.Room,
 ) -> tuple[pyvista.Plotter, list[Painted]]:
     """The machine lit and standing, with room around it; and what of it is coloured by temperature."""
     p, bodies = _stage(theme, size), dressed(machine)
@@ -85,28 +67,28 @@ def staged(
     points = framed(machine, bodies)
     points = np.concatenate([points, shaded(points, float(points[:, 1].min()))])
     p.add_actor(shadow([b.shape for b in bodies], theme), reset_camera=False, pickable=False)
-    scene.look(p, points, view, room)
+    th.scene.look(p, points, view, room)
     if warm is not None:
-        scene.colour_bar(p, "°C", theme)
+        th.scene.colour_bar(p, "°C", theme)
     _shade(p, points)
     return p, [one for one in painted if one is not None]
 
 
-def framed(machine: Machine, bodies: Sequence[Body]) -> Array:
+def framed(machine: th.MachineDescription, bodies: Sequence[Body]) -> th.Array:
     """(n, 3) m that the picture must hold: all, of a long base only what is near the machine."""
-    bases = {part.name for part in machine.parts if part.identity and part.identity.role is Role.BASE}
+    bases = {part.name for part in machine.parts if part.identity and part.identity.role is th.Role.BASE}
     inner, outer = ([b.shape.points for b in bodies if (b.part in bases) is base] for base in (False, True))
-    return near(np.concatenate(inner), np.concatenate([np.empty((0, 3)), *outer]))
+    return th.framed(np.concatenate(inner), np.concatenate([np.empty((0, 3)), *outer]))
 
 
 class Warm:
     """Temperatures for points that are no nodes: of the nearest nodes of the part that a body stands for."""
 
-    def __init__(self, nodes: SplitMesh, T: Array, limits: tuple[float, float] | None = None) -> None:
+    def __init__(self, nodes: th.SplitMesh, T: th.Array, limits: tuple[float, float] | None = None) -> None:
         self.nodes, self.T = nodes, T
-        self.limits = rounded(*(limits or (float(T.min()), float(T.max()))))
+        self.limits = th.rounded(*(limits or (float(T.min()), float(T.max()))))
 
-    def weights(self, part: str, points: Array) -> csr_matrix:
+    def weights(self, part: str, points: th.Array) -> csr_matrix:
         """(n, n_nodes) rows summing to 1, by the inverse of the distance."""
         from scipy.spatial import cKDTree
 
@@ -123,7 +105,7 @@ Pieces = list[tuple[str, "pyvista.PolyData"]]
 Painted = tuple["pyvista.PolyData", csr_matrix]
 
 
-def _gathered(bodies: Sequence[Body], wedge: Wedge | None) -> dict[tuple[Finish, bool], Pieces]:
+def _gathered(bodies: Sequence[Body], wedge: th.Wedge | None) -> dict[tuple[Finish, bool], Pieces]:
     """By finish, surfaces and sections apart: few things to draw are drawn fast."""
     out: dict[tuple[Finish, bool], Pieces] = defaultdict(list)
     for body in bodies:
@@ -144,18 +126,24 @@ def _add(p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm
     if warm is not None:
         rows = vstack([warm.weights(part, np.asarray(piece.points)) for part, piece in pieces], format="csr")
         data.point_data["T"] = rows @ warm.T
-        look |= {"scalars": "T", "cmap": heat(), "clim": warm.limits, "show_scalar_bar": False, "ambient": 0.64}
+        look |= {
+            "scalars": "T",
+            "cmap": th.heat_colours(),
+            "clim": warm.limits,
+            "show_scalar_bar": False,
+            "ambient": 0.64,
+        }
         look |= {"diffuse": 0.42, "specular": 0.05}
     actor = p.add_mesh(data, color=finish.section if section else finish.colour, **look)
     actor.prop.interpolation = "flat" if section else "phong"
     return None if rows is None else (data, rows)
 
 
-def _stage(theme: Theme, size: tuple[int, int]) -> pyvista.Plotter:
+def _stage(theme: th.Theme, size: tuple[int, int]) -> pyvista.Plotter:
     """A lamp over the shoulder, a weak one from the other side, a weak one from behind."""
     import pyvista
 
-    p = scene.plotter(theme, size)
+    p = th.scene.plotter(theme, size)
     for renderer in p.renderers:
         renderer.RemoveAllLights()
     for place, strength in (((-0.6, 1.0, 1.0), 0.85), ((1.0, 0.3, 0.8), 0.35), ((0.2, 0.8, -1.0), 0.30)):
@@ -163,7 +151,7 @@ def _stage(theme: Theme, size: tuple[int, int]) -> pyvista.Plotter:
     return p
 
 
-def _shade(p: pyvista.Plotter, points: Array) -> None:
+def _shade(p: pyvista.Plotter, points: th.Array) -> None:
     """Corners that little light reaches are darker (screen-space ambient occlusion)."""
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     p.renderer.enable_ssao(radius=0.045 * size, bias=0.0015 * size, kernel_size=64, blur=True)

@@ -9,14 +9,14 @@ from extras.portraits.body import Body, Finish
 from extras.portraits.making import box, extruded, oval, revolved, rod, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Part, Role
+from thermoscope import plugin as th
 
 BLADES = 9  # of a shaft fan that is not meshed
 TURN = 0.017  # rad: a cut through the axis then runs through bars, not along the insulation between two
 BARS = 2  # of a smeared commutator, per rotor slot
 
 
-def wheel(o: Outlines, part: Part) -> list[Body]:
+def wheel(o: Outlines, part: th.Part) -> list[Body]:
     """A hub with twisted blades, where the mesh has flat ones; and a guard in front."""
     hubs = [p for p in part.prisms if o.of(p).interiors]
     blades = [p for p in part.prisms if not o.of(p).interiors]
@@ -40,7 +40,7 @@ def _blade(r0: float, r1: float, deep: float, z: float, angle: float, count: int
     return swept(radius[:, None] * out + [0.0, 0.0, z], across, oval(chord, 0.07 * chord, 14, 2.2))
 
 
-def cowl(o: Outlines, part: Part) -> list[Body]:
+def cowl(o: Outlines, part: th.Part) -> list[Body]:
     """A meshed cowl, with a guard over its outer end."""
     sections = o.section(part) or []
     r0, z0, _, z1 = shapely.union_all(sections).bounds
@@ -63,8 +63,8 @@ def _cover(radius: float, z: float) -> Shape:
 def shaft_fan(o: Outlines) -> list[Body]:
     """Fan and cowl of a machine that blows over its housing, where the mesh has neither: on the left."""
     blows = "cowl" in o.machine.sections.get("fans", {})
-    housings, shields = o.parts(Role.HOUSING), o.parts(Role.END_SHIELD)
-    if not blows or o.parts(Role.FAN) or not housings or not shields:
+    housings, shields = o.parts(th.Role.HOUSING), o.parts(th.Role.END_SHIELD)
+    if not blows or o.parts(th.Role.FAN) or not housings or not shields:
         return []
     body, shield = housings[0], min(shields, key=lambda p: p.span[0])
     reach, face = 1.015 * o.reach(body), shield.span[0]
@@ -72,7 +72,7 @@ def shaft_fan(o: Outlines) -> list[Body]:
     back, over = face - deep, body.span[0] + 0.18 * (body.span[1] - body.span[0])
     outside = [(reach, over), (reach, back + 0.12 * reach), (0.88 * reach, back), (0.70 * reach, back)]
     shell = shapely.LineString(outside).buffer(wall, cap_style="flat", join_style="round", quad_segs=3)
-    shafts = [s for p in o.parts(Role.SHAFT) for s in o.section(p) or []]
+    shafts = [s for p in o.parts(th.Role.SHAFT) for s in o.section(p) or []]
     radius = 0.7 * max((s.bounds[2] for s in shafts), default=0.15 * reach)
     fan = _radial_fan(radius, 0.74 * reach, back + 0.2 * deep, face - 0.18 * deep)
     return [
@@ -81,7 +81,7 @@ def shaft_fan(o: Outlines) -> list[Body]:
         Body(shield.name, Finish.RUBBER, fan, added=True),
         *(
             Body(p.name, Finish.STEEL, rod(radius, 0.85 * deep).flipped().moved((0, 0, face)), added=True)
-            for p in o.parts(Role.SHAFT)[:1]
+            for p in o.parts(th.Role.SHAFT)[:1]
         ),
     ]
 
@@ -99,15 +99,15 @@ def _radial_fan(radius: float, tip: float, z0: float, z1: float) -> Shape:
     return joined([disc, hub, *(one.turned(2 * np.pi * k / BLADES) for k in range(BLADES))])
 
 
-def commutator(o: Outlines, part: Part) -> list[Body]:
+def commutator(o: Outlines, part: th.Part) -> list[Body]:
     """Its bars, and brushes in their holders on them, one row for every main pole, where the mesh has none."""
     outlines = [(o.of(p), *p[1:]) for p in part.prisms]
     low = min(radii_of(q)[1] for q, _, _ in outlines)
     z0 = min(z for q, z, _ in outlines if radii_of(q)[1] < low + 1e-6)
     z1 = max(z for q, _, z in outlines if radii_of(q)[1] < low + 1e-6)
     pieces = [extruded(q, a, b, 0.0004) for q, a, b in (outlines if len(outlines) > 4 else _bars(o, outlines))]
-    poles = [angle_of(o.of(q)) for p in o.parts(Role.IRON) if len(p.prisms) > 1 for q in p.prisms]
-    rows = [] if o.parts(Role.BRUSH) else poles  # meshed ones are drawn as they are
+    poles = [angle_of(o.of(q)) for p in o.parts(th.Role.IRON) if len(p.prisms) > 1 for q in p.prisms]
+    rows = [] if o.parts(th.Role.BRUSH) else poles  # meshed ones are drawn as they are
     brushes = [b for angle in rows for b in _brush(part, low, (z0, z1), angle)]
     return [Body(part.name, Finish.BRASS, joined(pieces).turned(TURN)), *brushes]
 
@@ -116,7 +116,7 @@ def _bars(
     o: Outlines, outlines: list[tuple[shapely.Polygon, float, float]]
 ) -> list[tuple[shapely.Polygon, float, float]]:
     """Smeared rings cut into bars, as many as there usually are."""
-    slots = max((len(p.prisms) for p in o.parts(Role.INSULATION)), default=24)
+    slots = max((len(p.prisms) for p in o.parts(th.Role.INSULATION)), default=24)
     out = []
     for outline, z0, z1 in outlines:
         reach = 2 * radii_of(outline)[1]
@@ -129,7 +129,7 @@ def _bars(
     return out
 
 
-def _brush(part: Part, radius: float, span: tuple[float, float], angle: float) -> list[Body]:
+def _brush(part: th.Part, radius: float, span: tuple[float, float], angle: float) -> list[Body]:
     """Two carbons side by side in boxes on one arm, with their springs."""
     length, out = span[1] - span[0], []
     wide, long, high = 0.24 * radius, 0.34 * length, 0.42 * radius

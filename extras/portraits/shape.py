@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermoscope.plugin import Array, Ints
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
 class Shape:
     """points : (n, 3) m;  triangles : (m, 3), seen from outside they turn anticlockwise"""
 
-    points: Array
-    triangles: Ints
+    points: th.Array
+    triangles: th.Ints
 
     @property
     def volume(self) -> float:

@@ -9,13 +9,13 @@ from extras.portraits.body import Body, Finish
 from extras.portraits.making import bolt, box, extruded, oval, revolved, rod, rounded, swept
 from extras.portraits.outlines import Outlines
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Part, Rod, Role
+from thermoscope import plugin as th
 
 BOX_ANGLE = np.deg2rad(62.0)  # beside the top: behind the usual cut
 UP = ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))  # x across, y backwards along the axis, z up
 
 
-def housing(o: Outlines, part: Part) -> list[Body]:
+def housing(o: Outlines, part: th.Part) -> list[Body]:
     """Fins with rounded tops and fillets at their feet; pipes as pipes."""
     pipe = _pipe(o, part)
     if pipe is not None:
@@ -28,10 +28,10 @@ def housing(o: Outlines, part: Part) -> list[Body]:
     return [Body(part.name, Finish.PAINT, joined(pieces))]
 
 
-def _pipe(o: Outlines, part: Part) -> list[Body] | None:
+def _pipe(o: Outlines, part: th.Part) -> list[Body] | None:
     """A port's tube, with a nut, a nozzle and a piece of hose."""
     one = None if part.cad_shape is None else part.cad_shape.start
-    if not isinstance(one, Rod):
+    if not isinstance(one, th.Rod):
         return None
     r, angle, z = one.diameter / 2, one.angle, one.z
     t = np.pi / 3 * np.arange(6)
@@ -52,9 +52,9 @@ def _hose(radius: float, length: float) -> Shape:
     return swept(path, np.tile([1.0, 0.0, 0.0], (len(path), 1)), oval(2 * radius, 2 * radius, 20, 2.0))
 
 
-def standing(o: Outlines, part: Part) -> list[Body]:
+def standing(o: Outlines, part: th.Part) -> list[Body]:
     """Feet with a bolted sole; the base as it is, its edges rounded."""
-    base = o.role(part) is Role.BASE
+    base = o.role(part) is th.Role.BASE
     finish = Finish.PLATE if base else Finish.PAINT
     body = Body(part.name, finish, joined([extruded(o.of(p), *p[1:], 0.002) for p in part.prisms]))
     if base:
@@ -62,7 +62,7 @@ def standing(o: Outlines, part: Part) -> list[Body]:
     return [body, *(b for p in part.prisms for b in _sole(part, o.of(p), *p[1:]))]
 
 
-def _sole(part: Part, outline: shapely.Polygon, z0: float, z1: float) -> list[Body]:
+def _sole(part: th.Part, outline: shapely.Polygon, z0: float, z1: float) -> list[Body]:
     """A plate under a foot, wider than the foot, with a bolt on either side in a hole that is seen around it."""
     x0, low, x1, top = outline.bounds
     thick, over = min(0.25 * (top - low), 0.016), float(np.clip(0.35 * (x1 - x0), 0.012, 0.035))
@@ -85,8 +85,8 @@ def _bolted(z0: float, z1: float) -> list[float]:
 
 def fittings(o: Outlines) -> list[Body]:
     """Terminal box and lifting eye, on the housing or, without one, on the laminations."""
-    around = [p for p in o.parts(Role.HOUSING) if _pipe(o, p) is None and p.span[1] - p.span[0] > 0.3 * _length(o)]
-    carrier = next(iter(around or o.parts(Role.IRON)), None)
+    around = [p for p in o.parts(th.Role.HOUSING) if _pipe(o, p) is None and p.span[1] - p.span[0] > 0.3 * _length(o)]
+    carrier = next(iter(around or o.parts(th.Role.IRON)), None)
     if carrier is None:
         return []
     reach = o.reach(carrier)
@@ -98,11 +98,11 @@ def fittings(o: Outlines) -> list[Body]:
 
 
 def _length(o: Outlines) -> float:
-    spans = [p.span for p in o.parts(Role.END_SHIELD)] or [p.span for p in o.machine.parts]
+    spans = [p.span for p in o.parts(th.Role.END_SHIELD)] or [p.span for p in o.machine.parts]
     return max(b for _, b in spans) - min(a for a, _ in spans)
 
 
-def _terminal_box(part: Part, reach: float, inner: float, span: tuple[float, float]) -> list[Body]:
+def _terminal_box(part: th.Part, reach: float, inner: float, span: tuple[float, float]) -> list[Body]:
     """A box on a neck, a lid with four screws, two cable glands with a piece of cable."""
     wide, long, high = 0.52 * reach, min(0.7 * reach, 0.42 * (span[1] - span[0])), 0.26 * reach
     z = span[0] + 0.5 * (span[1] - span[0])
@@ -137,7 +137,7 @@ def _gland(radius: float, at: tuple[float, float, float], height: float, z: floa
     ]
 
 
-def _eye(part: Part, reach: float, inner: float, z: float) -> list[Body]:
+def _eye(part: th.Part, reach: float, inner: float, z: float) -> list[Body]:
     """A lifting eye on top (ISO 3266, about)."""
     ring, thick = 0.085 * reach, 0.024 * reach
     t = 2 * np.pi * np.arange(36) / 36

@@ -10,7 +10,7 @@ from extras.portraits.body import Body, Finish
 from extras.portraits.making import extruded, oval, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
 from extras.portraits.shape import Shape, joined
-from thermoscope.plugin import Array, Part, Role
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -20,9 +20,9 @@ LOOPS = 3  # of a coil around one tooth that are drawn
 LAYERS = 5  # of a coil around a pole that are drawn
 
 
-def wound(o: Outlines, part: Part) -> list[Body]:
+def wound(o: Outlines, part: th.Part) -> list[Body]:
     """A winding: overhang or pole coils where it has them, else its prisms as they are."""
-    stacks = [p for p in o.parts(Role.IRON, Role.ROTOR) if o.section(p) is None]
+    stacks = [p for p in o.parts(th.Role.IRON, th.Role.ROTOR) if o.section(p) is None]
     low, high = part.span
     if bool(stacks) and all(high <= s.span[0] + 1e-6 or low >= s.span[1] - 1e-6 for s in stacks):
         side = o.side(part)
@@ -42,7 +42,7 @@ def wound(o: Outlines, part: Part) -> list[Body]:
     return [Body(part.name, Finish.COPPER, joined([extruded(o.of(p), *p[1:]) for p in part.prisms]))]
 
 
-def _slot_to_slot(r: tuple[float, float], wide: float, angles: Array, reach: float) -> list[Shape]:
+def _slot_to_slot(r: tuple[float, float], wide: float, angles: th.Array, reach: float) -> list[Shape]:
     """A coil per slot: out in the outer layer, over an apex, back in the inner layer, as preformed coils are."""
     pitch, height = 2 * np.pi / len(angles), 0.46 * (r[1] - r[0])
     middle = (r[0] + r[1]) / 2
@@ -56,7 +56,7 @@ def _slot_to_slot(r: tuple[float, float], wide: float, angles: Array, reach: flo
     return [_coil(radius, start + span * pitch * t, up, section) for start in angles]
 
 
-def _round_a_tooth(r: tuple[float, float], wide: float, angles: Array, reach: float) -> list[Shape]:
+def _round_a_tooth(r: tuple[float, float], wide: float, angles: th.Array, reach: float) -> list[Shape]:
     """Half a slot's width of wire around every tooth, in a few loops one over the other."""
     middle, out = (r[0] + r[1]) / 2, []
     t = np.linspace(-1.0, 1.0, STEPS)
@@ -71,15 +71,15 @@ def _round_a_tooth(r: tuple[float, float], wide: float, angles: Array, reach: fl
     return out
 
 
-def _coil(radius: Array, angle: Array, up: Array, section: Array) -> Shape:
+def _coil(radius: th.Array, angle: th.Array, up: th.Array, section: th.Array) -> Shape:
     """Its section's x points away from the axis."""
     outwards = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
     return swept(radius[:, None] * outwards + up[:, None] * [0.0, 0.0, 1.0], outwards, section)
 
 
-def _poles(o: Outlines, part: Part) -> list[Shape]:
+def _poles(o: Outlines, part: th.Part) -> list[Shape]:
     """A coil round every pole: a frame with rounded corners, wound in layers; none where the part is not like that."""
-    poles = [o.of(p) for q in o.parts(Role.IRON) if len(q.prisms) > 1 for p in q.prisms]
+    poles = [o.of(p) for q in o.parts(th.Role.IRON) if len(q.prisms) > 1 for p in q.prisms]
     if len(part.prisms) != 4 * len(poles) or not poles:
         return []
     prisms = [(o.of(p), *p[1:]) for p in part.prisms]

@@ -7,10 +7,7 @@ from typing import Annotated
 
 import typer
 
-from thermoscope.plugin import BandsOption as Sure
-from thermoscope.plugin import HotLimitOption as HotLimit
-from thermoscope.plugin import JsonOption as Json
-from thermoscope.plugin import OutOption as Out
+from thermoscope import plugin as th
 
 use_commands = typer.Typer(name="use")
 
@@ -18,7 +15,7 @@ use_commands = typer.Typer(name="use")
 @use_commands.command()
 def rate(
     name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: HotLimit = None,
+    limit: th.HotLimitOption = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
     voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
@@ -28,33 +25,32 @@ def rate(
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
     mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
     start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
-    bands: Sure = None,
-    json: Json = None,
+    bands: th.BandsOption = None,
+    json: th.JsonOption = None,
 ) -> int:
     """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
     from extras.rating.commands import rate as ratings
     from extras.rating.request import RatingRequest
     from thermoscope import InputError
-    from thermoscope.plugin import give, notes, progress, read_limits
 
-    options = read_limits(limit or ()), ratings.read_at(at or ()), tuple(load or ())
+    options = th.read_limits(limit or ()), ratings.read_at(at or ()), tuple(load or ())
     request = RatingRequest(*options, losses, voltage, overload / 100.0, top, cycle, mapped, ratings.read_start(start))
     if voltage is not None and losses is None:
         right = "--losses FILE.csv with a column voltage_V"
         raise InputError("is of a loss map, and none is given", "--voltage", right)
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
-    with progress() as tell, ratings.once() as messages:
+    with th.progress() as tell, ratings.once() as messages:
         document = ratings.rating_document(ratings.case_or_machine(name, tell), request, bands, tell)
-    notes(messages)
-    give(document, json, lambda: ratings.rating_summary(document))
+    th.notes(messages)
+    th.give(document, json, lambda: ratings.rating_summary(document))
     return 0
 
 
 @use_commands.command()
 def optimise(
     name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
-    limit: HotLimit = None,
+    limit: th.HotLimitOption = None,
     torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
     vary: Annotated[
@@ -67,8 +63,8 @@ def optimise(
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
     cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
     robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
-    out: Out = None,
-    json: Json = None,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
 ) -> int:
     """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
     from extras.rating.commands.optimise import optimisation_summary, optimised, read_bounds
@@ -76,39 +72,39 @@ def optimise(
     from extras.rating.design.design_problem import DesignRequest
     from extras.rating.optimisation.search import METHODS, Effort
     from thermoscope import InputError
-    from thermoscope.plugin import give, notes, read_limits
 
     if method not in METHODS:
         raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
-    request = DesignRequest(read_limits(limit or ()), torque, read_at(at or ()), read_bounds(vary or ()), robust, cycle)
+    request = DesignRequest(
+        th.read_limits(limit or ()), torque, read_at(at or ()), read_bounds(vary or ()), robust, cycle
+    )
     if not request.limits:
         raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
     effort = Effort(population, generations, seed)
     with once() as messages:
         document, where, stopped = optimised(name, request, method, effort, cluster, out)
-    notes(messages)
-    give(document, json, lambda: optimisation_summary(document, where))
+    th.notes(messages)
+    th.give(document, json, lambda: optimisation_summary(document, where))
     return 130 if stopped else 0  # as shells have it
 
 
 @use_commands.command("compare-designs")
 def compare_designs(
     names: Annotated[list[str], typer.Argument(metavar="MACHINE...", help="Two to six machine files, names or cases.")],
-    limit: HotLimit = None,
+    limit: th.HotLimitOption = None,
     at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="For all of them.")] = None,
-    bands: Sure = None,
+    bands: th.BandsOption = None,
     picture: Annotated[
         Path | None, typer.Option("--picture", metavar="FILE", help="A PNG of all at rest, on one scale.")
     ] = None,
-    json: Json = None,
+    json: th.JsonOption = None,
 ) -> int:
     """Designs side by side: dimensions that differ, hottest points, continuous ratings, masses, pump and fan power."""
     from extras.rating.commands.compare_designs import compared_designs, designs_summary
     from extras.rating.commands.rate import once, read_at
-    from thermoscope.plugin import give, notes, read_limits
 
     with once() as messages:
-        document = compared_designs(names, read_limits(limit or ()), read_at(at or ()), bands, picture)
-    notes(messages)
-    give(document, json, lambda: designs_summary(document))
+        document = compared_designs(names, th.read_limits(limit or ()), read_at(at or ()), bands, picture)
+    th.notes(messages)
+    th.give(document, json, lambda: designs_summary(document))
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermoscope.plugin import LIGHT, Theme, as_text, figure
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -29,21 +29,21 @@ def column(rows: Sequence[Row], name: str) -> list[float]:
 
 
 def parallel_coordinates(
-    rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], *, theme: Theme = LIGHT
+    rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], *, theme: th.Theme = th.LIGHT
 ) -> go.Figure:
     """Designs as lines over objectives and variables, coloured by the first objective; ranges can be brushed."""
     import plotly.graph_objects as go
 
-    out = figure(theme, title={"text": "Every design, objectives first", "x": 0.02})
+    out = th.figure(theme, title={"text": "Every design, objectives first", "x": 0.02})
     words = {**{o: WORDS.get(o, o) for o in objectives}, **variables}
-    axes = [{"label": as_text(word), "values": column(rows, n)} for n, word in words.items()]
+    axes = [{"label": th.as_text(word), "values": column(rows, n)} for n, word in words.items()]
     line = {"color": [float(r[objectives[0]]) for r in rows], "colorscale": SCALE, "showscale": False}
     out = go.Figure(go.Parcoords(dimensions=axes, line=line, labelangle=-20, labelside="top"), layout=out.layout)
     out.update_layout(margin={"l": 70, "r": 70, "t": 150, "b": 40}, height=480)
     return out
 
 
-def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: Theme = LIGHT) -> go.Figure:
+def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: th.Theme = th.LIGHT) -> go.Figure:
     """Designs in the space of three objectives, the first, second and last; the fourth is the colour."""
     import plotly.graph_objects as go
 
@@ -85,5 +85,5 @@ def page(rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str,
     """Both figures as one HTML page that needs no network.  variables : column of the rows -> its label"""
     first = parallel_coordinates(rows, objectives, variables).to_html(full_html=False, include_plotlyjs=True)
     second = objective_space(rows, objectives).to_html(full_html=False, include_plotlyjs=False)
-    head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{as_text(title)}</title></head>'
+    head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{th.as_text(title)}</title></head>'
     return f"{head}<body>{first}{second}</body></html>\n"

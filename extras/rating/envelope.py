@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from extras.rating.operation import Operation
 from extras.rating.points import RUNAWAY_C, S3, S6, Model
 from thermoscope import InputError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
@@ -49,7 +49,7 @@ def rated(model: Model, op: Operation, limits: Mapping[str, float], form: str, s
     return reached(excess(model, op, form, speed), limits, form, speed)
 
 
-def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
+def reached(over: Callable[[float], th.Array], limits: Mapping[str, float], form: str, speed: float | None) -> Rating:
     """The load at which the first limit is reached.  over : load -> temperatures of the places (degC), growing with it
 
     Raises LimitError where a limit is exceeded without any load.
@@ -87,7 +87,7 @@ def reached(over: Callable[[float], Array], limits: Mapping[str, float], form: s
     return Rating(form, speed, load, names[k], float((above[k] - here[k]) / (0.01 * load)))
 
 
-def excess(model: Model, op: Operation, form: str, speed: float | None) -> Callable[[float], Array]:
+def excess(model: Model, op: Operation, form: str, speed: float | None) -> Callable[[float], th.Array]:
     """load -> largest temperatures (degC) of a form."""
     if form == "S1":
         return lambda load: model.rest(op, load, speed)

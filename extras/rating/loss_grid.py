@@ -13,8 +13,7 @@ from itertools import product
 import numpy as np
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import EDDY, RPM, Array, CopperLoss, Ints, Linear, MapLoss, Source, declared_name
-from thermoscope.plugin import KEY_UNITS as UNITS
+from thermoscope import plugin as th
 
 BALANCED = 0.02  # of the input power: what losses and powers may disagree by
 TORQUE, SPEED = "torque_Nm", "speed_rpm"
@@ -24,13 +23,13 @@ TORQUE, SPEED = "torque_Nm", "speed_rpm"
 class LossGrid:
     """torque (nt,) N m, speed (ns,) 1/min;  watts : loss -> (n_temperature, ns, nt) W;  temperatures (degC)"""
 
-    torque: Array
-    speed: Array
-    temperatures: Array
-    watts: Mapping[str, Array]
+    torque: th.Array
+    speed: th.Array
+    temperatures: th.Array
+    watts: Mapping[str, th.Array]
 
 
-def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = None) -> LossGrid:
+def loss_grid(columns: Mapping[str, th.Array], where: str, voltage: float | None = None) -> LossGrid:
     """From columns torque_Nm, speed_rpm, NAME_W, optionally temperature_degC, voltage_V, input_W; a row per point.
 
     Raises InputError for missing columns, holes, points given twice, and a balance that does not close.
@@ -58,17 +57,17 @@ def loss_grid(columns: Mapping[str, Array], where: str, voltage: float | None = 
     watts = {n: np.zeros(count.shape) for n in names}
     for n in names:
         watts[n][tuple(index)] = columns[f"{n}_W"]
-        if not np.all((watts[n] >= 0.0) & (watts[n] <= UNITS["W"].high)):
+        if not np.all((watts[n] >= 0.0) & (watts[n] <= th.KEY_UNITS["W"].high)):
             raise InputError(
                 f"'{n}_W' has negative, missing or impossible values",
                 where,
-                f"watts that become heat, {UNITS['W'].words}",
+                f"watts that become heat, {th.KEY_UNITS['W'].words}",
             )
     _balanced(columns, names, where)
     return LossGrid(axes[2], axes[1], axes[0], watts)
 
 
-def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) -> dict[str, Array]:
+def _at_voltage(columns: dict[str, th.Array], where: str, voltage: float | None) -> dict[str, th.Array]:
     if "voltage_V" not in columns:
         return columns
     voltages = np.unique(columns["voltage_V"])
@@ -80,7 +79,7 @@ def _at_voltage(columns: dict[str, Array], where: str, voltage: float | None) ->
     return {n: c[columns["voltage_V"] == level] for n, c in columns.items()}
 
 
-def _complete(count: Ints, axes: list[Array], where: str) -> None:
+def _complete(count: th.Ints, axes: list[th.Array], where: str) -> None:
     if np.all(count == 1):
         return
     bad = [at for at in product(*(range(a.size) for a in axes)) if count[at] != 1]
@@ -94,11 +93,11 @@ def _complete(count: Ints, axes: list[Array], where: str) -> None:
     )
 
 
-def _balanced(columns: Mapping[str, Array], names: list[str], where: str) -> None:
+def _balanced(columns: Mapping[str, th.Array], names: list[str], where: str) -> None:
     """Input less shaft power is what becomes heat."""
     if "input_W" not in columns:
         return
-    shaft = columns[TORQUE] * columns[SPEED] * RPM
+    shaft = columns[TORQUE] * columns[SPEED] * th.RPM
     heat = np.sum([columns[f"{n}_W"] for n in names], axis=0)
     off = np.abs(columns["input_W"] - shaft - heat)
     tolerance = BALANCED * np.maximum(np.abs(columns["input_W"]), np.abs(shaft))
@@ -123,9 +122,9 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
             choices = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
             raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {choices}")
     sources = []
-    for s in (s for s in network.sources if not s.name.endswith(EDDY)):  # a map says the whole of a copper loss
+    for s in (s for s in network.sources if not s.name.endswith(th.EDDY)):  # a map says the whole of a copper loss
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:
-            alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind) and not x.name.endswith(EDDY)]
+            alike = [x for x in network.sources if name in (x.name, _bare(x), x.kind) and not x.name.endswith(th.EDDY)]
             # Of one slice with the network's own temperature law, else linear between first and last slice
             watts = grid.watts[name] * _share(s, alike)
             law = s.law.temperature
@@ -133,24 +132,24 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
             if grid.temperatures.size > 1:
                 rise = float(grid.temperatures[-1]) - T
                 alpha = float(np.sum(watts[-1] - first) / max(float(np.sum(first)), 1e-300) / rise)
-                law = Linear(alpha, T)
-            elif isinstance(law, Linear):
-                law = Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
+                law = th.Linear(alpha, T)
+            elif isinstance(law, th.Linear):
+                law = th.Linear(law.alpha / (1.0 + law.alpha * (T - law.reference)), T)
             rows = tuple(tuple(float(v) for v in row) for row in first)
-            sources.append(replace(s, law=MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)))
+            sources.append(replace(s, law=th.MapLoss(tuple(grid.speed), tuple(grid.torque), rows, SPEED, TORQUE, law)))
     gone = {s.name for s in network.sources} - {s.name for s in sources}
     parameters = tuple(replace(p, targets=tuple(t for t in p.targets if t[0] not in gone)) for p in network.parameters)
     return replace(network, sources=tuple(sources), parameters=parameters)
 
 
-def _share(s: Source, alike: list[Source]) -> float:
+def _share(s: th.Source, alike: list[th.Source]) -> float:
     """Of a column's watts: as much for each loss; of a copper loss in parts by their resistance."""
-    parts = [x.law for x in alike if declared_name(x.name) == declared_name(s.name)]
-    losses = len({declared_name(x.name) for x in alike})
-    if len(parts) == 1 or not isinstance(s.law, CopperLoss):
+    parts = [x.law for x in alike if th.declared_name(x.name) == th.declared_name(s.name)]
+    losses = len({th.declared_name(x.name) for x in alike})
+    if len(parts) == 1 or not isinstance(s.law, th.CopperLoss):
         return 1.0 / losses / len(parts)
-    return s.law.resistance / sum(x.resistance for x in parts if isinstance(x, CopperLoss)) / losses
+    return s.law.resistance / sum(x.resistance for x in parts if isinstance(x, th.CopperLoss)) / losses
 
 
-def _bare(s: Source) -> str:
+def _bare(s: th.Source) -> str:
     return s.name.rpartition(":")[2]

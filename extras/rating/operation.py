@@ -6,22 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import (
-    AIR,
-    CLOCK,
-    LIQUID,
-    LOADS,
-    Array,
-    Link,
-    Radiation,
-    Role,
-    density,
-    suggestion,
-    thin_film,
-    thin_stream,
-)
+from thermoscope import plugin as th
 
-MOVING = ("speed", "vehicle_speed", AIR)  # what moves air
+MOVING = ("speed", "vehicle_speed", th.AIR)  # what moves air
 
 
 @dataclass(frozen=True)
@@ -43,9 +30,9 @@ class Operation:
         """The input in which a rating is given: the largest of those that carry the load."""
         return max(self.loads, key=lambda n: abs(self.inputs[n]))
 
-    def at(self, load: float | Array, speed: float | None = None) -> dict[str, Array | float]:
+    def at(self, load: float | th.Array, speed: float | None = None) -> dict[str, th.Array | float]:
         """Inputs at a load (1 is the reference) and a speed (its unit; the reference where None)."""
-        out: dict[str, Array | float] = {n: load * u if n in self.loads else u for n, u in self.inputs.items()}
+        out: dict[str, th.Array | float] = {n: load * u if n in self.loads else u for n, u in self.inputs.items()}
         return out if speed is None or self.speed is None else {**out, self.speed: speed}
 
     def moved(
@@ -68,23 +55,23 @@ def operation(
     Raises InputError where nothing says what an input is, or nothing carries a load.
     """
     laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
-    reads = dict.fromkeys(n for law in laws for n in law.reads if n != CLOCK)
+    reads = dict.fromkeys(n for law in laws for n in law.reads if n != th.CLOCK)
     for name in fixed:
         if name not in (*reads, *network.boundaries):
             raise InputError(
                 f"'{name}' is no input or boundary of the model",
                 "--at",
-                suggestion(name, (*reads, *network.boundaries)),
+                th.suggestion(name, (*reads, *network.boundaries)),
             )
     for name in carry:
         if name not in reads:
-            raise InputError(f"'{name}' is no input of the model", "--load", suggestion(name, tuple(reads)))
-    loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in LOADS)
+            raise InputError(f"'{name}' is no input of the model", "--load", th.suggestion(name, tuple(reads)))
+    loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in th.LOADS)
     if not loads:
         raise InputError(
             "no input carries the load",
             f"network '{network.name}'",
-            f"an input that measures {' or '.join(LOADS)}, or --load INPUT, one of {', '.join(reads)}",
+            f"an input that measures {' or '.join(th.LOADS)}, or --load INPUT, one of {', '.join(reads)}",
         )
     point = {**point, **fixed}
     inputs = {n: v for n, v in point.items() if n in reads}
@@ -102,16 +89,16 @@ def operation(
 
 def air_boundaries(network: Network) -> tuple[str, ...]:
     """Boundaries that are air around the machine; the coolant's otherwise."""
-    return tuple(b for b in network.boundaries if network.identities[b].role is not Role.COOLANT)
+    return tuple(b for b in network.boundaries if network.identities[b].role is not th.Role.COOLANT)
 
 
 def coolant_boundaries(network: Network) -> tuple[str, ...]:
-    return tuple(b for b in network.boundaries if network.identities[b].role is Role.COOLANT)
+    return tuple(b for b in network.boundaries if network.identities[b].role is th.Role.COOLANT)
 
 
 def flows(network: Network, inputs: Mapping[str, float]) -> tuple[str, ...]:
     """Inputs that are a flow of air or liquid."""
-    return tuple(n for n in inputs if network.measures(n) in (AIR, LIQUID))
+    return tuple(n for n in inputs if network.measures(n) in (th.AIR, th.LIQUID))
 
 
 def at_altitude(network: Network, altitude_m: float) -> Network:
@@ -119,17 +106,17 @@ def at_altitude(network: Network, altitude_m: float) -> Network:
 
     Conduction, radiation and liquids stay as they are.
     """
-    rho, wet = density(altitude_m), set(coolant_boundaries(network))
+    rho, wet = th.density(altitude_m), set(coolant_boundaries(network))
     return replace(network, links=tuple(_thinner(network, x, rho, wet) for x in network.links))
 
 
-def _thinner(network: Network, link: Link, rho: float, wet: set[str]) -> Link:
+def _thinner(network: Network, link: th.Link, rho: float, wet: set[str]) -> th.Link:
     fluids = {n for n in link.places if n in network.boundaries or _fluid(network, n)}
-    liquid = bool(fluids & wet) or any(network.measures(r) == LIQUID for r in link.law.reads)
-    if not fluids or liquid or isinstance(link.law.temperature, Radiation):
+    liquid = bool(fluids & wet) or any(network.measures(r) == th.LIQUID for r in link.law.reads)
+    if not fluids or liquid or isinstance(link.law.temperature, th.Radiation):
         return link
     moving = [name for name in link.law.reads if network.measures(name) in MOVING]
-    thin = thin_stream(link.law, rho) if link.kind == "stream" else thin_film(link.law, rho, moving)
+    thin = th.thin_stream(link.law, rho) if link.kind == "stream" else th.thin_film(link.law, rho, moving)
     return replace(link, law=thin)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from extras.rating.hot_spots import HotSpots
 from extras.rating.operation import Operation
 from thermoscope import Network, Record, ThermoscopeError, simulate, steady
-from thermoscope.plugin import Array, Row, Signals, Stand, initial_state, s3
+from thermoscope import plugin as th
 
 TOGETHER, ROUNDS = 2, 40  # periods that run as one record; of these at most
 REPEATS_K = 0.02  # change per period below which a duty repeats itself
@@ -25,20 +25,20 @@ class Model:
 
     network: Network
     values: Mapping[str, float]
-    rows: Sequence[Row | HotSpots]
+    rows: Sequence[th.Row | HotSpots]
 
-    def place_temperatures(self, z: Array) -> Array:
+    def place_temperatures(self, z: th.Array) -> th.Array:
         """(nt, n_rows) degC of the limited places.  z : (nt, n_states + n_boundaries)"""
         return np.column_stack(
             [r.along(z) if isinstance(r, HotSpots) else z[:, r.index] @ r.weights for r in self.rows]
         )
 
-    def run(self, record: Record, begin: Stand) -> tuple[Array, Stand]:
+    def run(self, record: Record, begin: th.Stand) -> tuple[th.Array, th.Stand]:
         """(nt, n_rows) degC over a record, and where it ends."""
         run = simulate(self.network, record, self.values, keep_states=True, begin=begin)
         return self.place_temperatures(np.asarray(run.z)), run.end
 
-    def rest(self, op: Operation, load: float, speed: float | None) -> Array:
+    def rest(self, op: Operation, load: float, speed: float | None) -> th.Array:
         """(n_rows,) degC under the load for ever; RUNAWAY_C where losses grow faster than the cooling."""
         try:
             return self.place_temperatures(
@@ -47,22 +47,22 @@ class Model:
         except ThermoscopeError:
             return np.full(len(self.rows), RUNAWAY_C)
 
-    def start(self, op: Operation, load: float | None, speed: float | None) -> Stand:
+    def start(self, op: Operation, load: float | None, speed: float | None) -> th.Stand:
         """A stand to begin from: all at the mean of what is around, or at rest under a load."""
         if load is None:
-            return self.at(op, initial_state(self.network, float(np.mean(list(op.boundaries.values())))))
+            return self.at(op, th.initial_state(self.network, float(np.mean(list(op.boundaries.values())))))
         z = steady(self.network, op.at(load, speed), op.boundaries, self.values).z
         return self.at(op, z[: len(self.network.states)])
 
-    def at(self, op: Operation, x: Array) -> Stand:
+    def at(self, op: Operation, x: th.Array) -> th.Stand:
         """A stand at a state x (n_states,)."""
         means = x[["#" not in s for s in self.network.states]]
         none = np.zeros((x.size + len(self.network.boundaries), 0))  # no tangents
-        return Stand(x, none, 1.0, float(min(means.min(), *op.boundaries.values())))
+        return th.Stand(x, none, 1.0, float(min(means.min(), *op.boundaries.values())))
 
     def course(
-        self, op: Operation, load: float, speed: float | None, begin: Stand, seconds: float
-    ) -> tuple[Array, Array]:
+        self, op: Operation, load: float, speed: float | None, begin: th.Stand, seconds: float
+    ) -> tuple[th.Array, th.Array]:
         """times (nt,) s and temperatures (nt, n_rows) under a constant load; RUNAWAY_C where a run goes astray."""
         time = np.concatenate([[0.0], seconds * np.geomspace(1e-3, 1.0, SAMPLES)])
         record = Record(time, {n: np.full(time.size, u) for n, u in op.at(load, speed).items()}, op.boundaries)
@@ -71,23 +71,23 @@ class Model:
         except ThermoscopeError:
             return time, np.full((time.size, len(self.rows)), RUNAWAY_C)
 
-    def repeated(self, op: Operation, load: float, speed: float | None, duty: Duty) -> Array:
+    def repeated(self, op: Operation, load: float, speed: float | None, duty: Duty) -> th.Array:
         """(n_rows,) largest temperatures of a duty that is repeated until it repeats itself."""
-        time, share = s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
+        time, share = th.s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
         pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)
         inputs = {n: np.where(share > 0.5, u, pause[n]) for n, u in op.at(load, speed).items()}
         mean = load * np.sqrt(duty.share + (1.0 - duty.share) * duty.idle**2)
         return self.again_and_again(op, Record(time, inputs, op.boundaries), mean, speed)
 
-    def again_and_again(self, op: Operation, record: Record, load: float, speed: float | None) -> Array:
+    def again_and_again(self, op: Operation, record: Record, load: float, speed: float | None) -> th.Array:
         """(n_rows,) largest temperatures of a record that follows on itself until it repeats itself.
 
         load : whose rest is a first guess;  RUNAWAY_C where there is no rest
         """
         try:
-            record = replace(record, inputs=Signals(record.inputs, record.time.size))  # factors are worked out once
+            record = replace(record, inputs=th.Signals(record.inputs, record.time.size))  # factors are worked out once
             x = self.start(op, load, speed).x
-            iterates: list[tuple[Array, Array]] = []
+            iterates: list[tuple[th.Array, th.Array]] = []
             for _ in range(ROUNDS):
                 T, end = self.run(record, self.at(op, x))
                 iterates = [*iterates, (x, end.x)][-DEPTH:]
@@ -99,7 +99,7 @@ class Model:
             return np.full(len(self.rows), RUNAWAY_C)
 
 
-def mixed(history: Sequence[tuple[Array, Array]]) -> Array:
+def mixed(history: Sequence[tuple[th.Array, th.Array]]) -> th.Array:
     """Where x = g(x) is, from pairs (x, g(x)): Anderson 1965, without damping."""
     x, g = (np.array(side).T for side in zip(*history, strict=True))
     if x.shape[1] == 1:

@@ -11,7 +11,7 @@ from extras.rating.envelope import reached
 from extras.rating.operation import Operation
 from extras.rating.points import REPEATS_K, Model
 from thermoscope import InputError, Record, ThermoscopeError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 LONGEST_S = 7 * 86400.0  # a week of the same cycle; heavier machines do not settle slower
 
@@ -69,7 +69,7 @@ def time_to_limit(model: Model, op: Operation, limits: Mapping[str, float], lap:
     return float("inf")
 
 
-def _crossing(time: Array, excess: Array, k: int) -> float:
+def _crossing(time: th.Array, excess: th.Array, k: int) -> float:
     """Seconds of the lap at which the first place is at its limit, straight between samples k - 1 and k."""
     if k == 0:
         return 0.0

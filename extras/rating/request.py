@@ -13,19 +13,7 @@ from extras.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from extras.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
 from extras.rating.points import Model
 from thermoscope import InputError, Network
-from thermoscope.plugin import USUAL_QUANTITIES as USUAL
-from thermoscope.plugin import (
-    Folder,
-    Identity,
-    Row,
-    as_number,
-    model_of,
-    named_rows,
-    read_csv,
-    standing_reference,
-    suggestion,
-)
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 AMBIENT_C = 40.0  # IEC 60034-1: what a machine is rated in where nothing else is said
 INLET_C = 20.0  # what [cooling] takes where it does not say
@@ -60,16 +48,19 @@ class Rated:
     limits: Mapping[str, float]
 
 
-def rated_model(folder: Folder, request: RatingRequest) -> Rated:
+def rated_model(folder: th.Folder, request: RatingRequest) -> Rated:
     """Of a case as it stands, or of a machine at its rated point."""
-    network, values = model_of(folder)
-    rows = named_rows(network, folder)
+    network, values = th.model_of(folder)
+    rows = th.named_rows(network, folder)
     limits = places(request.limits, rows, network.identities)
     point = usual_point(folder, network)
     if request.losses is not None:
         grid = loss_grid(columns_of(request.losses), str(request.losses), request.voltage)
         network = with_losses(network, grid, str(request.losses))
-        network = replace(network, quantities={TORQUE: USUAL[TORQUE], SPEED: USUAL[SPEED], **network.quantities})
+        network = replace(
+            network,
+            quantities={TORQUE: th.USUAL_QUANTITIES[TORQUE], SPEED: th.USUAL_QUANTITIES[SPEED], **network.quantities},
+        )
         around = {n: u for n, u in point.items() if n in network.boundaries}
         point = {**rated_point(folder, network), **around}
         point |= {TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed))}
@@ -95,7 +86,9 @@ def begun(model: Model, op: Operation, limits: Mapping[str, float], start: float
     return replace(op, warm=warm)
 
 
-def places(limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[str, Identity]) -> dict[str, float]:
+def places(
+    limits: Mapping[str, float], rows: Mapping[str, th.Row], what: Mapping[str, th.Identity]
+) -> dict[str, float]:
     """Every place by its name; a role (winding, magnet, bearing, ...) stands for all places that have it.
 
     what : name -> its role. "winding" limits the ends of a winding beside the place of that name: they may be hotter.
@@ -107,36 +100,35 @@ def places(limits: Mapping[str, float], rows: Mapping[str, Row], what: Mapping[s
         of = name if name in rows else name.removesuffix(MEAN)
         mine = [n for n in rows if n == of or roles.get(n) == of]
         if not mine:
-            raise InputError(f"no temperature '{name}' to limit", "--limit", suggestion(name, rows))
+            raise InputError(f"no temperature '{name}' to limit", "--limit", th.suggestion(name, rows))
         out |= dict.fromkeys((f"{n}{name[len(of) :]}" for n in mine), limits[name])
     return out
 
 
-def usual_point(folder: Folder, network: Network) -> dict[str, float]:
+def usual_point(folder: th.Folder, network: Network) -> dict[str, float]:
     """Where load counts as 1: where the largest load of the fitted tests was, and what they leave open as rated."""
-    return {**rated_point(folder, network), **standing_reference(folder.case).load_point}
+    return {**rated_point(folder, network), **th.standing_reference(folder.case).load_point}
 
 
-def rated_point(folder: Folder, network: Network) -> dict[str, float]:
+def rated_point(folder: th.Folder, network: Network) -> dict[str, float]:
     """Inputs and boundaries of a machine without tests: its ratings, 40 degC around it, its coolant's inlet."""
     if folder.built is None:
         return {}
-    from thermoscope.plugin import rated_inputs
 
-    machine: Machine = folder.built.machine
+    machine: th.MachineDescription = folder.built.machine
     cooling = machine.sections.get("cooling", {})
     wet = dict.fromkeys(coolant_boundaries(network), float(cooling.get("inlet_C", INLET_C)))
-    return {**rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}
+    return {**th.rated_inputs(machine), **dict.fromkeys(air_boundaries(network), AMBIENT_C), **wet}
 
 
 def columns_of(file: Path) -> dict[str, np.ndarray]:
     """The columns of a loss map as numbers."""
     if not file.is_file():
         raise InputError("no such file", f"--losses {file}", "a CSV file with a row per torque and speed")
-    table = read_csv(file)
+    table = th.read_csv(file)
     out = {}
     for name in table.columns:
-        values = [as_number(cell) for cell in table[name]]
+        values = [th.as_number(cell) for cell in table[name]]
         if (row := next((i for i, v in enumerate(values) if v is None or not np.isfinite(v)), None)) is not None:
             raise InputError(f"column '{name}' has no number in row {row + 2}", str(file), "numbers in every row")
         out[name] = np.array(values, float)

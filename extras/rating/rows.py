@@ -13,16 +13,7 @@ from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import Operation
 from extras.rating.request import Rated
 from thermoscope import Record, simulate, steady
-from thermoscope.plugin import (
-    NORMAL_95,
-    AtRest,
-    Folder,
-    ParameterPosterior,
-    named_rows,
-    parameter_values,
-    predicted_bands,
-    thermal,
-)
+from thermoscope import plugin as th
 
 STEADY_TIME_CONSTANTS = 20.0  # time constants
 
@@ -35,14 +26,16 @@ def load_of(old: Rated, form: str, speed: float | None) -> float:
         return 0.0
 
 
-def point(folder: Folder, op: Operation, r: Rating, old: Rated | None, of: ParameterPosterior | None) -> dict[str, Any]:
+def point(
+    folder: th.Folder, op: Operation, r: Rating, old: Rated | None, of: th.ParameterPosterior | None
+) -> dict[str, Any]:
     """A point of the envelope as a rating has it."""
     rated_row = row(folder, op, r, None if old is None else load_of(old, r.form, r.speed), of)
     return {"form": r.form, "speed_rpm": r.speed, **{k: v for k, v in rated_row.items() if k != "form"}}
 
 
 def derated(
-    folder: Folder, it: Rated, old: Rated | None, load: float, of: ParameterPosterior | None
+    folder: th.Folder, it: Rated, old: Rated | None, load: float, of: th.ParameterPosterior | None
 ) -> list[dict[str, Any]]:
     """Shares of the continuous rating `load` in other surroundings; before: of the same, by the earlier model."""
     earlier = (
@@ -72,7 +65,7 @@ def derated(
 
 
 def row(
-    folder: Folder, op: Operation, r: Rating, before: float | None, of: ParameterPosterior | None
+    folder: th.Folder, op: Operation, r: Rating, before: float | None, of: th.ParameterPosterior | None
 ) -> dict[str, Any]:
     """One rating."""
     main = op.inputs[op.main]
@@ -89,20 +82,20 @@ def row(
     }
 
 
-def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior | None) -> float | None:
+def _half_band(folder: th.Folder, op: Operation, r: Rating, of: th.ParameterPosterior | None) -> float | None:
     """Half the 95 % band of a load; none where bands are not wanted or no load reaches a limit.
 
     Duties take that of rest: their mean heat is what counts.
     """
     if of is None or not (np.isfinite(r.load) and r.slope > 0.0):
         return None
-    network, bare = of.network, thermal(of.network)
-    (spot,) = hot_spots(network, named_rows(network, folder), {r.at: 0.0})
-    values = parameter_values(bare, of.values)
+    network, bare = of.network, th.thermal(of.network)
+    (spot,) = hot_spots(network, th.named_rows(network, folder), {r.at: 0.0})
+    values = th.parameter_values(bare, of.values)
     if r.form == "S1":
         at = {n: float(u) for n, u in op.at(r.load, r.speed).items()}
         place_row = spot.hottest(steady(bare, at, op.boundaries, values).z)[1]
-        return NORMAL_95 * AtRest(of, bare).sd(values, at, op.boundaries, place_row) / r.slope
+        return th.NORMAL_95 * th.AtRest(of, bare).sd(values, at, op.boundaries, place_row) / r.slope
     span = TIMES.get(r.form, STEADY_TIME_CONSTANTS * network.settles_s)
     time = np.concatenate([[0.0], span * np.geomspace(1e-3, 1.0, 40)])
     load = r.load if r.form in TIMES else r.load * 0.4**0.5
@@ -114,5 +107,5 @@ def _half_band(folder: Folder, op: Operation, r: Rating, of: ParameterPosterior 
     air = {b: np.full(time.size, T) for b, T in op.boundaries.items()}
     record = Record(time, inputs, air, float(np.mean(list(op.boundaries.values()))))
     end = np.asarray(simulate(bare, record, values, keep_states=True).z)[-1]
-    bands = predicted_bands(of, "rating", record, {r.at: spot.hottest(end)[1]})
+    bands = th.predicted_bands(of, "rating", record, {r.at: spot.hottest(end)[1]})
     return float(bands.half95[-1, 0] / r.slope)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from thermoscope.plugin import Comparison, Folder, comparison_of
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class Appearance:
     """errors : a `compare` document;  curves : test -> readings and model"""
 
     errors: Mapping[str, Any]
-    curves: Mapping[str, Comparison]
+    curves: Mapping[str, th.Comparison]
 
     @property
     def limits(self) -> dict[str, dict[str, float]]:
@@ -26,7 +26,7 @@ class Appearance:
         return next(t for t in self.errors["tests"] if t["name"] == name)
 
 
-def appearance_of(folder: Folder) -> Appearance:
+def appearance_of(folder: th.Folder) -> Appearance:
     """Run the model on every test."""
     errors = folder.compared.document()  # first: what it finds serves the curves
-    return Appearance(errors, {test.name: comparison_of(folder, test) for test in folder.case.tests})
+    return Appearance(errors, {test.name: th.comparison_of(folder, test) for test in folder.case.tests})

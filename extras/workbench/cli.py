@@ -6,14 +6,14 @@ from typing import Annotated
 
 import typer
 
-from thermoscope.plugin import CaseArgument as Case
+from thermoscope import plugin as th
 
 show_commands = typer.Typer(name="show")
 
 
 @show_commands.command()
 def serve(
-    case: Case,
+    case: th.CaseArgument,
     host: Annotated[str, typer.Option(help="Where to listen; all browsers need the token.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8710,
 ) -> int:
@@ -23,12 +23,11 @@ def serve(
     from extras.workbench.access_control import AccessControl
     from extras.workbench.jobs import prepare
     from extras.workbench.serve import application, serve_until_stopped, token_for
-    from thermoscope.plugin import open_case_for_writing, progress, say
 
     prepare()  # loads packages while the case is opened
     access = AccessControl(host, token_for(os.environ.get("THERMOSCOPE_TOKEN")))
-    with progress() as tell:
-        folder = open_case_for_writing(case, tell)
+    with th.progress() as tell:
+        folder = th.open_case_for_writing(case, tell)
     app = application(folder, access)
-    serve_until_stopped(app, access, port, lambda url: say(f"open {url}  (Ctrl-C ends)"))
+    serve_until_stopped(app, access, port, lambda url: th.say(f"open {url}  (Ctrl-C ends)"))
     return 0

@@ -11,8 +11,7 @@ from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
 from thermoscope import InputError
-from thermoscope.plugin import DARK, LIGHT, History, Theme, added_words, by_interest, confusion, matrix
-from thermoscope.plugin import sensor as sensor_figure
+from thermoscope import plugin as th
 
 CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
@@ -63,7 +62,7 @@ class Display:
         self.bench, self.server, self.look = bench, server, None
         self._scale = 0.0, 0.0
         self.state.update({**START, "case_name": bench.folder.case.name, "why_flat": bench.why_flat})
-        self.state.test, self.state.revision = by_interest(bench.folder)[0].name, bench.folder.history.last.number
+        self.state.test, self.state.revision = th.by_interest(bench.folder)[0].name, bench.folder.history.last.number
         self.state.test_names = [test.name for test in bench.folder.case.tests]
         self.state.change("test")(lambda **_: self.choose_test())
 
@@ -72,17 +71,17 @@ class Display:
         return self.server.state
 
     @property
-    def theme(self) -> Theme:
-        return DARK if self.state.dark else LIGHT
+    def theme(self) -> th.Theme:
+        return th.DARK if self.state.dark else th.LIGHT
 
-    def model(self, history: History, look: Appearance) -> None:
+    def model(self, history: th.History, look: Appearance) -> None:
         """Another model: its errors, curves and temperatures."""
         if self.look is None:
             self.state.test, self.state.sensor = rows.worst(look)
         self.look, self.state.limits = look, look.limits
         last, errors = history.last, look.errors
         case = self.bench.folder.case
-        self.state.effects = [{"code": name, "words": added_words(case, [name])} for name in last.effects]
+        self.state.effects = [{"code": name, "words": th.added_words(case, [name])} for name in last.effects]
         self.state.revision, self.state.steps = last.number, rows.steps(history, case)
         self.state.can_undo = len(ledger.effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
@@ -105,7 +104,7 @@ class Display:
         if self.look is None or not names:
             return
         self.state.sensor = name if name in names else names[0]
-        figure = sensor_figure(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
+        figure = th.sensor(self.look.curves[self.state.test], self.state.sensor, theme=self.theme)
         self.state.curve = figure.to_plotly_json()
 
     def next_sensor(self, step: int) -> None:
@@ -129,7 +128,7 @@ class Display:
     def _words(self, cause: str) -> str:
         """A cause as the journal of a bench names it, as an engineer says it."""
         try:
-            return added_words(self.bench.folder.case, cause.split(" + "))
+            return th.added_words(self.bench.folder.case, cause.split(" + "))
         except InputError:  # "nothing" and the like are words already
             return cause
 
@@ -143,5 +142,5 @@ class Display:
         names = [c["effect"] for c in diagnosis["candidates"] if c["effect"] in diagnosis["confusion"]][:CONFUSED]
         self.state.has_confusion = len(names) > 1
         words = {c["effect"]: c.get("words") or c["effect"] for c in diagnosis["candidates"]}
-        figure = confusion([words[n] for n in names], matrix(diagnosis["confusion"], names), theme=self.theme)
+        figure = th.confusion([words[n] for n in names], th.matrix(diagnosis["confusion"], names), theme=self.theme)
         self.state.confusion = figure.to_plotly_json()

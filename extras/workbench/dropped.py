@@ -11,28 +11,7 @@ from uuid import uuid4
 from aiohttp import BodyPartReader, MultipartReader, web
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import (
-    Dialogue,
-    Draft,
-    Progress,
-    Recording,
-    Settings,
-    Target,
-    assigned,
-    cut_short,
-    drafts_of,
-    file_stem,
-    guesses,
-    missing_boundaries,
-    missing_inputs,
-    model_of_case,
-    number,
-    read_runs,
-    save_case,
-    squares_of,
-    target_of,
-    test_name,
-)
+from thermoscope import plugin as th
 
 CHUNK = 2**20  # bytes: little memory, few system calls
 
@@ -44,8 +23,8 @@ class Dropped:
     constants : what was not recorded, input or boundary -> value
     """
 
-    records: tuple[Recording, ...]
-    target: Target
+    records: tuple[th.Recording, ...]
+    target: th.Target
     constants: Mapping[str, float] = field(default_factory=dict)
 
     def moved(self, key: str, to: str) -> Dropped:
@@ -58,16 +37,16 @@ class Dropped:
             raise InputError(f"no column '{column}'", "recordings", "one of those that were dropped")
         records = list(self.records)
         records[i] = replace(
-            records[i], guesses=assigned(records[i].guesses, records[i].source, column, to, self.target)
+            records[i], guesses=th.assigned(records[i].guesses, records[i].source, column, to, self.target)
         )
         for j, r in enumerate(self.records):
             if j != i:
-                records[j] = replace(r, guesses=assigned(r.guesses, r.source, "", to, self.target))
+                records[j] = replace(r, guesses=th.assigned(r.guesses, r.source, "", to, self.target))
         return replace(self, records=tuple(records))
 
     def constant(self, name: str, text: str) -> Dropped:
         """With the value of something that was not recorded, "" for none again."""
-        value = number(text)
+        value = th.number(text)
         if text.strip() and value != value:
             raise InputError(f"'{text}' is no number", name, "such as 21.5")
         rest = {k: v for k, v in self.constants.items() if k != name}
@@ -111,26 +90,26 @@ class Dropped:
     @property
     def missing(self) -> list[str]:
         """Inputs and boundaries of the model that no column gives."""
-        draft = Draft("drop", self.records)
-        draft = replace(draft, squares=squares_of(draft.guesses, self.target))
-        return [*missing_inputs(draft, self.target), *missing_boundaries(draft, self.target)]
+        draft = th.Draft("drop", self.records)
+        draft = replace(draft, squares=th.squares_of(draft.guesses, self.target))
+        return [*th.missing_inputs(draft, self.target), *th.missing_boundaries(draft, self.target)]
 
 
-def read(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
+def read(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:
     """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
-    target, recordings = target_of(network), []
+    target, recordings = th.target_of(network), []
     for file in files:
         tell(f"reading {file.name}")
-        recordings += read_runs(file)
-    return Dropped(tuple(Recording(s, c, guesses(s, c.columns, target)) for s, c in recordings), target)
+        recordings += th.read_runs(file)
+    return Dropped(tuple(th.Recording(s, c, th.guesses(s, c.columns, target)) for s, c in recordings), target)
 
 
-def write(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> Path:
+def write(dropped: Dropped, settings: th.Settings, network: Network, tell: th.Progress) -> Path:
     """A new case beside the open one, with its machine or network; the folder."""
     names = [p.name for p in settings.path.resolve().parent.iterdir()]
-    folder = settings.path.resolve().parent / test_name(dropped.records[0].source.file, names)
-    dialogue = Dialogue(dropped.target, False, dict(dropped.constants))
-    save_case(folder, model_of_case(settings, network), drafts_of(dropped.records, dialogue), tell)
+    folder = settings.path.resolve().parent / th.test_name(dropped.records[0].source.file, names)
+    dialogue = th.Dialogue(dropped.target, False, dict(dropped.constants))
+    th.save_case(folder, th.model_of_case(settings, network), th.drafts_of(dropped.records, dialogue), tell)
     return folder
 
 
@@ -140,8 +119,8 @@ async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Pat
     async for part in parts:
         if not isinstance(part, BodyPartReader) or not part.filename:
             continue
-        plain = Path(file_stem(Path(part.filename).name))
-        name = cut_short(plain.stem.lstrip(".")) + cut_short(plain.suffix)
+        plain = Path(th.file_stem(Path(part.filename).name))
+        name = th.cut_short(plain.stem.lstrip(".")) + th.cut_short(plain.suffix)
         inside = folder / uuid4().hex  # two files of one name
         inside.mkdir()
         files.append(inside / name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from thermoscope.plugin import BenchRun, Theme, bench_run, journal, percent
+from thermoscope import plugin as th
 
 LOOK_S = 2.0  # between two looks at the journal
 
@@ -20,9 +20,9 @@ def say_done(file: Path) -> None:
     file.with_suffix(".done").touch()
 
 
-def state_and_picture(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[str, Any]] | None:
+def state_and_picture(file: Path, theme: th.Theme) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """What the page says of a run, and the picture of it; None before its first look at the odds."""
-    run = BenchRun(journal(file))
+    run = th.BenchRun(th.journal(file))
     looks, sets = run.of("odds"), run.of("set")
     if not looks:
         return None
@@ -31,7 +31,7 @@ def state_and_picture(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[st
     state = {
         "test": file.stem,
         "minutes": f"{run.minutes(last):.0f}",
-        "odds": [{"cause": n, "p": percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]],
+        "odds": [{"cause": n, "p": th.percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]],
         "over": ", ".join(last["over"]),
         "unseen": last["unseen"],
         "left": "" if last.get("stop") else f"about {last['left_min']:.0f} min left",
@@ -40,4 +40,4 @@ def state_and_picture(file: Path, theme: Theme) -> tuple[dict[str, Any], dict[st
         "set": [{"name": n, "value": f"{v:g}"} for n, v in (sets[-1]["set_point"] if sets else {}).items()],
         "asks": run.waits and not (begins and begins[-1]["drive"]),
     }
-    return state, bench_run(run, theme=theme).to_plotly_json()
+    return state, th.bench_run(run, theme=theme).to_plotly_json()

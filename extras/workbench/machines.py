@@ -12,7 +12,7 @@ from typing import Any
 
 from extras.workbench.appearance import Appearance
 from extras.workbench.jobs import Job, StoppedError
-from thermoscope.plugin import Folder, History, Progress
+from thermoscope import plugin as th
 
 MOST_DOCUMENTS = 8  # of machines, about 1 MB each
 PARTS = 3  # of a machine: in one test, in every test, then what takes longest
@@ -24,21 +24,21 @@ Document = dict[str, Any]
 class Drawing:
     """A model's machine while it is drawn.  parts : what there is of it so far, FailedError or StoppedError"""
 
-    def __init__(self, history: History, job: Job) -> None:
+    def __init__(self, history: th.History, job: Job) -> None:
         loop = asyncio.get_running_loop()
         self.history, self.stopped = history, False
         self.parts: list[asyncio.Future[Document]] = [loop.create_future() for _ in range(PARTS)]
-        self._message, self._listeners = "starting", list[Progress]()
+        self._message, self._listeners = "starting", list[th.Progress]()
         self._job = job
         self.task = loop.create_task(self._job.run(self._tell, self._take))
         self.task.add_done_callback(self._end)
 
-    def hear(self, tell: Progress) -> None:
+    def hear(self, tell: th.Progress) -> None:
         """`tell` hears how far it is, until it leaves."""
         self._listeners.append(tell)
         tell(self._message)
 
-    def leave(self, tell: Progress) -> None:
+    def leave(self, tell: th.Progress) -> None:
         """A tab wants it no more; nobody draws what no tab wants."""
         if tell in self._listeners:
             self._listeners.remove(tell)
@@ -75,13 +75,13 @@ class Drawing:
 class Machines:
     """The documents of the last MOST_DOCUMENTS machines, and those that are being drawn."""
 
-    documents: list[tuple[History, Document]] = field(default_factory=list)
+    documents: list[tuple[th.History, Document]] = field(default_factory=list)
     drawings: list[Drawing] = field(default_factory=list)
 
-    def find(self, history: History) -> Document | None:
+    def find(self, history: th.History) -> Document | None:
         return next((document for model, document in self.documents if model == history), None)
 
-    def drawing(self, folder: Folder, job_of: Callable[[Folder], Job]) -> Drawing:
+    def drawing(self, folder: th.Folder, job_of: Callable[[th.Folder], Job]) -> Drawing:
         """The one under way for this model, or a new one."""
         for drawing in self.drawings:
             if drawing.history == folder.history and not drawing.stopped:
@@ -110,7 +110,7 @@ class Bench:
     machines : of the models that tabs showed
     """
 
-    folder: Folder
+    folder: th.Folder
     first: Appearance | None = None
     machines: Machines = field(default_factory=Machines)
     _comparing: asyncio.Task[Appearance] | None = None
@@ -121,7 +121,7 @@ class Bench:
         """Why there is no machine to show; empty where there is one."""
         return NO_MACHINE if self.folder.built is None else ""
 
-    async def compared(self, job_of: Callable[[Folder], Job]) -> Appearance:
+    async def compared(self, job_of: Callable[[th.Folder], Job]) -> Appearance:
         """The model when it was opened, compared once for all tabs that wait. FailedError, StoppedError"""
         if self.first is None:
             if self._comparing is None:

@@ -13,7 +13,7 @@ from trame.widgets import trame as extra
 from trame_plotly import module as plotly
 
 from extras.workbench.session import Session, started
-from thermoscope.plugin import RULE
+from thermoscope import plugin as th
 
 KEYS = (("j", "next"), ("k", "previous"), ("d", "diagnose"), ("u", "undo"), ("r", "report"))
 BROWSER = ("drop", "machine", "plots")  # scripts of the page
@@ -39,7 +39,7 @@ def draw(session: Session) -> None:
         trap = extra.MouseTrap(**{name: acts[name] for _, name in KEYS})  # plain Tab and Enter work without it
         for key, name in KEYS:
             trap.bind(key, name)
-        layout.root.add_child(template.replace("@RULE@", escape(RULE)))
+        layout.root.add_child(template.replace("@RULE@", escape(th.RULE)))
 
 
 def actions(session: Session) -> dict[str, Callable[..., Any]]:

@@ -18,7 +18,7 @@ from extras.workbench.machines import Bench, Machines
 from extras.workbench.steps import comparing_job, drawing_job
 from extras.workbench.tabs import Tabs
 from thermoscope import InputError
-from thermoscope.plugin import DROP_BYTES, Folder, stored_documents
+from thermoscope import plugin as th
 
 SWEEP_S = 30.0  # between looks for idle tabs
 SHORTEST = 16  # characters: 64 bits where they are hexadecimal
@@ -31,14 +31,14 @@ def token_for(token: str | None) -> str:
     return token or secrets.token_urlsafe(24)
 
 
-def application(folder: Folder, access: AccessControl, largest_drop: int = DROP_BYTES.most) -> web.Application:
+def application(folder: th.Folder, access: AccessControl, largest_drop: int = th.DROP_BYTES.most) -> web.Application:
     """The pages of a case, for those who have access; model and machine are prepared once it is served.
 
     largest_drop : of files dropped on a page (bytes)
     """
     os.environ["TRAME_ARGS"] = "--server"  # trame would read our command line as its own
     prepare()
-    parts = stored_documents(folder)
+    parts = th.stored_documents(folder)
     documents = [] if parts is None else [(folder.history, {k: v for part in parts for k, v in part.items()})]
     opened = Bench(folder, None if folder.stored is None else appearance_of(folder), Machines(documents))
     tabs = Tabs(opened, largest_drop)

@@ -17,16 +17,7 @@ from extras.workbench.dropped import Dropped
 from extras.workbench.jobs import FailedError, Job, StoppedError
 from extras.workbench.machines import Bench, Drawing
 from thermoscope import InputError, ThermoscopeError
-from thermoscope.plugin import (
-    Folder,
-    History,
-    added_words,
-    current_diagnosis,
-    load_history,
-    save_diagnosis,
-    save_history,
-)
-from thermoscope.plugin import StoredRevision as Revision
+from thermoscope import plugin as th
 
 REMEMBERED = 8  # revisions whose comparison is at hand
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}
@@ -39,21 +30,21 @@ class Session:
         """turn_to : makes another case the one that new tabs open"""
         self.bench, self.shown, self.turn_to = bench, Display(bench, server), turn_to
         self.state = self.shown.state
-        self.history: History = bench.folder.history
+        self.history: th.History = bench.folder.history
         self.diagnosis: dict[str, Any] | None = None
         self.dropped: Dropped | None = None
         self.viewer_page = ""
         self.viewer_rest: dict[str, Any] = {}
-        self._refused: Revision | None = None
+        self._refused: th.StoredRevision | None = None
         self._closed = False
         self._seen = 0.0
         self._job: Job | None = None
         self._drawing: Drawing | None = None
-        self._on_screen: History | None = None
-        self._known: list[tuple[Revision, Appearance]] = []
+        self._on_screen: th.History | None = None
+        self._known: list[tuple[th.StoredRevision, Appearance]] = []
 
     @property
-    def folder(self) -> Folder:
+    def folder(self) -> th.Folder:
         """The case with this tab's model."""
         return ledger.at(self.bench.folder, self.history)
 
@@ -68,7 +59,7 @@ class Session:
             return
         self._known = [(self.history.last, self.bench.first)]
         self.shown.model(self.history, self.bench.first)
-        self.diagnosis = current_diagnosis(self.folder)
+        self.diagnosis = th.current_diagnosis(self.folder)
         self.shown.show_candidates(self.diagnosis)
         started(self.take_over())
 
@@ -91,8 +82,8 @@ class Session:
         """Look for what is missing."""
         result = await self._calculate("Looking for what is missing", steps.searched, self.folder)
         if result is not None:
-            if load_history(self.file) == self.history:
-                save_diagnosis(self.folder, result)
+            if th.load_history(self.file) == self.history:
+                th.save_diagnosis(self.folder, result)
             with self.state:
                 self.diagnosis = dict(result)
                 self.shown.show_candidates(self.diagnosis)
@@ -102,7 +93,7 @@ class Session:
         effects = {"add": {c["effect"] for c in self.state.candidates}, "remove": set(self.history.last.effects)}
         if effect not in effects.get(action, {""}):
             return
-        words = added_words(self.folder.case, [effect] if effect else [])
+        words = th.added_words(self.folder.case, [effect] if effect else [])
         title = f"{TITLES[action]} {words}".strip()
         result = await self._calculate(title, steps.stepped, self.folder, action, effect)
         if result is None:
@@ -136,7 +127,7 @@ class Session:
     async def take_over(self) -> None:
         """Show the model that the file holds by now."""
         try:
-            await self._show(load_history(self.file))
+            await self._show(th.load_history(self.file))
         except ThermoscopeError as fault:
             self._complain(str(fault))
 
@@ -213,10 +204,8 @@ class Session:
 
     def _draw(self, document: Mapping[str, Any]) -> None:
         """Another machine in the browser; which errors count as agreement, the page tells it."""
-        from thermoscope.plugin import render
-
         self._on_screen = self.history
-        self.viewer_page, self.viewer_rest = render(document), {}
+        self.viewer_page, self.viewer_rest = th.render(document), {}
         with self.state:
             self.state.viewer, self.state.viewer_rest = f"viewer.html?{time.time_ns()}#bench", ""
 
@@ -271,10 +260,10 @@ class Session:
         self.stop()
         self._leave()
 
-    def _write(self, new: History, look: Appearance | None = None) -> bool:
+    def _write(self, new: th.History, look: Appearance | None = None) -> bool:
         """To model.toml, unless somebody else has written there; then show it."""
         try:
-            self.history = save_history(self.file, new, self.history)
+            self.history = th.save_history(self.file, new, self.history)
         except (ThermoscopeError, OSError) as fault:
             self._complain(str(fault))
             return False
@@ -283,7 +272,7 @@ class Session:
             self._keep(look)
         return True
 
-    async def _show(self, history: History) -> None:
+    async def _show(self, history: th.History) -> None:
         """The model that `history` ends with, from memory where it was shown before."""
         look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
         if look is None:
@@ -298,7 +287,7 @@ class Session:
         last = self.history.last
         self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
         self.shown.model(self.history, look)
-        self.diagnosis = current_diagnosis(self.folder)
+        self.diagnosis = th.current_diagnosis(self.folder)
         self.shown.show_candidates(self.diagnosis)
         started(self.machine())
 

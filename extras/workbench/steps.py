@@ -10,35 +10,31 @@ from typing import TYPE_CHECKING, Any
 from extras.workbench.appearance import Appearance, appearance_of
 from extras.workbench.jobs import Job
 from extras.workbench.revisions import at
-from thermoscope.plugin import Folder, Progress
-from thermoscope.plugin import StoredRevision as Revision
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from extras.workbench.dropped import Dropped
     from thermoscope import Network
-    from thermoscope.plugin import Settings
 
 
 NICENESS = 15  # a process of ours gives way to the browser, which draws what it has: a twentieth of its share
 
 
-def first_appearance(folder: Folder, tell: Progress) -> Appearance:
+def first_appearance(folder: th.Folder, tell: th.Progress) -> Appearance:
     """The model as it was opened; its machine, for which a page waits, goes first."""
     _give_way()
     return appearance(folder, tell)
 
 
-def appearance(folder: Folder, tell: Progress) -> Appearance:
+def appearance(folder: th.Folder, tell: th.Progress) -> Appearance:
     """The model as it stands."""
     tell("running the model on every test")
     return appearance_of(folder)
 
 
-def machine_documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
+def machine_documents(folder: th.Folder, tell: th.Progress) -> Iterator[dict[str, Any]]:
     """The machine for the browser to draw, in two parts; limits of its sensors are known where errors are."""
-    from thermoscope.plugin import viewer_documents
-
-    parts = viewer_documents(folder, tell)
+    parts = th.viewer_documents(folder, tell)
     yield next(parts)
     _give_way()
     yield from parts
@@ -49,59 +45,60 @@ def _give_way() -> None:
         os.nice(NICENESS)
 
 
-def comparing_job(folder: Folder) -> Job:
+def comparing_job(folder: th.Folder) -> Job:
     """What compares a model with every test, in a process of its own."""
     return Job(first_appearance, folder)
 
 
-def drawing_job(folder: Folder) -> Job:
+def drawing_job(folder: th.Folder) -> Job:
     """What draws the machine of a model, in a process of its own."""
     return Job(machine_documents, folder)
 
 
-def searched(folder: Folder, tell: Progress) -> Mapping[str, Any]:
+def searched(folder: th.Folder, tell: th.Progress) -> Mapping[str, Any]:
     """A `diagnose` document."""
-    from thermoscope.plugin import diagnose
-
-    diagnosis = diagnose(folder.case, folder.settings.kinds, tell)
+    diagnosis = th.diagnose(folder.case, folder.settings.kinds, tell)
     return {"case": folder.case.name, "revision": folder.case.model.revision, **diagnosis.document()}
 
 
-def stepped(folder: Folder, action: str, effect: str, tell: Progress) -> tuple[Revision, Mapping[str, Any], Appearance]:
+def stepped(
+    folder: th.Folder, action: str, effect: str, tell: th.Progress
+) -> tuple[th.StoredRevision, Mapping[str, Any], Appearance]:
     """Add or remove an effect, or calibrate: the step as model.toml keeps it, its document, the model after it."""
-    from thermoscope.plugin import evidence, finding_words, recorded, revise
-
     if action == "calibrate":
-        result = revise.calibrate(folder.case, progress=tell)
+        result = th.revise.calibrate(folder.case, progress=tell)
     elif action == "add":
         before = None if folder.stored is None else folder.stored.comparison
-        result = revise.add(folder.case, effect, tell, before)
+        result = th.revise.add(folder.case, effect, tell, before)
     else:
-        result = revise.remove(folder.case, effect, tell)
-    revision = recorded(result, evidence(folder, result))
+        result = th.revise.remove(folder.case, effect, tell)
+    revision = th.recorded(result, th.evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
     look = appearance(after, tell)
-    return revision, {**result.document(), "found": finding_words(after, look.errors) if action == "add" else ""}, look
+    return (
+        revision,
+        {**result.document(), "found": th.finding_words(after, look.errors) if action == "add" else ""},
+        look,
+    )
 
 
-def recordings(files: Sequence[Path], network: Network, tell: Progress) -> Dropped:
+def recordings(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:
     """What the columns of dropped files are taken for."""
     from extras.workbench.dropped import read
 
     return read(files, network, tell)
 
 
-def new_case(dropped: Dropped, settings: Settings, network: Network, tell: Progress) -> tuple[Folder, Appearance]:
+def new_case(
+    dropped: Dropped, settings: th.Settings, network: Network, tell: th.Progress
+) -> tuple[th.Folder, Appearance]:
     """A new case of dropped files, opened, and its first comparison."""
     from extras.workbench.dropped import write
-    from thermoscope.plugin import load_case
 
-    folder = load_case(write(dropped, settings, network, tell), tell)
+    folder = th.load_case(write(dropped, settings, network, tell), tell)
     return folder, appearance(folder, tell)
 
 
-def reported(folder: Folder, tell: Progress) -> Path:
+def reported(folder: th.Folder, tell: th.Progress) -> Path:
     """Write out/report.html with the last diagnosis there was."""
-    from thermoscope.plugin import write_page
-
-    return write_page(folder, str(folder.settings.path), folder.settings.out, tell)
+    return th.write_page(folder, str(folder.settings.path), folder.settings.out, tell)

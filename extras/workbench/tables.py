@@ -6,8 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from extras.workbench.appearance import Appearance
-from thermoscope.plugin import History, MeasuredCase, amplitude, fall, offers, short, step_words, verdict
-from thermoscope.plugin import percent as odds
+from thermoscope import plugin as th
 
 Row = dict[str, Any]
 MOST_ROWS = 12  # candidates of a tab
@@ -35,7 +34,7 @@ def channels(look: Appearance, test: str, scale: float) -> list[Row]:
     return [
         {
             "name": c["channel"],
-            "label": short(c["channel"]),
+            "label": th.short(c["channel"]),
             "place": c["place"],
             "rmse": f"{c['rmse_K']:.2f}",
             "width": percent(c["rmse_K"], scale),
@@ -63,10 +62,10 @@ def largest(look: Appearance) -> tuple[float, float]:
     return max(t["rmse_K"] for t in rows), max(c["rmse_K"] for t in rows for c in t["channels"])
 
 
-def steps(history: History, case: MeasuredCase) -> list[Row]:
+def steps(history: th.History, case: th.MeasuredCase) -> list[Row]:
     """The revisions, the last first."""
     words = [
-        {"number": r.number, "text": step_words(case, r), "code": r.effect, "why": r.why.replace("->", "→")}
+        {"number": r.number, "text": th.step_words(case, r), "code": r.effect, "why": r.why.replace("->", "→")}
         for r in history.revisions
     ]
     return [*reversed(words), {"number": 0, "text": "as declared", "code": "", "why": ""}]
@@ -79,11 +78,11 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
         {
             "effect": c["effect"],
             "words": words[c["effect"]],
-            "score": odds(c["probability"]),
+            "score": th.percent(c["probability"]),
             "width": percent(c["probability"], 1.0),
-            "amplitude": amplitude(c),
-            "error": fall(c["rmse_K"]),
-            "held": fall(c["holdout_rmse_K"]),
+            "amplitude": th.amplitude(c),
+            "error": th.fall(c["rmse_K"]),
+            "held": th.fall(c["holdout_rmse_K"]),
             "alike": ", ".join(words.get(name, name) for name in c["confused_with"][:3]),
             "decision": c["decision"],
             "test": c.get("isolating_test", ""),
@@ -95,11 +94,11 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
 
 def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """The verdict in a sentence, and what the tests cannot see."""
-    tone, sentence = verdict(diagnosis, None)
+    tone, sentence = th.verdict(diagnosis, None)
     hidden = [h["words"] for h in diagnosis["cannot_see"]]
     further_tests = [
         f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
-        for o in offers(diagnosis)[:3]
+        for o in th.offers(diagnosis)[:3]
     ]
     hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
     return {

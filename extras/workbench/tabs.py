@@ -23,6 +23,7 @@ from extras.workbench.access_control import served
 from extras.workbench.dropped import stored
 from extras.workbench.machines import Bench
 from extras.workbench.session import Session, started
+from thermoscope import plugin as th
 
 MOST = 8  # tabs, each with a server of its own
 IDLE_S = 900.0  # a tab that is left alone so long is closed
@@ -44,9 +45,7 @@ def hashes(page: Path) -> str:
 @cache
 def _page_policy(*further: str) -> str:
     """Of a page that runs no script but the viewer's."""
-    from thermoscope.plugin import script
-
-    first = ["default-src 'none'", f"script-src {_named(script().encode())}", "style-src 'unsafe-inline'"]
+    first = ["default-src 'none'", f"script-src {_named(th.script().encode())}", "style-src 'unsafe-inline'"]
     return "; ".join([*first, "base-uri 'none'", "form-action 'none'", *further])
 
 

@@ -122,7 +122,7 @@ def coefficients(
         return m.get(name, 1.0) * coefficient(law, signals, hot, cold)
 
     for link in network.links:
-        g = value(link.law, link.name, _at(z, link.hot), _at(z, link.cold))
+        g = value(link.law, link.name, link.hot.at(z), link.cold.at(z))
         key = link.name.split(":")[1]
         if link.kind == "film":
             films[key] = films.get(key, 0.0) + g
@@ -137,7 +137,7 @@ def coefficients(
                 else:
                     s[fluids.index(network.states[row])] -= g * v * ambient[col - n]
     for source in network.sources:
-        q = value(source.law, source.name, _at(z, source.probe), 0.0)
+        q = value(source.law, source.name, source.probe.at(z), 0.0)
         for place, share in _heated(network, source, shares).items():
             watts[place] = watts.get(place, 0.0) + q * share
     for k, name in enumerate(fluids):
@@ -153,10 +153,6 @@ def _heated(network: Network, source: Source, shares: Shares | None) -> Mapping[
         if "#" not in network.states[i]:
             out[network.states[i]] = out.get(network.states[i], 0.0) + float(w)
     return out
-
-
-def _at(z: Array, row: object) -> float:
-    return float(row.weights @ z[row.index])  # type: ignore[attr-defined]
 
 
 def fluid_nodes(network: Network) -> tuple[str, ...]:
@@ -206,11 +202,11 @@ def through(
             key = link.name.removeprefix("contact:")
             touch, g = field.contacts[key], c.contacts[key]
             fem = g * float(touch.a.b @ full.T[touch.a.dofs] - touch.b.b @ full.T[touch.b.dofs])
-            add(link.name, link.places, fem, g * touch.area * (_at(z, link.hot) - _at(z, link.cold)))
+            add(link.name, link.places, fem, g * touch.area * (link.hot.at(z) - link.cold.at(z)))
     for face, film in field.films.items():
         place, h, t = network.places[face], c.films.get(face, 0.0), film.trace
         fem = h * float(t.b @ full.T[t.dofs] - t.area * u[film.fluid])
-        network_W = h * t.area * (_at(z, place.mean) - float(z[network.column(film.fluid)]))
+        network_W = h * t.area * (place.mean.at(z) - float(z[network.column(film.fluid)]))
         add(f"film:{face}", (t.part,), fem, network_W)
     return tuple(sorted(out, key=lambda link: -link.percent_of_heat))
 

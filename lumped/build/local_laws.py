@@ -36,11 +36,12 @@ def with_local_laws(
     terms: list[Term] = []
     for link in radiating(network):
         emissivity, face = float(np.mean(link.law.factor(signals))), link.places[0]
-        films[face] = max(films[face] - emissivity * _at(link, check.state), 0.0)
-        terms.append(Radiation(face, emissivity, float(link.cold.weights @ check.state[link.cold.index])))
+        hot, cold = link.hot.at(check.state), link.cold.at(check.state)
+        films[face] = max(films[face] - emissivity * temperature_value(link.law.temperature, hot, cold), 0.0)
+        terms.append(Radiation(face, emissivity, cold))
     for source, law in copper(network):
         rated = float(np.mean(source.law.factor(signals)))
-        now = rated * temperature_value(law, float(source.probe.weights @ check.state[source.probe.index]), 0.0)
+        now = rated * temperature_value(law, source.probe.at(check.state), 0.0)
         for part, share in shares[source.name].items():
             if part in field.blocks:
                 watts[part] -= now * share
@@ -58,8 +59,3 @@ def radiating(network: Network) -> list[Link]:
 def copper(network: Network) -> list[tuple[Source, laws.Linear]]:
     """Losses that follow their winding's temperature."""
     return [(s, s.law.temperature) for s in network.sources if isinstance(s.law.temperature, laws.Linear)]
-
-
-def _at(link: Link, z: Array) -> float:
-    hot, cold = (float(row.weights @ z[row.index]) for row in (link.hot, link.cold))
-    return temperature_value(link.law.temperature, hot, cold)

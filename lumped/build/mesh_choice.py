@@ -231,8 +231,8 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
         pairs = {way: _halved(looks, how, way) for way, halvings in ways.items() if halvings.unsure}
         candidates = (finer.along(way, 0.5) for way, (_, finer) in pairs.items() if way not in WAYS)
         looks.solve([how, *(mesh for pair in pairs.values() for mesh in pair)], candidates)
-        for way, pair in pairs.items():
-            ways[way] = replace(ways[way], moves=(*ways[way].moves, looks.moved(*pair)))
+        for halved, pair in pairs.items():
+            ways[halved] = replace(ways[halved], moves=(*ways[halved].moves, looks.moved(*pair)))
         percent = _percent(looks.hot(how), linear, ways)
         worst = max(percent, key=lambda p: percent[p])
         way = _refined(looks, how, {way: halvings.left(worst) for way, halvings in ways.items()}, most)

@@ -1,14 +1,10 @@
-"""Forced convection on outer surfaces, and its mixture with natural convection."""
+"""Forced convection on outer surfaces."""
 
 from __future__ import annotations
 
-from typing import TypeVar
-
-from geom.arrays import Array
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 
-Number = TypeVar("Number", float, Array)
 CRITICAL_RE = 5e5  # of a smooth plate in quiet air (Incropera); a rough one turns turbulent earlier
 
 
@@ -41,13 +37,3 @@ def churchill_bernstein(speed: float, diameter: float, fluid: Fluid | None = Non
     numbers = {"Nu": Nu, "Re": Re, "Re Pr": Re * fluid.Pr}
     limits = {"Re": (0, 1e7), "Re Pr": (0.2, 1e8)}
     return Nu * fluid.k / diameter, checked("churchill_bernstein", "Churchill & Bernstein 1977", numbers, limits)
-
-
-def churchill_mixed(forced: Number, natural: Number, assisting: bool = True, exponent: float = 3.0) -> Number:
-    """(h_f^n + h_n^n)^(1/n), minus when they oppose (W/m2/K); n = 4 for a cylinder across the flow.
-
-    Source: Churchill 1977, AIChE J. 23, 10. Range: 0.1 < Gr/Re^2 < 10; outside, the larger one rules by itself.
-    """
-    if assisting:
-        return (forced**exponent + natural**exponent) ** (1 / exponent)
-    return abs(forced**exponent - natural**exponent) ** (1 / exponent)

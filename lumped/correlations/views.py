@@ -23,12 +23,3 @@ def parallel_rectangles(width: float, length: float, distance: float) -> float:
     log = 0.5 * math.log((x * y) ** 2 / (1 + X * X + Y * Y))
     arcs = X * y * math.atan(X / y) + Y * x * math.atan(Y / x) - X * math.atan(X) - Y * math.atan(Y)
     return 2 / (math.pi * X * Y) * (log + arcs)
-
-
-def groove(depth: float, width: float) -> float:
-    """Opening of a long groove between fins to its base, by crossed strings: sqrt(1 + a^2) - a, a = depth/width.
-
-    What the opening does not send to the base falls on the fins' sides. Source: Hottel 1954.
-    """
-    a = depth / width
-    return math.sqrt(1 + a * a) - a

@@ -1,7 +1,7 @@
 """JSON Schemas of all TOML files: for editors, and for what error messages say a key means.
 
-Their text is in KIND.json beside this file; bounds.py has the bounds of all numbers, and the families of machines have
-the keys of theirs.
+Their text is in KIND.json beside this file, without what goes without saying: see `_spelt_out`. bounds.py has the
+bounds of all numbers, and the families of machines have the keys of theirs.
 
 python -m lumped.schemas.schema FOLDER    writes the schemas, out/schemas where no folder is named
 """
@@ -30,8 +30,24 @@ def schema(name: str) -> Schema:
     """The schema of one kind of file, one of FILES, with the bounds of every number."""
     if name == "machine":
         return machine_schema()
-    out: Schema = bounded(json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8")))
+    text = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    out: Schema = bounded(_spelt_out(text, text.pop("$defs", {})))
     return out
+
+
+def _spelt_out(node: Any, parts: Mapping[str, Schema]) -> Any:
+    """A schema with its repeated parts in full; a table has no keys but its own unless it says so."""
+    if isinstance(node, list):
+        return [_spelt_out(inner, parts) for inner in node]
+    if not isinstance(node, Mapping):
+        return node
+    if "$ref" in node:
+        return _spelt_out(parts[node["$ref"].rpartition("/")[2]], parts)
+    out = {key: _spelt_out(inner, parts) for key, inner in node.items() if key != "properties"}
+    if "properties" in node:
+        inside = {key: _spelt_out(inner, parts) for key, inner in node["properties"].items()}
+        return {"type": "object", "properties": inside, "additionalProperties": False} | out
+    return {"type": "object"} | out if isinstance(out.get("additionalProperties"), Mapping) else out
 
 
 @cache

@@ -17,7 +17,7 @@ calculation centimetre centred ceramic clamp comma compile compute csv cylinder 
 diagnose diameter disagreement disc divider duration enclose encoder exceed exclude export finite fmu foil
 folder format furthest geometry graphics halo halve halves hinder horizontal hypotheses import inlet insulate
 integer inverse json kelvin latter likelihood logger magnitude matlab matrix matt measurement midway module
-neighbour ohm optional outlet overlap pip plunge pmsm pymoo pypardiso quotation refit rerun revise rotate
+neighbour ohm optional outlet overlap pip plunge pmsm pymoo quotation refit rerun revise rotate
 screenshot semi simplify simultaneous slope span spiral spreadsheet stainless stderr stdout sudo tab
 thermoscope thumbnail tilt triangle uncertain undo undone uneven validate vary vermilion vertical visibility
 watt widen width workbench workbook worksheet xlsx

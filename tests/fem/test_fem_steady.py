@@ -1,7 +1,5 @@
 """Steady conduction against closed forms, published benchmarks and convergence rates."""
 
-import sys
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -14,7 +12,6 @@ from fem.matrices.grids import box, cylinder, ring, sector
 from fem.matrices.material import Conductivity, isotropic, laminated
 from fem.solvers import solve
 from fem.solvers.multifrontal import analyse, factorise
-from fem.solvers.pardiso import Pardiso
 from fem.solvers.solve import Fluids, Iterative, Solver, only_fixed, steady
 from geom.errors import InputError
 
@@ -208,22 +205,6 @@ def test_iterative_and_direct_agree():
     direct, iterative = (steady(s(field), films, {"core|yoke": 300.0}, load, given) for s in (Solver, Iterative))
     assert np.abs(iterative.T - direct.T).max() < 1e-7
     assert iterative.energy_balance < 1e-9
-
-
-def test_pardiso_and_our_own_factor_agree():
-    """One right-hand side, several, with a shift and without."""
-    pytest.importorskip("pypardiso")
-    field = rings()
-    K = field.stiffness(dict.fromkeys(field.films, 5.0), {"core|yoke": 100.0})
-    x = np.random.default_rng(3).normal(size=(field.n, 3))
-    assert Pardiso(field).factor(K)(K @ x) == pytest.approx(x, abs=1e-9)
-    assert Pardiso(field).factor(K, 0.1)((K + 0.1 * field.M) @ x[:, 0]) == pytest.approx(x[:, 0], abs=1e-9)
-
-
-def test_pardiso_says_how_to_get_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "pypardiso", None)
-    with pytest.raises(InputError, match=r"not installed.*thermoscope\[direct\]"):
-        Pardiso(rings())
 
 
 def test_matrix_is_symmetric_positive_definite():

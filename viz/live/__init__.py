@@ -6,15 +6,18 @@ installed. The drawings on paper (viz.figures) need no browser.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from geom.lazy import loaded_when_used
 
-_HOME = {
-    "sensor": "curves",
-    "residuals": "curves",
-    "against_input": "curves",
-    "parity": "curves",
-    "confusion": "curves",
-    "save": "style",
-}
-__all__ = sorted(_HOME)
-__getattr__, __dir__ = loaded_when_used(__name__, _HOME, within="viz.live.")
+if TYPE_CHECKING:
+    from viz.live.curves import (
+        against_input as against_input,
+        confusion as confusion,
+        parity as parity,
+        residuals as residuals,
+        sensor as sensor,
+    )
+    from viz.live.style import save as save
+
+__getattr__, __dir__ = loaded_when_used(__name__, __file__)

@@ -5,32 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermoscope.plugin import Summary, Table, cell
+from thermoscope import plugin as th
 
 
-def curves_summary(document: Mapping[str, Any]) -> Summary:
+def curves_summary(document: Mapping[str, Any]) -> th.Summary:
     """The rule assembly by assembly, the repeats, then eq. 8 and eq. 9 sensor by sensor."""
     assemblies = [{**a, "test": t["name"]} for t in document["tests"] for a in t["assemblies"]]
     fine = sum(a["verdict"] in ("calibrated", "allowed") for a in assemblies)
     columns = "assembly=place | *test | measured (degC)=measured | calculated (degC)=calculated | *%=percent"
     columns += " | % of rise=percent_of_rise | reading's 95 % (%)=U95_percent | *verdict"
     title = "Within 3 to 4 % of the measured temperature, never above 7 %"
-    rule = Table.of(title, assemblies, columns, ["beyond 7 %"])
+    rule = th.Table.of(title, assemblies, columns, ["beyond 7 %"])
     sentence = f"{fine} of {len(assemblies)} assemblies are within the 3 to 4 % rule."
-    parts: list[Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
-    return Summary(sentence, parts, "--json FILE")
+    parts: list[th.Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
+    return th.Summary(sentence, parts, "--json FILE")
 
 
-def _warming(document: Mapping[str, Any]) -> Table:
+def _warming(document: Mapping[str, Any]) -> th.Table:
     headers = ["sensor", "test", "a (degC)", "b", "c (1/min)", "rms (K)", "T(0)", "tau_95 (min)", "steady", "K/h"]
     rows = [[c["channel"], t["name"], *_row(c)] for t in document["tests"] for c in t["curves"]]
     keep = ["test", "tau_95 (min)", "steady", "rms (K)"]
-    return Table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
+    return th.Table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
 
 
-def _repeats(document: Mapping[str, Any]) -> Table:
+def _repeats(document: Mapping[str, Any]) -> th.Table:
     columns = "place | *equal tests=tests | *mean rise (K)=mean | 1 sigma (K)=sd_mean | largest difference=spread"
-    return Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
+    return th.Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
 
 
 def _doubts(document: Mapping[str, Any]) -> list[str]:
@@ -58,7 +58,7 @@ def _row(c: Mapping[str, Any]) -> list[Any]:
 
 
 def _with(value: float, ci: list[float]) -> str:
-    return f"{cell(value)} ({cell(ci[0])} ... {cell(ci[1])})"
+    return f"{th.cell(value)} ({th.cell(ci[0])} ... {th.cell(ci[1])})"
 
 
 def _since(q: Mapping[str, Any]) -> str:

@@ -9,15 +9,15 @@ from typing import Any
 
 from extras.bench.measuring.drift import Drift, drift
 from thermoscope import InputError
-from thermoscope.plugin import MeasuredCase, Progress, Summary, Table, Test, file_stem, open_case, suggestion
+from thermoscope import plugin as th
 
 
-def drift_between(case: str, test: str | None, against: str, tell: Progress) -> Drift:
+def drift_between(case: str, test: str | None, against: str, tell: th.Progress) -> Drift:
     """against : a test of the case, or a second case, of which it is the test of the same name, else the last one."""
-    here = open_case(case, tell).case
+    here = th.open_case(case, tell).case
     tests = {t.name: t for t in here.tests}
     if against not in tests and Path(against).is_dir():
-        other = open_case(against, tell).case
+        other = th.open_case(against, tell).case
         earlier = _named(other, test) if test in {t.name for t in other.tests} else other.tests[-1]
         earlier = replace(earlier, name=f"{other.name}/{earlier.name}")
     else:
@@ -30,24 +30,24 @@ def drift_between(case: str, test: str | None, against: str, tell: Progress) -> 
     return drift(here, later, earlier)
 
 
-def _named(case: MeasuredCase, name: str | None, option: str = "--test") -> Test:
+def _named(case: th.MeasuredCase, name: str | None, option: str = "--test") -> th.Test:
     tests = {t.name: t for t in case.tests}
     if name not in tests:
-        raise InputError(f"unknown test {name!r} of {case.name}", option, suggestion(str(name), tests))
+        raise InputError(f"unknown test {name!r} of {case.name}", option, th.suggestion(str(name), tests))
     return tests[name]
 
 
-def drift_summary(document: Mapping[str, Any]) -> Summary:
+def drift_summary(document: Mapping[str, Any]) -> th.Summary:
     """What changed; then both quantities of every sensor."""
     columns = "sensor=place | *quantity | before | after | *difference (%)=percent | *+- 95 %=U95_percent"
-    table = Table.of(
+    table = th.Table.of(
         "At the earlier test's conditions",
         document["changes"],
         f"{columns} | uncertainties | channel | *verdict",
         ["changed"],
     )
     names = ", ".join(document["left_out"])
-    return Summary(
+    return th.Summary(
         document["sentence"], [table, *([f"too few readings, or no rise: {names}"] if names else [])], "--out DIR"
     )
 
@@ -56,6 +56,6 @@ def drift_picture(result: Drift, out: Path) -> Path:
     """Both tests, sensor by sensor."""
     from extras.bench.figure import two_tests
 
-    path = out / f"{file_stem(f'{result.later}-{result.earlier}')}.png"
+    path = out / f"{th.file_stem(f'{result.later}-{result.earlier}')}.png"
     two_tests(result, png=path)
     return path

@@ -11,7 +11,7 @@ import numpy as np
 from extras.bench.steady_law.law import Prediction, SteadyLaw, checks, find_law
 from extras.bench.steady_law.steady_tests import Columns, SteadyTests, read_tests
 from thermoscope import InputError
-from thermoscope.plugin import Progress, Summary, Table, as_number, csv_lines, percent, write_whole
+from thermoscope import plugin as th
 
 MOST_INPUTS = 3  # of a law: with more, forms outnumber the tests of any bench
 Predicted = tuple[SteadyTests, Prediction]
@@ -28,12 +28,12 @@ def law_request(
         raise InputError(f"'{twice}' is given twice", "--heat, --coolant, --follows", "a column for one thing")
     if len(pairs) > MOST_INPUTS:
         raise InputError(f"{len(pairs)} inputs", "--follows", f"at most {MOST_INPUTS}")
-    degC = None if ambient is None else as_number(ambient)
+    degC = None if ambient is None else th.as_number(ambient)
     return Columns(heat, coolant, pairs, temperatures, ambient if degC is None else degC, fluid)
 
 
 def law_document(
-    file: Path, columns: Columns, predict: Path | None, tell: Progress
+    file: Path, columns: Columns, predict: Path | None, tell: th.Progress
 ) -> tuple[SteadyLaw, dict[str, Any], Predicted | None]:
     """The law of a file with its checks, and what it predicts of another one."""
     tell(f"reading {file}")
@@ -49,16 +49,16 @@ def law_document(
     return law, document, (others, prediction)
 
 
-def law_summary(document: Mapping[str, Any]) -> Summary:
+def law_summary(document: Mapping[str, Any]) -> th.Summary:
     """The law in words, its numbers, how well it agrees with its tests and with what was left out."""
     columns = "number=name | *value | *95 % interval=interval | *unit"
-    numbers = Table.of("", document["numbers"], columns, interval=lambda n: f"{n['low']:.3g} to {n['high']:.3g}")
+    numbers = th.Table.of("", document["numbers"], columns, interval=lambda n: f"{n['low']:.3g} to {n['high']:.3g}")
     rows = [{"left_out": "nothing", **document["agreement"]}, *document["checks"]]
     rows += [document["predicted"]] if "predicted" in document else []
     columns = "left out=left_out | *tests | *rms (K)=rms_K | worst sensor (K)=worst_K | *in the band=inside | worst"
-    errors = Table.of("Tests and law, all sensors", rows, columns, inside=lambda r: percent(r["inside"]))
+    errors = th.Table.of("Tests and law, all sensors", rows, columns, inside=lambda r: th.percent(r["inside"]))
     more = [document["formula"], numbers, errors, *document["doubts"]]
-    return Summary(document["sentence"], more, "--out DIR; --json FILE")
+    return th.Summary(document["sentence"], more, "--out DIR; --json FILE")
 
 
 def law_files(law: SteadyLaw, predicted: Predicted | None, out: Path) -> list[Path]:
@@ -74,5 +74,5 @@ def law_files(law: SteadyLaw, predicted: Predicted | None, out: Path) -> list[Pa
         head += [f"{name}_95_K" for name in ("mean", *law.tests.names)]
         table = np.column_stack([tests.inputs, tests.heat, tests.coolant, p.mean, p.readings, p.half, p.halves])
         paths.append(out / "predicted.csv")
-        write_whole(paths[-1], csv_lines([head, *([f"{v:.6g}" for v in row] for row in table)]))
+        th.write_whole(paths[-1], th.csv_lines([head, *([f"{v:.6g}" for v in row] for row in table)]))
     return paths

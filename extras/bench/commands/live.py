@@ -12,20 +12,7 @@ from extras.bench.live.sources import source_of
 from extras.bench.live.steering import UNDECIDED, Steering
 from extras.bench.live.store import Store
 from thermoscope import InputError
-from thermoscope.plugin import (
-    PACKAGE,
-    STDOUT,
-    BenchRun,
-    Summary,
-    Table,
-    file_stem,
-    find_case,
-    load_case,
-    notes,
-    percent,
-    progress,
-    say,
-)
+from thermoscope import plugin as th
 
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
@@ -34,17 +21,17 @@ def live_document(
     case: str, follow: str, test: str, drive: bool, json: str | None
 ) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
     """What a run on the bench ended with, and its journal; its rows are a test of the case."""
-    path = find_case(case)
-    if PACKAGE in path.resolve().parents:
+    path = th.find_case(case)
+    if th.PACKAGE in path.resolve().parents:
         raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
-    if file_stem(test) != test:
-        raise InputError(f"'{test}' is no name of a file", "--test", f"a name like {file_stem(test)}")
-    with progress() as tell:
+    if th.file_stem(test) != test:
+        raise InputError(f"'{test}' is no name of a file", "--test", f"a name like {th.file_stem(test)}")
+    with th.progress() as tell:
         tell("reading the case")
-        network = load_case(path, untested=True).case.model.network
+        network = th.load_case(path, untested=True).case.model.network
     bench = read_bench(path, network)
     store = Store(path, test, bench.sheet_file)
-    lines: Callable[[str], None] = (lambda line: notes([line])) if json == STDOUT or follow == "-" else say
+    lines: Callable[[str], None] = (lambda line: th.notes([line])) if json == th.STDOUT or follow == "-" else th.say
     try:
         steering = Steering(bench, store)
         session = Session(steering, source_of(follow), path, drive, lines, follow != "-")
@@ -69,19 +56,21 @@ def live_document(
     return document, events
 
 
-def live_summary(document: Mapping[str, Any]) -> Summary:
+def live_summary(document: Mapping[str, Any]) -> th.Summary:
     """How it ended, the odds, and what was set."""
-    odds = Table.of("Odds", document["odds"], "*cause | *probability", probability=lambda o: percent(o["probability"]))
+    odds = th.Table.of(
+        "Odds", document["odds"], "*cause | *probability", probability=lambda o: th.percent(o["probability"])
+    )
     rows = [
         [e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())]
         for e in document["set_points"]
     ]
-    parts: list[Table | str] = [odds, Table("Set points", ["from (min)", "set point"], rows)]
+    parts: list[th.Table | str] = [odds, th.Table("Set points", ["from (min)", "set point"], rows)]
     if document["sensors_over"]:
         parts.append(f"sensors over: {', '.join(document['sensors_over'])}")
     if document["cannot_see"]:
         parts.append(f"cannot see: {', '.join(document['cannot_see'])}")
-    return Summary(
+    return th.Summary(
         f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}"
     )
 
@@ -91,5 +80,5 @@ def live_picture(events: Sequence[Mapping[str, Any]], test: str, out: Path) -> P
     from extras.bench.figure import odds_over_time
 
     file = out / f"{test}-odds.png"
-    odds_over_time(BenchRun(events), png=file)
+    odds_over_time(th.BenchRun(events), png=file)
     return file

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermoscope import InputError
-from thermoscope.plugin import Role, Summary, Table, load_machine_file, required
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
-    from thermoscope.plugin import MachineDescription as Machine
+    pass
 
 DESIGNS = ("full", "half", "gap", "morris", "sobol")
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
@@ -21,17 +21,17 @@ def screening_document(machine: str, design: str) -> dict[str, Any]:
     """Which of table I's factors move magnets, winding, end winding and laminations."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
-    required(("SALib",) if design in ("morris", "sobol") else ())
-    design_machine = load_machine_file(Path(machine))
+    th.required(("SALib",) if design in ("morris", "sobol") else ())
+    design_machine = th.load_machine_file(Path(machine))
     roles = {part.role for part in design_machine.parts}
-    if Role.MAGNET not in roles or Role.HOUSING in roles:
+    if th.Role.MAGNET not in roles or th.Role.HOUSING in roles:
         right = "a machine with magnets in open laminations, e.g. pmsm-m1"
         raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
     effects = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
     return {"machine": design_machine.name, "design": design, **effects}
 
 
-def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
+def _by_effects(machine: th.MachineDescription, design: str) -> dict[str, Any]:
     from extras.bench.factors.factorial import fractional, full
     from extras.bench.factors.screening import TABLE_I, WITH_GAP, screen
 
@@ -43,7 +43,7 @@ def _by_effects(machine: Machine, design: str) -> dict[str, Any]:
     return screen(machine, plans[design]()).document()
 
 
-def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
+def _by_shares(machine: th.MachineDescription, design: str) -> dict[str, Any]:
     from extras.bench.factors.screening import varied
     from extras.bench.factors.sensitivity import morris, sobol
 
@@ -52,7 +52,7 @@ def _by_shares(machine: Machine, design: str) -> dict[str, Any]:
     return {"rankings": {name: method(factors, response).document() for name, response in responses.items()}}
 
 
-def screening_summary(document: Mapping[str, Any]) -> Summary:
+def screening_summary(document: Mapping[str, Any]) -> th.Summary:
     """The factor that moves each response most; a table per response, largest first: the Pareto chart."""
     tables = [_effects(name, effects) for name, effects in document.get("effects", {}).items()]
     tables += [_ranking(name, effects) for name, effects in document.get("rankings", {}).items()]
@@ -61,22 +61,22 @@ def screening_summary(document: Mapping[str, Any]) -> Summary:
         for g in tables
         if g.rows
     )
-    return Summary(
+    return th.Summary(
         f"{document['machine']}, {document['design']}: what moves most. {leading}.",
         tables,
         "--out DIR for plots; --json FILE",
     )
 
 
-def _effects(name: str, effects: Mapping[str, Any]) -> Table:
+def _effects(name: str, effects: Mapping[str, Any]) -> th.Table:
     title = f"{name}: beyond {effects['simultaneous']:.2f} is not chance (Lenth, simultaneous 95 %)"
     columns = f"effect | factors=words | *high - low ({unit_of(name)})=value | *active"
-    return Table.of(title, effects["effects"], columns, ["yes"], active=lambda e: "yes" if e["active"] else "")
+    return th.Table.of(title, effects["effects"], columns, ["yes"], active=lambda e: "yes" if e["active"] else "")
 
 
-def _ranking(name: str, indices: Mapping[str, Any]) -> Table:
+def _ranking(name: str, indices: Mapping[str, Any]) -> th.Table:
     title = f"{name}: {indices['method']}, {indices['runs']} runs"
-    return Table.of(title, indices["ranking"], "factor | measure | +- 95 %=conf95 | spread")
+    return th.Table.of(title, indices["ranking"], "factor | measure | +- 95 %=conf95 | spread")
 
 
 def unit_of(response: str) -> str:
@@ -102,17 +102,17 @@ def _png(out: Path, response: str) -> Path:
     return out / f"{response.split(' (')[0].replace(' ', '-')}.png"
 
 
-def paths(resistances: Mapping[str, Mapping[str, Any]]) -> Summary:
+def paths(resistances: Mapping[str, Mapping[str, Any]]) -> th.Summary:
     """Two resistances per test."""
     columns = "test | R_ext (K/W)=R_ext | R_w (K/W)=R_w | winding (K)=winding_K | machine (K)=machine_K"
     columns += " | left at other loads (K)=largest_residual_K"
     rows = [{"test": name, **one} for name, one in resistances.items()]
     left = max(one["largest_residual_K"] for one in resistances.values())
     sentence = f"Two resistances describe {len(resistances)} tests to {left:.2g} K at other loads."
-    return Summary(sentence, [Table.of("", rows, columns)])
+    return th.Summary(sentence, [th.Table.of("", rows, columns)])
 
 
-def show_transfer(document: Mapping[str, Any]) -> Summary:
+def show_transfer(document: Mapping[str, Any]) -> th.Summary:
     """Where the model of one machine is over on the others."""
     words = {True: "within", False: "over"}
     rows = [
@@ -129,4 +129,4 @@ def show_transfer(document: Mapping[str, Any]) -> Summary:
         "sensors are over."
     )
     note = f"Taken over: {', '.join(parameters) or 'nothing'}."
-    return Summary(sentence, [Table.of("", rows, columns, ["over"]), note])
+    return th.Summary(sentence, [th.Table.of("", rows, columns, ["over"]), note])

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope import InputError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Design:
     """signs (n_run, n_factor) -1 or 1;  words : generators and what follows from them, () for a full design"""
 
     factors: tuple[Factor, ...]
-    signs: Array
+    signs: th.Array
     words: tuple[str, ...] = ()
 
     def settings(self) -> list[dict[str, Any]]:
@@ -45,7 +45,7 @@ class Design:
             {n: high if s > 0 else low for (n, low, high), s in zip(levels, row, strict=True)} for row in self.signs
         ]
 
-    def column(self, letters: str) -> Array:
+    def column(self, letters: str) -> th.Array:
         """The product of some factors' columns: the contrast of an effect."""
         index = [next(i for i, f in enumerate(self.factors) if f.letter == c) for c in letters]
         return np.asarray(np.prod(self.signs[:, index], axis=1))
@@ -132,7 +132,7 @@ class Effects:
         return " x ".join(self.names[c] for c in letters)
 
 
-def effects(design: Design, values: Array, response: str = "", order: int = 2) -> Effects:
+def effects(design: Design, values: th.Array, response: str = "", order: int = 2) -> Effects:
     """Main effects and interactions up to an order; of aliased ones the shortest stands for all."""
     values = np.asarray(values, float)
     letters = [f.letter for f in design.factors]
@@ -143,7 +143,7 @@ def effects(design: Design, values: Array, response: str = "", order: int = 2) -
     return Effects(response, by_word, {f.letter: f.name for f in design.factors}, PSE, margin, simultaneous)
 
 
-def lenth(contrasts: Array) -> tuple[float, float, float]:
+def lenth(contrasts: th.Array) -> tuple[float, float, float]:
     """Lenth's pseudo standard error, margin of error (95 %) and simultaneous margin of error."""
     from scipy.stats import t as student
 

@@ -12,8 +12,7 @@ from extras.bench.factors.factorial import Design, Effects, Factor, effects
 from extras.bench.factors.sensitivity import Response, Varied
 from extras.bench.reduction.pm_network import PmSettings, Rows, pm_network, table_of
 from thermoscope import Record, simulate
-from thermoscope.plugin import ALPHA_CU, Array
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 AMBIENT = 20.0  # degC
 TABLE_I = (
@@ -43,7 +42,9 @@ class Load:
     phases: float = 1.0
 
 
-def run(machine: Machine, levels: Mapping[str, Any], load: Load, rows_of: Rows | None = None) -> dict[str, float]:
+def run(
+    machine: th.MachineDescription, levels: Mapping[str, Any], load: Load, rows_of: Rows | None = None
+) -> dict[str, float]:
     """Rises over ambient (K) at the end of the test; `levels` by the factors' names, others at table I's low."""
     level = {f.name: f.low for f in TABLE_I} | dict(levels)
     network = pm_network(machine, settings(level, load), rows_of)
@@ -74,7 +75,7 @@ def settings(level: Mapping[str, Any], load: Load) -> PmSettings:
 
 def path_mK_W(rises: Mapping[str, float], load: Load) -> float:
     """R_w of fig. 10: the step winding to magnets over the copper loss that drives it (mK/W)."""
-    loss = load.phases * load.resistance_ohm * load.current**2 * (1 + ALPHA_CU * (rises["winding"] + AMBIENT - 20.0))
+    loss = load.phases * load.resistance_ohm * load.current**2 * (1 + th.ALPHA_CU * (rises["winding"] + AMBIENT - 20.0))
     return 1e3 * (rises["winding"] - rises["magnets"]) / loss
 
 
@@ -85,7 +86,7 @@ class Screening:
     """
 
     design: Design
-    rises: Array
+    rises: th.Array
     effects: Mapping[str, Effects]
 
     def document(self) -> dict[str, Any]:
@@ -97,7 +98,7 @@ class Screening:
         }
 
 
-def screen(machine: Machine, design: Design, load: Load | None = None) -> Screening:
+def screen(machine: th.MachineDescription, design: Design, load: Load | None = None) -> Screening:
     """All runs of a design, one transient each."""
     table = table_of(machine)
     runs = [run(machine, level, load or Load(), table) for level in design.settings()]
@@ -108,7 +109,7 @@ def screen(machine: Machine, design: Design, load: Load | None = None) -> Screen
     return Screening(design, rises, {name: effects(design, y, name) for name, y in response_of.items()})
 
 
-def varied(machine: Machine, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:
+def varied(machine: th.MachineDescription, load: Load | None = None) -> tuple[list[Varied], dict[str, Response]]:
     """Table I and the liner gap as continuous factors, and three responses: magnets (K), the step winding to magnets
     (K), and R_w (mK/W).
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope import InputError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 Response = Callable[[Mapping[str, float]], float]
 
@@ -93,7 +93,7 @@ def _problem(factors: Sequence[Varied]) -> dict[str, Any]:
     return problem
 
 
-def _answers(problem: Mapping[str, Any], X: Array, response: Response) -> Array:
+def _answers(problem: Mapping[str, Any], X: th.Array, response: Response) -> th.Array:
     return np.array([response(dict(zip(problem["names"], (float(v) for v in x), strict=True))) for x in X])
 
 

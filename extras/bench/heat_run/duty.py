@@ -11,7 +11,7 @@ import numpy as np
 from extras.bench.heat_run.limits import GRADIENT_K_H
 from extras.bench.measuring.warming import equilibrium, fit_eq8, spaced_window
 from thermoscope import InputError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 DUTIES = tuple(f"S{n}" for n in range(1, 11))
 CYCLIC, BY_LOAD = ("S3", "S4", "S5", "S6", "S7", "S8"), ("S9", "S10")
@@ -81,7 +81,7 @@ def equivalent_load(loads: Series) -> float:
     return float(np.sqrt(weights @ levels**2 / weights.sum()))
 
 
-def _steady(name: str, minutes: Array, T: Array, window: float) -> Duty:
+def _steady(name: str, minutes: th.Array, T: th.Array, window: float) -> Duty:
     """Steady since the change over every window stayed within the gradient of the standard, two windows at least."""
     duty = Duty(name, float(minutes[-1]))
     try:
@@ -99,7 +99,7 @@ def _steady(name: str, minutes: Array, T: Array, window: float) -> Duty:
     return replace(duty, drift_K_h=drift, tau95_min=tau, rest_K=rest, missing=missing)
 
 
-def _outlook(minutes: Array, T: Array) -> tuple[float | None, float | None]:
+def _outlook(minutes: th.Array, T: th.Array) -> tuple[float | None, float | None]:
     """When 95 % of the rise is done (min), and what is still to come (K), by eq. 8; None where it does not fit."""
     try:
         curve = fit_eq8(minutes, T)
@@ -108,7 +108,7 @@ def _outlook(minutes: Array, T: Array) -> tuple[float | None, float | None]:
     return (curve.rise_min(), curve.a - float(T[-1])) if curve.b < 0 and curve.c < 0 else (None, None)
 
 
-def _cycles(operation: Operation, minutes: Array, T: Array) -> Duty:
+def _cycles(operation: Operation, minutes: th.Array, T: th.Array) -> Duty:
     """The points of successive cycles at which the last one is hottest, as a curve that has to be steady."""
     last = minutes > minutes[-1] - operation.cycle_min
     hottest = float(minutes[last][np.argmax(T[last])])
@@ -119,7 +119,7 @@ def _cycles(operation: Operation, minutes: Array, T: Array) -> Duty:
     return replace(steady, minutes=float(minutes[-1]), tau95_min=None, rest_K=None, words=words)
 
 
-def _short_time(operation: Operation, minutes: Array, T: Array, coolant_C: float) -> Duty:
+def _short_time(operation: Operation, minutes: th.Array, T: th.Array, coolant_C: float) -> Duty:
     run, rated = float(minutes[-1] - minutes[0]), operation.rated_min
     start = abs(float(T[0]) - coolant_C)
     missing = f"run for {run:.1f} min of {rated:g} min" if run < rated - 1e-6 else ""

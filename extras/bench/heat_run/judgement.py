@@ -20,7 +20,7 @@ from extras.bench.heat_run.rises import (
 )
 from extras.bench.measuring.protocol import Step, checked_steps
 from thermoscope import InputError
-from thermoscope.plugin import Reading
+from thermoscope import plugin as th
 
 BY_DUTY = "constant load"  # the step of the procedure that a duty judges in its own way
 
@@ -87,7 +87,7 @@ def _rises(run: HeatRun) -> list[Rise]:
     rises = [Rise(RESISTANCE, limit_K=corrections(rating, RESISTANCE)[-1].limit_K)]
     if record.cold is not None and record.hot is not None:
         rises = resistance_rises(record.cold, record.hot, record.ohmmeter, run.k, run.thermometer_K, rating, run.ways)
-    hottest = Reading("detector", max(run.detectors), run.detector_K) if run.detectors else None
+    hottest = th.Reading("detector", max(run.detectors), run.detector_K) if run.detectors else None
     return [
         *rises,
         detector_rise(hottest, run.coolant_C, run.thermometer_K, rating),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from thermoscope.plugin import allowed_delay
+from thermoscope import plugin as th
 
 STANDARDS = ("IEC 60034-1", "IEC 60349")
 RESISTANCE, DETECTORS = "resistance", "ETD"
@@ -66,7 +66,7 @@ def methods(rating: Rating, k: float) -> list[Correction]:
         Correction("steady state", "8.7", f"within {GRADIENT_K_H:g} K/h", None),
     ]
     if rating.standard == STANDARDS[0]:
-        delay = allowed_delay(rating.rated_kW)
+        delay = th.allowed_delay(rating.rated_kW)
         effect = f"a first reading counts up to {delay:g} s, up to {2 * delay:g} s it goes back to {delay:g} s"
         rows.insert(1, Correction(f"stopping time at {rating.rated_kW:g} kW", "8.6.2.3", effect, None))
     return rows

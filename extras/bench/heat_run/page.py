@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermoscope.plugin import BLUE, LIGHT, Table, csv_lines, html, paper, plain, provenance, write_pdf, write_whole
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +32,7 @@ footer { margin: 0; } }
 @page { size: A4; margin: 10mm; }</style>"""
 
 
-def tables(document: Document) -> dict[str, Table]:
+def tables(document: Document) -> dict[str, th.Table]:
     """Every table of the page, by the name it has in the CSV."""
     columns = "method | *rise (K)=rise_K | *± 95 % (K)=U95_K | *limit (K)=limit_K | in hand (K)=margin_K | *verdict"
     columns += " | degC=temperature_degC | s after off=at_s | how"
@@ -56,13 +56,15 @@ def tables(document: Document) -> dict[str, Table]:
         *([name, value or BLANK] for name, value in signed["names"].items()),
     ]
     return {
-        "rises": Table.of("Rises over the coolant", document["rises"], columns, ["fails"]),
-        "duty": Table(
+        "rises": th.Table.of("Rises over the coolant", document["rises"], columns, ["fails"]),
+        "duty": th.Table(
             "Duty and steady state", ["what", "found"], [[k, v or ""] for k, v in rows.items()], (), ["found"]
         ),
-        "limits": Table.of("Limits and corrections", document["limits"], "what | clause | effect | limit (K)=limit_K"),
-        "steps": Table.of("What was measured when", document["steps"], steps, state=_state),
-        "signature": Table("Signed", ["what", "value"], signature),
+        "limits": th.Table.of(
+            "Limits and corrections", document["limits"], "what | clause | effect | limit (K)=limit_K"
+        ),
+        "steps": th.Table.of("What was measured when", document["steps"], steps, state=_state),
+        "signature": th.Table("Signed", ["what", "value"], signature),
     }
 
 
@@ -86,47 +88,49 @@ def page(document: Document) -> str:
     head += f'<p class="verdict"><span class="{tone}">{escape(document["sentence"])}</span></p>'
     readings, figures = document["readings"], ""
     if len(readings["warming"]) > 1:
-        figures += html.plot(_warming(document), "warming", "Temperature under load; a line where it became steady.")
+        figures += th.html.plot(_warming(document), "warming", "Temperature under load; a line where it became steady.")
     if readings["cooling"]:
-        figures += html.plot(_cooling(document), "cooling", "After switching off, and the ways back to that instant.")
-    narrow = "".join(f"<div>{html.headed(every[name])}</div>" for name in ("duty", "signature"))
-    return html.page(
+        figures += th.html.plot(
+            _cooling(document), "cooling", "After switching off, and the ways back to that instant."
+        )
+    narrow = "".join(f"<div>{th.html.headed(every[name])}</div>" for name in ("duty", "signature"))
+    return th.html.page(
         f"heat run: {document['title']}",
         [
             head,
-            html.section(every["rises"].title, html.table(every["rises"])),
+            th.html.section(every["rises"].title, th.html.table(every["rises"])),
             f'<div class="two">{figures}</div>',
-            html.section(every["limits"].title, html.table(every["limits"]), html.text(CLAUSES)),
-            html.section(every["steps"].title, html.table(every["steps"])),
+            th.html.section(every["limits"].title, th.html.table(every["limits"]), th.html.text(CLAUSES)),
+            th.html.section(every["steps"].title, th.html.table(every["steps"])),
             f'<div class="two">{narrow}</div>',
-            f"<footer>{escape(provenance())}</footer>",
+            f"<footer>{escape(th.provenance())}</footer>",
         ],
     )
 
 
-@paper.styled
+@th.paper.styled
 def _warming(document: Document) -> Figure:
-    figure, (ax,) = paper.subplots(4.6, 1.7)
+    figure, (ax,) = th.paper.subplots(4.6, 1.7)
     minutes, T = np.array(document["readings"]["warming"], float).T
-    ax.plot(minutes, T, color=BLUE, lw=1.2)
+    ax.plot(minutes, T, color=th.BLUE, lw=1.2)
     if (since := document["duty"]["steady_min"]) is not None:
-        ax.axvline(since, color=LIGHT.ink, ls=":", lw=1.0)
+        ax.axvline(since, color=th.LIGHT.ink, ls=":", lw=1.0)
     ax.set(xlabel="min under load", ylabel="degC")
     return figure
 
 
-@paper.styled
+@th.paper.styled
 def _cooling(document: Document) -> Figure:
     """Readings as temperatures by the cold one, and every way's value at the instant it stands for."""
-    figure, (ax,) = paper.subplots(4.6, 1.7)
+    figure, (ax,) = th.paper.subplots(4.6, 1.7)
     seconds, ohm = np.array(document["readings"]["cooling"], float).T
     ways = [r for r in document["rises"] if r["at_s"] is not None]
-    ax.plot(seconds, ohm, color=BLUE, marker=".", ms=3, lw=0.0)
+    ax.plot(seconds, ohm, color=th.BLUE, marker=".", ms=3, lw=0.0)
     cold, t1 = document["readings"]["cold_ohm"], document["readings"]["cold_degC"]
     k = document["readings"]["k"]
     for way, marker in zip(ways, "osD^v", strict=False):
         y = cold * (k + way["temperature_degC"]) / (k + t1)
-        ax.plot(way["at_s"], y, marker, mfc="none", color=LIGHT.ink, ms=5, label=way["method"].partition(", ")[2])
+        ax.plot(way["at_s"], y, marker, mfc="none", color=th.LIGHT.ink, ms=5, label=way["method"].partition(", ")[2])
     ax.legend(fontsize=7, frameon=False)
     ax.set(xlabel="s after switching off", ylabel="ohm")
     return figure
@@ -146,8 +150,8 @@ def write_report(document: Document, folder: Path, stem: str) -> list[Path]:
     """STEM.json, .csv, .html and, where something prints it, .pdf."""
     import json
 
-    text = json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n"
-    content = {".json": text, ".csv": csv_lines(csv_rows(document)), ".html": page(document)}
-    paths = [write_whole(folder / f"{stem}{ending}", words) for ending, words in content.items()]
-    pdf = write_pdf(paths[-1])
+    text = json.dumps(th.plain(document), indent=2, ensure_ascii=False) + "\n"
+    content = {".json": text, ".csv": th.csv_lines(csv_rows(document)), ".html": page(document)}
+    paths = [th.write_whole(folder / f"{stem}{ending}", words) for ending, words in content.items()]
+    pdf = th.write_pdf(paths[-1])
     return [*paths, *([pdf] if pdf else [])]

@@ -18,24 +18,7 @@ from extras.bench.heat_run.rises import K_OF, network_way, winding_of
 from extras.bench.measuring.protocol import Cold, Hot, Record
 from extras.bench.measuring.record_file import Pairs, record_in, timed_pairs
 from thermoscope import InputError
-from thermoscope.plugin import (
-    Array,
-    Column,
-    Extrapolated,
-    Progress,
-    Test,
-    TomlTable,
-    Winding,
-    ambient,
-    case_key,
-    find_case,
-    load_sheet,
-    open_case,
-    pairs,
-    read_recording,
-    read_toml,
-    recording,
-)
+from thermoscope import plugin as th
 
 FILE, SUFFIX = "heat-run.toml", ".toml"  # of a case
 NAMES = ("tested", "witnessed", "approved")
@@ -61,7 +44,7 @@ class HeatRun:
     detector_K: float = 0.0
     parts: tuple[tuple[str, int, float, float], ...] = ()
     power: Series = ()
-    ways: tuple[Extrapolated, ...] = ()
+    ways: tuple[th.Extrapolated, ...] = ()
     names: Mapping[str, str] = field(default_factory=dict)
     origin: Mapping[str, str] = field(default_factory=dict)
 
@@ -75,10 +58,10 @@ class HeatRun:
         return hashlib.sha256(repr(replace(self, ways=())).encode()).hexdigest()[:20]
 
 
-def read_heat_run(path: Path, tell: Progress) -> HeatRun:
+def read_heat_run(path: Path, tell: th.Progress) -> HeatRun:
     """The heat run of a file, or of the one in a case. InputError for what is unknown, missing or cannot be."""
-    file = path if path.suffix == SUFFIX else find_case(path) / FILE
-    top = TomlTable(read_toml(file, "a record of a heat run, see docs/how-to/heat-run.md"), str(file))
+    file = path if path.suffix == SUFFIX else th.find_case(path) / FILE
+    top = th.TomlTable(th.read_toml(file, "a record of a heat run, see docs/how-to/heat-run.md"), str(file))
     head, site, bench, limit, etd, power, names = (
         top.table(n) for n in ("heat_run", "site", "test_site", "limit", "etd", "power_30min", "names")
     )
@@ -87,7 +70,7 @@ def read_heat_run(path: Path, tell: Progress) -> HeatRun:
     title, case = head.word("title", file.stem), head.word("case", "")
     k = head.number("k", K_OF[head.kind("material", "copper", K_OF)], 100.0, 400.0)
     operation = _operation(head)
-    ways: tuple[Extrapolated, ...] = ()
+    ways: tuple[th.Extrapolated, ...] = ()
     origin: dict[str, str] = {}
     if case and (record.cold or record.hot or record.warming):
         raise head.error("case and [cold], [load] or [hot] are both given", "one of them")
@@ -127,7 +110,7 @@ def read_heat_run(path: Path, tell: Progress) -> HeatRun:
     return run
 
 
-def _operation(head: TomlTable) -> Operation:
+def _operation(head: th.TomlTable) -> Operation:
     name, keys = head.kind("duty", "S1", DUTIES), ("rated_min", "cycle_min", "test_load")
     rated, cycle, load = (head.number(key, low=1e-3) if key in head else 0.0 for key in keys)
     loads = head.rows("loads", of="load") if "loads" in head else []
@@ -140,7 +123,7 @@ def _operation(head: TomlTable) -> Operation:
     return Operation(name, rated, cycle, tuple((a, b) for a, b in loads), load)
 
 
-def _part(part: TomlTable) -> tuple[str, int, float, float]:
+def _part(part: th.TomlTable) -> tuple[str, int, float, float]:
     sign = int(part.number("sign", 1.0))
     if sign == 0:
         raise part.error("sign = 0 is not possible", "1, or -1 for what two parts have in common")
@@ -150,45 +133,45 @@ def _part(part: TomlTable) -> tuple[str, int, float, float]:
 
 
 def _of_case(
-    name: str, head: TomlTable, record: Record, file: Path, k: float, tell: Progress
-) -> tuple[Record, tuple[Extrapolated, ...], dict[str, str]]:
+    name: str, head: th.TomlTable, record: Record, file: Path, k: float, tell: th.Progress
+) -> tuple[Record, tuple[th.Extrapolated, ...], dict[str, str]]:
     """Cold and hot resistance, load and cooling of a test, and the way back along the curve of the case's network."""
     beside = file.parent / name
-    folder = open_case(str(beside) if beside.is_dir() else name, tell)
+    folder = th.open_case(str(beside) if beside.is_dir() else name, tell)
     tests = {t.name: t for t in folder.case.tests}
     test = tests[head.word("test", next(iter(tests)), tests)]
-    sheet = load_sheet(next(e.sheet for e in folder.settings.tests if e.name == test.name))
+    sheet = th.load_sheet(next(e.sheet for e in folder.settings.tests if e.name == test.name))
     windings = {
         c.name: (c, c.electrical.source)
         for c in sheet.columns
-        if c.electrical is not None and isinstance(c.electrical.source, Winding)
+        if c.electrical is not None and isinstance(c.electrical.source, th.Winding)
     }
     if not windings:
         raise InputError("measures no winding by its resistance", sheet.where, 'a column of quantity = "resistance"')
     column = head.word("column", next(iter(windings)), windings)
     network = folder.case.model.network
-    air = test.boundaries[ambient(network) or network.boundaries[0]]
+    air = test.boundaries[th.ambient(network) or network.boundaries[0]]
     cold, hot, warming = _readings(*windings[column], test, air)
     record = replace(record, cold=cold, hot=hot, warming=warming, ohmmeter=windings[column][1].meter)
-    ways: tuple[Extrapolated, ...] = ()
+    ways: tuple[th.Extrapolated, ...] = ()
     if hot.cooling:
         tell("cooling of the network")
         winding = winding_of(cold, record.ohmmeter, k)
         ways = (network_way(folder.case, test, windings[column][0].place, cold, hot, winding),)
-    key, revision = case_key(folder), str(folder.case.model.revision)
+    key, revision = th.case_key(folder), str(folder.case.model.revision)
     return record, ways, {"case": folder.case.name, "test": test.name, "revision": revision, "key": key}
 
 
-def _readings(column: Column, winding: Winding, test: Test, air: Array) -> tuple[Cold, Hot, Pairs]:
+def _readings(column: th.Column, winding: th.Winding, test: th.Test, air: th.Array) -> tuple[Cold, Hot, Pairs]:
     """What a sheet says of a winding: cold, after switching off (coolant of the last quarter), and (min, degC)."""
     late = test.time >= test.time[0] + LAST_QUARTER * (test.time[-1] - test.time[0])
     coolant = float(np.mean(air[late]))
     cooling: tuple[tuple[float, float], ...] = ()
     after = column.electrical.after if column.electrical else None
     if after is not None:
-        file = recording(after.file)
-        table = read_recording(file, after.worksheet)
-        cooling = tuple((float(t), float(v)) for t, v in pairs(table, after.time, after.column, file))
+        file = th.recording(after.file)
+        table = th.read_recording(file, after.worksheet)
+        cooling = tuple((float(t), float(v)) for t, v in th.pairs(table, after.time, after.column, file))
     y = next(c.y for c in test.channels if c.name == column.name)
     read = np.isfinite(y)
     warming = tuple((float(t), float(v)) for t, v in zip(test.time[read] / 60.0, y[read], strict=True))

@@ -13,22 +13,7 @@ import numpy as np
 
 from extras.bench.heat_run.limits import DETECTORS, RESISTANCE, STANDARDS, Rating, corrections
 from extras.bench.measuring.protocol import Cold, Hot, cooling_of
-from thermoscope.plugin import (
-    NORMAL_95,
-    Array,
-    Extrapolated,
-    MeasuredCase,
-    Meter,
-    PropagatedUncertainty,
-    Reading,
-    Test,
-    Winding,
-    all_ways,
-    physical,
-    predict,
-    propagate,
-    standing,
-)
+from thermoscope import plugin as th
 
 Verdict = Literal["passes", "fails", "cannot be judged", "not measured"]
 K_OF = {"copper": 235.0, "aluminium": 225.0}  # minus the temperature (degC) at which the resistance would be none
@@ -79,50 +64,56 @@ def resistance_rise(R1: Any, R2: Any, t1: Any, ta: Any, k: float = K_OF["copper"
 
 
 def resistance_rises(
-    cold: Cold, hot: Hot, meter: Meter, k: float, thermometer_K: float, rating: Rating, more: Sequence[Extrapolated]
+    cold: Cold,
+    hot: Hot,
+    meter: th.Meter,
+    k: float,
+    thermometer_K: float,
+    rating: Rating,
+    more: Sequence[th.Extrapolated],
 ) -> list[Rise]:
     """By resistance, for every way back to switching off; `more` are ways besides those of the readings alone."""
     limit = corrections(rating, RESISTANCE)[-1].limit_K
     if not hot.cooling:
         return [Rise(RESISTANCE, limit_K=limit)]
-    first, *others = all_ways(cooling_of(winding_of(cold, meter, k), hot), rating.rated_kW)
+    first, *others = th.all_ways(cooling_of(winding_of(cold, meter, k), hot), rating.rated_kW)
     ways = [replace(first, method=STANDARDS[0]), *others, *more]
     rises = [_rise_of(way, cold, hot.ambient_C, meter, k, thermometer_K) for way in ways]
     return [replace(rise, limit_K=limit) for rise in rises]
 
 
-def winding_of(cold: Cold, meter: Meter, k: float) -> Winding:
+def winding_of(cold: Cold, meter: th.Meter, k: float) -> th.Winding:
     """The winding with the standard's k as coefficient, which holds at any temperature."""
-    return Winding(cold.ohm, cold.machine_C, meter, Reading("k", 1.0 / (k + 20.0), 0.0), reference_C=20.0)
+    return th.Winding(cold.ohm, cold.machine_C, meter, th.Reading("k", 1.0 / (k + 20.0), 0.0), reference_C=20.0)
 
 
-def _rise_of(way: Extrapolated, cold: Cold, coolant: float, meter: Meter, k: float, thermometer_K: float) -> Rise:
+def _rise_of(way: th.Extrapolated, cold: Cold, coolant: float, meter: th.Meter, k: float, thermometer_K: float) -> Rise:
     """With the errors of both resistances, both thermometers and the way back to switching off."""
     ohm = cold.ohm * (k + way.value) / (k + cold.machine_C)
 
     def result(R1: Any, R2: Any, t1: Any, ta: Any, back: Any) -> Any:
         return resistance_rise(R1, R2, t1, ta, k) + back
 
-    total = propagate(
+    total = th.propagate(
         result,
         (
             meter.reading("cold resistance", cold.ohm),
             meter.reading("hot resistance", ohm),
-            Reading("cold temperature", cold.machine_C, thermometer_K),
-            Reading("coolant", coolant, thermometer_K),
-            Reading("way back to switching off", 0.0, max(way.sd, LEAST_K), "normal"),
+            th.Reading("cold temperature", cold.machine_C, thermometer_K),
+            th.Reading("coolant", coolant, thermometer_K),
+            th.Reading("way back to switching off", 0.0, max(way.sd, LEAST_K), "normal"),
         ),
     )
     method = f"{RESISTANCE}, {way.method}"
     return Rise(method, way.at_s, way.value, total.value, _expanded(total), None, way.words)
 
 
-def detector_rise(hottest: Reading | None, coolant: float, thermometer_K: float, rating: Rating) -> Rise:
+def detector_rise(hottest: th.Reading | None, coolant: float, thermometer_K: float, rating: Rating) -> Rise:
     """By embedded temperature detectors: the hottest of them."""
     limit = corrections(rating, DETECTORS)[-1].limit_K
     if hottest is None:
         return Rise(DETECTORS, limit_K=limit)
-    total = propagate(lambda T, ta: T - ta, (hottest, Reading("coolant", coolant, thermometer_K)))
+    total = th.propagate(lambda T, ta: T - ta, (hottest, th.Reading("coolant", coolant, thermometer_K)))
     how = "hottest detector at the end"
     return Rise(DETECTORS, None, hottest.value, total.value, _expanded(total), limit, how)
 
@@ -137,11 +128,11 @@ def superposed_rise(parts: Iterable[tuple[str, int, float, float]], rating: Rati
         return Rise(SUPERPOSITION, limit_K=limit)
     value, sd = sum(sign * rise for _, sign, rise, _ in rows), float(np.linalg.norm([u for *_, u in rows]))
     how = " ".join(f"{'+' if sign > 0 else '-'} {name} {rise:g} K" for name, sign, rise, _ in rows)
-    return Rise(SUPERPOSITION, None, None, value, NORMAL_95 * sd, limit, how)
+    return Rise(SUPERPOSITION, None, None, value, th.NORMAL_95 * sd, limit, how)
 
 
-def _expanded(total: PropagatedUncertainty) -> float:
-    return NORMAL_95 * total.sd
+def _expanded(total: th.PropagatedUncertainty) -> float:
+    return th.NORMAL_95 * total.sd
 
 
 def deciding(rises: Sequence[Rise], standard: str) -> Rise:
@@ -152,7 +143,9 @@ def deciding(rises: Sequence[Rise], standard: str) -> Rise:
     return next((r for name in order for r in measured if r.method == name), rises[0])
 
 
-def network_way(case: MeasuredCase, test: Test, place: str, cold: Cold, hot: Hot, winding: Winding) -> Extrapolated:
+def network_way(
+    case: th.MeasuredCase, test: th.Test, place: str, cold: Cold, hot: Hot, winding: th.Winding
+) -> th.Extrapolated:
     """Back to switching off along the curve of the case's network, shifted and scaled to the readings."""
     cooling = cooling_of(winding, hot)
     curve = network_cooling(case, test, place, cooling.time)
@@ -164,15 +157,15 @@ def network_way(case: MeasuredCase, test: Test, place: str, cold: Cold, hot: Hot
     x = np.array([1.0, start])
     sd = float(np.sqrt(scale * x @ np.linalg.pinv(X.T @ X) @ x))
     words = f"curve of the network times {weights[1]:.2f}, off by {np.sqrt(np.mean(left**2)):.2f} K rms"
-    return Extrapolated(f"network of {case.name}", 0.0, float(x @ weights), sd, words)
+    return th.Extrapolated(f"network of {case.name}", 0.0, float(x @ weights), sd, words)
 
 
-def network_cooling(case: MeasuredCase, test: Test, place: str, seconds: Array) -> Array:
+def network_cooling(case: th.MeasuredCase, test: th.Test, place: str, seconds: th.Array) -> th.Array:
     """Temperature (degC) of a place when the test ends, and so many seconds after it was switched off.
 
     What carries no load, such as a pump, goes on as it was at the end of the test.
     """
-    network, values = standing(case), physical(case)
+    network, values = th.standing(case), th.physical(case)
     gone = {network.signal(quantity) for quantity in OFF}
     later = np.concatenate([[SOON_S], np.maximum(seconds, 2 * SOON_S)])
     inputs = {n: np.append(u, np.full(later.size, 0.0 if n in gone else u[-1])) for n, u in test.inputs.items()}
@@ -181,5 +174,5 @@ def network_cooling(case: MeasuredCase, test: Test, place: str, seconds: Array) 
     channel = next(c for c in test.channels if c.place == place)
     channel = replace(channel, y=np.full(time.size, np.nan), lag_s=0.0)
     run = replace(test, time=time, inputs=inputs, boundaries=air, channels=(channel,), recorded=None, blocks=None)
-    y = predict(network, run, values).y[test.time.size - 1 :, 0]
+    y = th.predict(network, run, values).y[test.time.size - 1 :, 0]
     return np.append(y[0], y[2:])

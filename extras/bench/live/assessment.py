@@ -8,17 +8,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from thermoscope.plugin import (
-    Array,
-    Channel,
-    Folder,
-    Posterior,
-    Test,
-    explanations,
-    hidden_effects,
-    infer,
-    probabilities,
-)
+from thermoscope import plugin as th
 
 STUCK_S, MOTION_K = 120.0, 2.0  # equal readings for so long, while another sensor moved by as much
 MOST_ROWS = 3000  # that odds are worked out from: three hours of a row every four seconds
@@ -38,13 +28,13 @@ class Assessment:
     odds: tuple[tuple[str, float], ...]
     over: tuple[str, ...]
     unseen: tuple[str, ...]
-    test: Test
-    posterior: Posterior
+    test: th.Test
+    posterior: th.Posterior
 
     @property
     def entropy(self) -> float:
         """Of the hypotheses (nats)."""
-        p = probabilities(self.posterior.hypotheses)
+        p = th.probabilities(self.posterior.hypotheses)
         return float(-np.sum(p * np.log(np.maximum(p, 1e-300))))
 
     def gain_over(self, before: Mapping[str, float]) -> float:
@@ -56,20 +46,20 @@ class Assessment:
         return float(sum(p * np.log(p / max(before.get(n, 0.0), LEAST)) for n, p in likely))
 
 
-def assess(folder: Folder, name: str, quick: bool = True) -> Assessment:
+def assess(folder: th.Folder, name: str, quick: bool = True) -> Assessment:
     """Of all tests of a case, the rows of test `name` among them."""
     case = folder.case
     live = next(t for t in case.tests if t.name == name)
     live, over = without_stuck(live)
     live = thinned(live)
     case = replace(case, tests=tuple(live if t.name == name else t for t in case.tests))
-    posterior = infer(case.training(), folder.settings.kinds, quick=quick)
-    rows = [(e.cause, float(e.probability)) for e in explanations(posterior) if e.cause != "others"]
-    hidden = tuple(h.effect for h in hidden_effects(posterior.evidence))
+    posterior = th.infer(case.training(), folder.settings.kinds, quick=quick)
+    rows = [(e.cause, float(e.probability)) for e in th.explanations(posterior) if e.cause != "others"]
+    hidden = tuple(h.effect for h in th.hidden_effects(posterior.evidence))
     return Assessment(tuple(sorted(rows, key=lambda r: -r[1])), over, hidden, live, posterior)
 
 
-def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
+def without_stuck(test: th.Test) -> tuple[th.Test, tuple[str, ...]]:
     """The rows without last readings of a channel that are all equal, and the channels that have stopped by them.
 
     Some equal readings mean nothing yet; they are left out all the same, for they may be the first of a dead sensor.
@@ -89,16 +79,16 @@ def without_stuck(test: Test) -> tuple[Test, tuple[str, ...]]:
     return replace(test, channels=tuple(channels)), tuple(over)
 
 
-def thinned(test: Test, most: int = MOST_ROWS) -> Test:
+def thinned(test: th.Test, most: int = MOST_ROWS) -> th.Test:
     """At most so many rows, means of so many at a time, and one channel for each place: the mean of its sensors."""
     step = -(-test.time.size // most)
     at = np.arange(0, test.time.size, step)
     count = np.diff(np.append(at, test.time.size))
 
-    def mean(u: Array | float) -> Array:
+    def mean(u: th.Array | float) -> th.Array:
         return np.asarray(np.add.reduceat(np.broadcast_to(np.asarray(u, float), test.time.shape), at) / count)
 
-    groups: dict[str, list[Channel]] = {}
+    groups: dict[str, list[th.Channel]] = {}
     for c in test.channels:
         groups.setdefault(c.place, []).append(c)
     with catch_warnings():
@@ -111,6 +101,6 @@ def thinned(test: Test, most: int = MOST_ROWS) -> Test:
     return replace(test, time=mean(test.time), inputs=inputs, boundaries=boundaries, channels=channels, recorded=None)
 
 
-def _motion(channels: Sequence[Channel], first: int) -> float:
+def _motion(channels: Sequence[th.Channel], first: int) -> float:
     late = [c.y[first:][np.isfinite(c.y[first:])] for c in channels]
     return max((float(np.ptp(y)) for y in late if y.size), default=0.0)

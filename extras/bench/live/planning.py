@@ -22,22 +22,7 @@ from scipy.linalg import solve_triangular
 
 from extras.bench.live.assessment import LEAST, Assessment, thinned
 from extras.bench.live.settings import Bench, SetPoint
-from thermoscope.plugin import (
-    USUAL_DOUBT,
-    Array,
-    Channel,
-    Evidence,
-    ModelError,
-    NoSolution,
-    Segment,
-    Test,
-    effect_sizes,
-    fit_prior,
-    model_error,
-    probabilities,
-    segments,
-    total,
-)
+from thermoscope import plugin as th
 
 MINUTE = 60.0
 LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over again
@@ -50,7 +35,7 @@ UNRESOLVED = (
 CHANGE_MIN = 1.0  # until a set point that was asked for is there
 BAND = 2.5  # standard deviations of the upper band
 LIMIT = "limit: "
-PLAIN_STEPS = {**USUAL_DOUBT, "step in sample": 0.0}  # when a set point comes is no doubt of a plan
+PLAIN_STEPS = {**th.USUAL_DOUBT, "step in sample": 0.0}  # when a set point comes is no doubt of a plan
 
 
 @dataclass(frozen=True)
@@ -64,8 +49,8 @@ class Rival:
     p: float
     lead: str
     at: tuple[int, ...]
-    mean: Array
-    covariance: Array
+    mean: th.Array
+    covariance: th.Array
     usual: float = 0.0
 
 
@@ -89,15 +74,17 @@ class Plan:
     """Some minutes of a set point.  J : whitened columns of the coming readings;  hottest : upper bands (degC)"""
 
     minutes: float
-    J: Array
+    J: th.Array
     hottest: dict[str, float]
 
 
-def sizes(e: Evidence, test: Test, bench: Bench) -> Array:
+def sizes(e: th.Evidence, test: th.Test, bench: Bench) -> th.Array:
     """Usual amplitude of every cause, for a loss by what all set points would make of it: little has run so far."""
     every = bench.set_points({})
     inputs = {n: np.array([s.get(n, float(u[-1])) for s in every]) for n, u in test.inputs.items()}
-    now, later = (effect_sizes(e.network, e.names, t) for t in (e.tests, [replace(test, inputs=inputs, recorded=None)]))
+    now, later = (
+        th.effect_sizes(e.network, e.names, t) for t in (e.tests, [replace(test, inputs=inputs, recorded=None)])
+    )
     return e.scale * np.array([now.get(n, 1.0) / later.get(n, now.get(n, 1.0)) for n in e.names])
 
 
@@ -107,8 +94,8 @@ def rivals(assessment: Assessment, bench: Bench, single: Sequence[str] | None = 
     single : each of these causes alone instead, whatever its weight
     """
     e = assessment.posterior.evidence
-    p = probabilities(assessment.posterior.hypotheses)
-    G, (theta, sd), scale = total(e.grams), fit_prior(e.fit), sizes(e, assessment.test, bench)
+    p = th.probabilities(assessment.posterior.hypotheses)
+    G, (theta, sd), scale = th.total(e.grams), th.fit_prior(e.fit), sizes(e, assessment.test, bench)
     weighty = [(float(q), h) for q, h in zip(p, assessment.posterior.hypotheses, strict=True) if not h.heat]
     if single is not None:
         weighty = [(q, h) for q, h in weighty if len(h.members) == 1 and e.names[h.members[0]] in single]
@@ -185,16 +172,16 @@ def _plans(
     e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
     test = planned(assessment.test, bench, set_point)
     try:
-        parts = segments(
+        parts = th.segments(
             e.network,
             [_with_limits(test, bench, assessment)],
             e.fit.values,
             (*e.fit.unknowns.parameters, *e.parameters),
         )
-    except NoSolution:  # the model runs away there
+    except th.NoSolution:  # the model runs away there
         return
     read = [s for s in parts if not s.channel.startswith(LIMIT)]
-    error = model_error(e.fit.network, [_expected(test, read)], e.fit.values, PLAIN_STEPS) if doubting else None
+    error = th.model_error(e.fit.network, [_expected(test, read)], e.fit.values, PLAIN_STEPS) if doubting else None
     bands = {s.channel[len(LIMIT) :]: _after(s, begin) for s in parts if s.channel.startswith(LIMIT)}
     q = e.p + (e.fit.error.size if e.fit.error else 0)
     cold = min(float(u[-1]) for u in assessment.test.boundaries.values())
@@ -207,18 +194,18 @@ def _plans(
         yield Plan(minutes, np.vstack([x[time <= begin + minutes * MINUTE] for time, x in coming]), inside)
 
 
-def _expected(test: Test, parts: Sequence[Segment]) -> Test:
+def _expected(test: th.Test, parts: Sequence[th.Segment]) -> th.Test:
     """With the readings that the model expects: what it may be wrong by is a share of their rise."""
     y = {s.channel: np.interp(test.time, s.time, -s.r) for s in parts}  # nothing is read in a plan: r = 0 - model
     return replace(test, channels=tuple(replace(c, y=y[c.name]) for c in test.channels))
 
 
-def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
+def planned(test: th.Test, bench: Bench, set_point: SetPoint) -> th.Test:
     """The rows so far, then a set point for as long as any plan looks forward; all else stays where it is."""
     future = np.arange(STEP_S, LENGTHS_MIN[-1] * MINUTE + bench.deaf_s + STEP_S, STEP_S)
     n, m = future.size, test.time.size
 
-    def on(u: Array, value: float | None = None) -> Array:
+    def on(u: th.Array, value: float | None = None) -> th.Array:
         u = np.broadcast_to(np.asarray(u, float), test.time.shape)
         return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
 
@@ -234,12 +221,12 @@ def planned(test: Test, bench: Bench, set_point: SetPoint) -> Test:
     )
 
 
-def _block(future: Array) -> Array:
+def _block(future: th.Array) -> th.Array:
     """Which block a planned instant is in: they grow as what is looked for gets slower."""
     return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
-def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None) -> tuple[Array, Array]:
+def _innovations(e: th.Evidence, s: th.Segment, begin: float, error: th.ModelError | None) -> tuple[th.Array, th.Array]:
     """Times of the coming readings of a channel, and their whitened columns given all that was read before.
 
     Columns: calibrated parameters, model error, causes.
@@ -256,32 +243,34 @@ def _innovations(e: Evidence, s: Segment, begin: float, error: ModelError | None
     return s.time[late], e.fit.noise.whiten(s, J)[late]  # the whitener is triangular: later rows are given the earlier
 
 
-def _with_limits(test: Test, bench: Bench, assessment: Assessment) -> Test:
+def _with_limits(test: th.Test, bench: Bench, assessment: Assessment) -> th.Test:
     places = assessment.posterior.evidence.network.places
     still = np.zeros(test.time.size)
-    more = (Channel(f"{LIMIT}{x.name}", x.place, places[x.place].mean, still, lag_s=0.0) for x in bench.limits)
+    more = (th.Channel(f"{LIMIT}{x.name}", x.place, places[x.place].mean, still, lag_s=0.0) for x in bench.limits)
     return replace(test, channels=(*test.channels, *more))
 
 
-def _after(s: Segment, begin: float) -> Segment:
+def _after(s: th.Segment, begin: float) -> th.Segment:
     late = s.time > begin
     return replace(s, time=s.time[late], r=s.r[late], J=s.J[late])
 
 
-def _band(s: Segment, p: int, q: int, some: Sequence[Rival], hot_spot: float, cold: float) -> tuple[Array, Array]:
+def _band(
+    s: th.Segment, p: int, q: int, some: Sequence[Rival], hot_spot: float, cold: float
+) -> tuple[th.Array, th.Array]:
     """Seconds from now, and the upper band of the hottest point under every hypothesis that carries weight."""
     upper = []
     J = np.column_stack([s.J[:, :p], np.zeros((s.r.size, q - p)), s.J[:, p:]])
     for r in some:
         X = J[:, r.at]
         mean = -s.r + X @ r.mean
-        slow = USUAL_DOUBT["slow"] * np.abs(mean - cold)
+        slow = th.USUAL_DOUBT["slow"] * np.abs(mean - cold)
         sd = np.sqrt(np.einsum("ij,jk,ik->i", X, r.covariance, X) + slow**2)
         upper.append(mean + BAND * sd)
     return s.time - s.time[0] + STEP_S, cold + hot_spot * (np.max(upper, axis=0) - cold)
 
 
-def information(J: Array, some: Sequence[Rival]) -> float:
+def information(J: th.Array, some: Sequence[Rival]) -> float:
     """Expected information (nats) of readings with whitened columns J about which cause leads; a lower bound."""
     normal = []
     for r in some:

@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import Sheet, TomlTable, load_sheet, read_toml, suggestion
+from thermoscope import plugin as th
 
 FILE = "bench.toml"
 OVER = 0.05  # of its largest level, by which a meter may read more before it counts as crossed
@@ -53,7 +53,7 @@ class Bench:
     jump_s : largest step of the clock
     """
 
-    sheet: Sheet
+    sheet: th.Sheet
     sheet_file: str
     knobs: tuple[Knob, ...]
     limits: tuple[Limit, ...]
@@ -78,27 +78,29 @@ class Bench:
 def read_bench(case: Path, network: Network) -> Bench:
     """The bench of a case. InputError for what is unknown, missing or cannot be."""
     file = case / FILE
-    top = TomlTable(read_toml(file, "the set points and limits of a bench, see docs/how-to/live-bench.md"), str(file))
+    top = th.TomlTable(
+        th.read_toml(file, "the set points and limits of a bench, see docs/how-to/live-bench.md"), str(file)
+    )
     sheet_file = top.word("sheet")
     knobs = tuple(_knob(n, t) for n, t in top.tables("set").items())
     limits = tuple(_limit(n, t, network) for n, t in top.tables("limits").items())
     usual = {k: getattr(Bench, k) for k in ("deaf_s", "silence_s", "budget_min", "patience_min", "every_s", "jump_s")}
     times = {k: top.number(k, v) for k, v in usual.items()}
     top.close()
-    sheet = load_sheet(case / sheet_file)
+    sheet = th.load_sheet(case / sheet_file)
     if not knobs or not limits:
         raise InputError("no set points or no limits", str(file), "[set.NAME] and [limits.NAME], one of each at least")
     inputs = [c.feeds for c in sheet.columns if c.feeds]
     for k in knobs:
         if k.name not in inputs:
-            raise InputError(f"[set.{k.name}] is measured by no column", str(file), suggestion(k.name, inputs))
+            raise InputError(f"[set.{k.name}] is measured by no column", str(file), th.suggestion(k.name, inputs))
     bench = Bench(sheet, sheet_file, knobs, limits, **times)
     if (count := len(bench.set_points({}))) > MOST_SET_POINTS:
         raise InputError(f"{count} set points", str(file), f"levels that make {MOST_SET_POINTS} at most")
     return bench
 
 
-def _knob(name: str, t: TomlTable) -> Knob:
+def _knob(name: str, t: th.TomlTable) -> Knob:
     levels = t.numbers("levels")
     knob = Knob(name, levels, t.number("safe"), t.number("rate_per_s"), t.flag("cooling", False))
     t.close()
@@ -107,7 +109,7 @@ def _knob(name: str, t: TomlTable) -> Knob:
     return knob
 
 
-def _limit(name: str, t: TomlTable, network: Network) -> Limit:
+def _limit(name: str, t: th.TomlTable, network: Network) -> Limit:
     place = t.word("place", name, [p for p in network.places if p not in network.boundaries])
     limit = Limit(name, place, t.number("most_C"), t.number("hot_spot", 1.0))
     t.close()

@@ -21,7 +21,7 @@ from urllib.parse import urlsplit
 
 from extras.bench.live.store import BenchError, Row
 from thermoscope import InputError
-from thermoscope.plugin import as_number, required
+from thermoscope import plugin as th
 
 POLL_S = 0.2  # between two looks at a file that grows
 BYTES = 2**20  # of a line: more is no row
@@ -114,7 +114,7 @@ def _until_closed(stream: IO[str]) -> Iterator[str]:
 
 def _mqtt(where: str, host: str, port: int, topic: str) -> Source:
     """A client in a thread: rows of TOPIC/rows come in, set points go to TOPIC/set."""
-    required(["aiomqtt"])
+    th.required(["aiomqtt"])
     import aiomqtt
 
     source, ready, state = Source(where), threading.Event(), dict[str, Any]()
@@ -161,7 +161,7 @@ class Parser:
         cells = [c.strip().strip('"') for c in text.split(",")]
         if not text or cells == self.header:
             return None
-        values = [as_number(c) for c in cells]
+        values = [th.as_number(c) for c in cells]
         if not self.header or all(v is None for v in values):
             self.header = cells
             return None

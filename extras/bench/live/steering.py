@@ -13,7 +13,7 @@ from extras.bench.live.assessment import FEWEST, NOTHING, Assessment, assess
 from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_allowed, undetectable, unresolved
 from extras.bench.live.settings import OVER, Bench, SetPoint
 from extras.bench.live.store import BenchError, Row, Store
-from thermoscope.plugin import load_case
+from thermoscope import plugin as th
 
 SURE = 0.9  # probability of one name, or of nothing, from which the run ends
 NEAR = 0.1  # of the largest level: a meter that reads so close to a set point says that it is obeyed
@@ -173,7 +173,7 @@ class Steering:
         self.store.listed()
         self.last_look = self.time
         time, elapsed = self.time, (self.time - self.begin) / MINUTE
-        folder = load_case(case)
+        folder = th.load_case(case)
         assessment = assess(folder, self.store.name)
         stop = ""
         if self._named(assessment):

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from thermoscope import InputError
-from thermoscope.plugin import csv_lines, journal, toml_value, write_whole
+from thermoscope import plugin as th
 
 Row = dict[str, float]
 
@@ -63,7 +63,7 @@ class Store:
         """One row under the header of the first; what it lacks stays empty."""
         if not self.header:
             self.header = list(row)
-            self.rows.write(csv_lines([self.header]))
+            self.rows.write(th.csv_lines([self.header]))
         if extra := next((n for n in row if n not in self.header), None):
             raise BenchError(
                 f"column '{extra}' is new", str(self.path), f"the columns of the first row: {', '.join(self.header)}"
@@ -84,7 +84,7 @@ class Store:
 
     def events(self) -> list[Mapping[str, Any]]:
         """The journal so far."""
-        return journal(self.journal_path)
+        return th.journal(self.journal_path)
 
     def hears_done(self) -> bool:
         """Whether tests/NAME.done was put there since it was last asked: what a page says instead of typing."""
@@ -97,8 +97,8 @@ class Store:
         file = self.case / "case.toml"
         text = file.read_text(encoding="utf-8")
         if f"[tests.{self.name}]" not in text:
-            sheet = toml_value(self.sheet)
-            write_whole(file, f'{text.rstrip()}\n\n[tests.{self.name}]\nrole = "calibrate"\nsheet = {sheet}\n')
+            sheet = th.toml_value(self.sheet)
+            th.write_whole(file, f'{text.rstrip()}\n\n[tests.{self.name}]\nrole = "calibrate"\nsheet = {sheet}\n')
 
     def close(self) -> None:
         self.rows.close()

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from extras.bench.measuring.warming import equilibrium
-from thermoscope.plugin import Array, Test
+from thermoscope import plugin as th
 
 CLOSE, TOLERANCE, NEVER = 3.0, 4.0, 7.0  # percent of the temperature, as published
 Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
@@ -52,7 +52,9 @@ def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: floa
     return Assembly(place, steady, measured, T_calc, off / abs(measured), off / rise, 200.0 * u_K / abs(measured))
 
 
-def assemblies(test: Test, predicted: Array, resolution_K: float = 0.5, window_min: float = 10.0) -> list[Assembly]:
+def assemblies(
+    test: th.Test, predicted: th.Array, resolution_K: float = 0.5, window_min: float = 10.0
+) -> list[Assembly]:
     """Every place of a test: the mean of its channels, the prediction (n_time, n_channel) likewise."""
     ambient = float(np.mean([u[-1] for u in test.boundaries.values()]))
     out = []

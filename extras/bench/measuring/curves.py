@@ -12,8 +12,7 @@ from extras.bench.measuring.assemblies import Assembly, assemblies, worst
 from extras.bench.measuring.repeats import Repeats, repeats
 from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8, spaced_window
 from thermoscope import InputError
-from thermoscope.plugin import Array, Channel, Test, ambient, physical, predict, standing
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 R = TypeVar("R")
 STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load
@@ -45,7 +44,7 @@ class Curve:
 class Curves:
     """curves, rules : by test;  pooled : (tests, place) -> rises over ambient pooled, and whether they repeat"""
 
-    case: Case
+    case: th.MeasuredCase
     curves: dict[str, tuple[Curve, ...]]
     rules: dict[str, tuple[Assembly, ...]]
     pooled: dict[tuple[tuple[str, ...], str], Repeats]
@@ -79,16 +78,16 @@ class Curves:
         }
 
 
-def curves(case: Case, resolution_K: float = 0.5) -> Curves:
+def curves(case: th.MeasuredCase, resolution_K: float = 0.5) -> Curves:
     """All of it for the tests of a case; resolution_K : of the thermocouples (electrical readings by their sigma)."""
-    network = standing(case)
-    values, air = physical(case), ambient(network) or network.boundaries[0]
-    rules = {t.name: _rules(t, predict(network, t, values).y, resolution_K) for t in case.tests}
+    network = th.standing(case)
+    values, air = th.physical(case), th.ambient(network) or network.boundaries[0]
+    rules = {t.name: _rules(t, th.predict(network, t, values).y, resolution_K) for t in case.tests}
     curves_of = {t.name: tuple(curve(t, c, resolution_K) for c in t.channels) for t in case.tests}
     return Curves(case, curves_of, rules, dict(_pooled(case.tests, air)))
 
 
-def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
+def curve(test: th.Test, channel: th.Channel, resolution_K: float = 0.5) -> Curve:
     """Eq. 8 and eq. 9 of one sensor, as far as its record allows."""
     minutes, fine = test.time / 60.0, max(resolution_K, channel.sigma_K)
     start = test.initial if isinstance(test.initial, float) else None
@@ -99,7 +98,7 @@ def curve(test: Test, channel: Channel, resolution_K: float = 0.5) -> Curve:
     return Curve(channel.name, channel.place, warming, steady, "; ".join(w for w in (why, short) if w))
 
 
-def window_min(test: Test, channel: Channel) -> float:
+def window_min(test: th.Test, channel: th.Channel) -> float:
     """Ten minutes, or twice the time between readings where they are rarer."""
     return spaced_window(test.time[np.isfinite(channel.y)] / 60.0)
 
@@ -113,18 +112,18 @@ def _result_or_reason(look: Callable[[], R]) -> tuple[R | None, str]:
         return None, "eq. 8: no such curve fits these readings"
 
 
-def constant(test: Test) -> bool:
+def constant(test: th.Test) -> bool:
     """Is the load the same all the time, but for a start from zero?"""
     return all(np.std(v[1:]) <= STEADY * max(abs(float(np.mean(v[1:]))), 1e-12) for v in test.inputs.values())
 
 
-def _rules(test: Test, predicted: Array, resolution_K: float) -> tuple[Assembly, ...]:
+def _rules(test: th.Test, predicted: th.Array, resolution_K: float) -> tuple[Assembly, ...]:
     window = max((window_min(test, c) for c in test.channels), default=10.0)
     rules, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
     return tuple(rules or ())
 
 
-def _pooled(tests: Sequence[Test], air: str) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
+def _pooled(tests: Sequence[th.Test], air: str) -> Iterator[tuple[tuple[tuple[str, ...], str], Repeats]]:
     for group in alike(tests):
         for place in dict.fromkeys(c.place for c in group[0].channels):
             ends = [end for end in (_end(test, place, air) for test in group) if end]
@@ -133,9 +132,9 @@ def _pooled(tests: Sequence[Test], air: str) -> Iterator[tuple[tuple[tuple[str, 
                 yield (names, place), repeats([rise for rise, _ in ends], max(u for _, u in ends))
 
 
-def alike(tests: Sequence[Test]) -> list[list[Test]]:
+def alike(tests: Sequence[th.Test]) -> list[list[th.Test]]:
     """Groups of two tests or more under the same constant load."""
-    groups: list[list[Test]] = []
+    groups: list[list[th.Test]] = []
     for test in (t for t in tests if constant(t)):
         home = next((g for g in groups if _same(g[0], test)), None)
         if home is None:
@@ -145,14 +144,14 @@ def alike(tests: Sequence[Test]) -> list[list[Test]]:
     return [g for g in groups if len(g) > 1]
 
 
-def _same(a: Test, b: Test) -> bool:
+def _same(a: th.Test, b: th.Test) -> bool:
     if set(a.inputs) != set(b.inputs) or abs(a.time[-1] / b.time[-1] - 1.0) > ALIKE:
         return False
     pairs = [(float(np.mean(a.inputs[n])), float(np.mean(b.inputs[n]))) for n in a.inputs]
     return all(abs(x - y) <= ALIKE * max(abs(x), abs(y)) for x, y in pairs)
 
 
-def _end(test: Test, place: str, boundary: str) -> tuple[float, float] | None:
+def _end(test: th.Test, place: str, boundary: str) -> tuple[float, float] | None:
     """Rise over ambient (K) of a place in the last quarter, and the sensor's uncertainty (K)."""
     late, air = test.time >= LATE * test.time[-1], np.broadcast_to(test.boundaries[boundary], test.time.shape)
     ends = []

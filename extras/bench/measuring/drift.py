@@ -17,19 +17,7 @@ import numpy as np
 from extras.bench.measuring.curves import ALIKE, LATE, constant
 from extras.bench.measuring.repeats import LEVEL
 from thermoscope import InputError
-from thermoscope.plugin import (
-    NOISE_SHAPES,
-    Array,
-    Blocks,
-    Channel,
-    Test,
-    ambient,
-    blocks_of,
-    physical,
-    predict,
-    standing,
-)
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 Verdict = Literal["changed", "equal", "cannot tell"]
 WIDE = 0.05  # of a rise or a time constant: surer than that, nine in ten changes of a tenth are seen
@@ -83,17 +71,17 @@ class Sensor:
     """
 
     changes: tuple[Change, ...]
-    minutes: Array
-    earlier: Array
-    later: Array
-    band: Array
+    minutes: th.Array
+    earlier: th.Array
+    later: th.Array
+    band: th.Array
 
 
 @dataclass(frozen=True)
 class Drift:
     """later, earlier : names of the tests;  left_out : sensors with too few readings, or that do not warm"""
 
-    case: Case
+    case: th.MeasuredCase
     later: str
     earlier: str
     sensors: tuple[Sensor, ...]
@@ -151,7 +139,7 @@ class Drift:
         }
 
 
-def drift(case: Case, later: Test, earlier: Test) -> Drift:
+def drift(case: th.MeasuredCase, later: th.Test, earlier: th.Test) -> Drift:
     """The later test against the earlier one. InputError where their loads differ or vary, or they share no sensor."""
     _comparable(later, earlier)
     pairs = list(_pairs(later.channels, earlier.channels))
@@ -159,12 +147,12 @@ def drift(case: Case, later: Test, earlier: Test) -> Drift:
         right = f"one at {', '.join(dict.fromkeys(c.place for c in earlier.channels)) or 'a place'}"
         raise InputError(f"has no sensor where {earlier.name} has one", f"test {later.name!r}", right)
     later, earlier = (replace(t, channels=c) for t, c in zip((later, earlier), zip(*pairs, strict=True), strict=True))
-    network, values = standing(case), physical(case)
-    air = ambient(network) or network.boundaries[0]
+    network, values = th.standing(case), th.physical(case)
+    air = th.ambient(network) or network.boundaries[0]
 
-    def predicted(test: Test) -> list[Array]:
+    def predicted(test: th.Test) -> list[th.Array]:
         """Rises of all sensors, and what they gain in a faster machine: in one whose time runs so much faster."""
-        run, fast = (predict(network, replace(test, time=f * test.time), values).y.T for f in (1.0, 1.0 + STRETCH))
+        run, fast = (th.predict(network, replace(test, time=f * test.time), values).y.T for f in (1.0, 1.0 + STRETCH))
         return [run - test.boundaries[air], (fast - run) / STRETCH]
 
     rises = (np.array([c.y for c in t.channels]) - t.boundaries[air] for t in (later, earlier))
@@ -183,7 +171,7 @@ def drift(case: Case, later: Test, earlier: Test) -> Drift:
     return Drift(case, later.name, earlier.name, tuple(_judged(sensors)), left_out)
 
 
-def _comparable(later: Test, earlier: Test) -> None:
+def _comparable(later: th.Test, earlier: th.Test) -> None:
     where = f"test {later.name!r}"
     if set(later.inputs) != set(earlier.inputs):
         others = ", ".join(sorted(set(later.inputs) ^ set(earlier.inputs)))
@@ -197,7 +185,7 @@ def _comparable(later: Test, earlier: Test) -> None:
             raise InputError(f"{name} is {now:.4g} here, and {was:.4g} in {earlier.name}", where, right)
 
 
-def _pairs(later: Sequence[Channel], earlier: Sequence[Channel]) -> Iterator[tuple[Channel, Channel]]:
+def _pairs(later: Sequence[th.Channel], earlier: Sequence[th.Channel]) -> Iterator[tuple[th.Channel, th.Channel]]:
     """The same sensor in both tests: by its name, else the next one at its place."""
     left = list(earlier)
     for c in sorted(later, key=lambda c: c.name not in {e.name for e in earlier}):
@@ -207,19 +195,19 @@ def _pairs(later: Sequence[Channel], earlier: Sequence[Channel]) -> Iterator[tup
             yield c, replace(same[0], name=c.name, place=c.place, row=c.row)
 
 
-def _calm(test: Test, air: str, above_K: float = 0.0) -> Test:
+def _calm(test: th.Test, air: str, above_K: float = 0.0) -> th.Test:
     """The test in an ambient that does not move, with a start there or so far above it."""
     mean = {name: np.full(test.time.size, float(np.mean(u))) for name, u in test.boundaries.items()}
     return replace(test, boundaries=mean, initial=float(mean[air][0]) + above_K)
 
 
-def _onto(time: Array, other: Array, y: Array) -> Array:
+def _onto(time: th.Array, other: th.Array, y: th.Array) -> th.Array:
     """Values at other times of the test, missing before the first and after the last reading."""
     read = np.isfinite(y)
     return np.interp(time, other[read], y[read], np.nan, np.nan) if read.any() else np.full(time.shape, np.nan)
 
 
-def _sensor(sensor: Channel, time: Array, columns: Array) -> Sensor | None:
+def _sensor(sensor: th.Channel, time: th.Array, columns: th.Array) -> Sensor | None:
     """columns : (11, n_time) K: of the later, then of the earlier test the rise, its prediction with the gain of a
     faster machine, and both in an ambient that does not move; last, that of a start 1 K above ambient"""
     from scipy.stats import t as student
@@ -227,7 +215,7 @@ def _sensor(sensor: Channel, time: Array, columns: Array) -> Sensor | None:
     read = np.isfinite(columns).all(axis=0)
     if read.sum() < LEAST:
         return None
-    blocks = Blocks(blocks_of(int(read.sum())), 1 + len(columns))
+    blocks = th.Blocks(th.blocks_of(int(read.sum())), 1 + len(columns))
     blocks.add(0, np.column_stack([time[read], columns[:, read].T]), np.ones(read.sum()))
     t, *rows = blocks.means().T
     (rise, full, full_gain, heat, heat_gain), warm = np.array(rows[:10]).reshape(2, 5, -1).swapaxes(0, 1), rows[10]
@@ -255,14 +243,14 @@ def _sensor(sensor: Channel, time: Array, columns: Array) -> Sensor | None:
     return Sensor(tuple(both), t / 60.0, rise[1], after, band)
 
 
-def _fitted(t: Array, d: Array, X: Array, offset_K: float) -> tuple[Array, Array, float]:
+def _fitted(t: th.Array, d: th.Array, X: th.Array, offset_K: float) -> tuple[th.Array, th.Array, float]:
     """Generalised least squares: (weights, covariance, rms noise in K), meaned over all shapes that the noise may have.
 
     A shape counts by its restricted likelihood: the best one alone would be too sure. offset_K : of start and reading
     Source: Patterson and Thompson 1971, Biometrika 58, 545.
     """
     prior, free, fits = np.diag([0.0, 0.0, offset_K**-2, offset_K**-2]), t.size - X.shape[1], []
-    for shape in NOISE_SHAPES:
+    for shape in th.NOISE_SHAPES:
         L, whole = np.linalg.cholesky(shape.matrix(t)), 1.0 + shape.a + shape.b
         white = np.linalg.solve(L, np.column_stack([X, d]))
         A, y = white[:, :-1], white[:, -1]

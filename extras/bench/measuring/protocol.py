@@ -13,22 +13,7 @@ import numpy as np
 
 from extras.bench.measuring.warming import equilibrium, spaced_window
 from thermoscope import InputError
-from thermoscope.plugin import (
-    COPPER,
-    NDFEB,
-    OHMMETER,
-    VOLTMETER,
-    Extrapolated,
-    Magnets,
-    Meter,
-    PropagatedUncertainty,
-    Reading,
-    Saturation,
-    Winding,
-    all_ways,
-    allowed_delay,
-)
-from thermoscope.plugin import CoolingCurve as Cooling
+from thermoscope import plugin as th
 
 State = Literal["done", "to do", "refused", "doubtful"]
 ROOM_K = 1.0  # the machine counts as cold within this of the room
@@ -71,11 +56,11 @@ class Record:
     warming: tuple[tuple[float, float], ...] = ()
     resolution_K: float = 0.5
     hot: Hot | None = None
-    ohmmeter: Meter = OHMMETER
-    voltmeter: Meter = VOLTMETER
-    beta: Reading = COPPER
-    alpha: Reading = NDFEB
-    curve: Saturation | None = None
+    ohmmeter: th.Meter = th.OHMMETER
+    voltmeter: th.Meter = th.VOLTMETER
+    beta: th.Reading = th.COPPER
+    alpha: th.Reading = th.NDFEB
+    curve: th.Saturation | None = None
 
 
 @dataclass(frozen=True)
@@ -100,9 +85,9 @@ class Protocol:
     """
 
     steps: tuple[Step, ...]
-    winding: PropagatedUncertainty | None = None
-    magnets: PropagatedUncertainty | None = None
-    ways: tuple[Extrapolated, ...] = ()
+    winding: th.PropagatedUncertainty | None = None
+    magnets: th.PropagatedUncertainty | None = None
+    ways: tuple[th.Extrapolated, ...] = ()
     temperatures: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -142,27 +127,27 @@ def checked_steps(record: Record) -> tuple[Step, ...]:
 
 def _result(record: Record, cold: Cold, hot: Hot, steps: tuple[Step, ...]) -> Protocol:
     winding = magnets = None
-    ways: tuple[Extrapolated, ...] = ()
+    ways: tuple[th.Extrapolated, ...] = ()
     temperatures: dict[str, float] = {}
     if hot.cooling:
-        source = Winding(cold.ohm, cold.machine_C, record.ohmmeter, record.beta)
-        ways = tuple(all_ways(cooling_of(source, hot), record.rated_kW))
+        source = th.Winding(cold.ohm, cold.machine_C, record.ohmmeter, record.beta)
+        ways = tuple(th.all_ways(cooling_of(source, hot), record.rated_kW))
         temperatures = {f"winding, {w.method}": w.value for w in ways}
         best = min(ways[1:], key=lambda w: (w.method != "exponentials", w.method), default=ways[0])
         # The resistance (ohm) that belongs to a temperature (degC): the law is a straight line
         per_ohm = source.temperature(source.cold_ohm + 1.0) - source.cold_C
         winding = source.rise(source.cold_ohm + (best.value - source.cold_C) / per_ohm)
     if hot.volt is not None and hot.rpm and cold.volt is not None and cold.rpm:
-        pm = Magnets(cold.volt, cold.machine_C, cold.rpm, record.voltmeter, record.alpha, record.curve)
+        pm = th.Magnets(cold.volt, cold.machine_C, cold.rpm, record.voltmeter, record.alpha, record.curve)
         magnets = pm.rise(hot.volt, hot.rpm)
         temperatures["magnets"] = float(pm.temperature(hot.volt, hot.rpm))
     return Protocol(steps, winding, magnets, ways, temperatures)
 
 
-def cooling_of(winding: Winding, hot: Hot) -> Cooling:
+def cooling_of(winding: th.Winding, hot: Hot) -> th.CoolingCurve:
     """Readings after switching off as temperatures."""
     t, ohm = np.array(hot.cooling, float).T
-    return Cooling(t, winding.temperature(ohm), hot.ambient_C, winding.reading_sd(float(np.median(ohm))))
+    return th.CoolingCurve(t, winding.temperature(ohm), hot.ambient_C, winding.reading_sd(float(np.median(ohm))))
 
 
 def _room(record: Record) -> tuple[State, str]:
@@ -191,7 +176,7 @@ def _cold_ohm(record: Record) -> tuple[State, str]:
     return _guarded(lambda: _range_words(record.ohmmeter, cold.ohm, cold.range_high, "cold resistance"))
 
 
-def _range_words(meter: Meter, value: float, high: float | None, where: str) -> str:
+def _range_words(meter: th.Meter, value: float, high: float | None, where: str) -> str:
     limit = meter.chosen(value, high, where).limit(value)
     return f"{value:g} {meter.unit} +- {limit:.3g} {meter.unit}"
 
@@ -222,7 +207,7 @@ def _hot_ohm(record: Record) -> tuple[State, str]:
     if hot is None or not hot.cooling:
         return "to do", ""
     times = [t for t, _ in hot.cooling]
-    limit = allowed_delay(record.rated_kW)
+    limit = th.allowed_delay(record.rated_kW)
     if times[0] > 2 * limit:
         return "refused", f"first reading after {times[0]:g} s; {2 * limit:g} s is the latest at {record.rated_kW:g} kW"
     if cold is not None and hot.cooling[0][1] <= cold.ohm:

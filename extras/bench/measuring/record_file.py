@@ -7,33 +7,20 @@ from itertools import pairwise
 from pathlib import Path
 
 from extras.bench.measuring.protocol import Cold, Hot, Record
-from thermoscope.plugin import (
-    COPPER,
-    NDFEB,
-    OHMMETER,
-    VOLTMETER,
-    Reading,
-    TomlTable,
-    meter_of,
-    pairs,
-    read_recording,
-    read_toml,
-    recording,
-    saturation_of,
-)
+from thermoscope import plugin as th
 
 Pairs = tuple[tuple[float, float], ...]
 
 
 def read_record(file: Path) -> Record:
     """The record of a test; InputError for unknown keys and values that cannot be."""
-    top = TomlTable(read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
+    top = th.TomlTable(th.read_toml(file, "a record of a thermal test, see docs/how-to/thermal-test.md"), str(file))
     record = record_in(top, file)
     top.close()
     return record
 
 
-def record_in(top: TomlTable, file: Path) -> Record:
+def record_in(top: th.TomlTable, file: Path) -> Record:
     """The record of a test in a file that may hold more; who reads the rest closes it."""
     machine, cold, load, hot = (top.table(name) for name in ("machine", "cold", "load", "hot"))
     coefficients, meters = top.table("coefficients"), top.table("meters")
@@ -43,22 +30,22 @@ def record_in(top: TomlTable, file: Path) -> Record:
         timed_pairs(load, file, 60.0),
         load.number("resolution_K", 0.5),
         _hot(hot, file) if hot.data else None,
-        meter_of(meters, "resistance", OHMMETER),
-        meter_of(meters, "emf", VOLTMETER),
-        beta=_range(coefficients, "beta_percent_K", COPPER),
-        alpha=_range(coefficients, "alpha_percent_K", NDFEB),
-        curve=saturation_of(coefficients),
+        th.meter_of(meters, "resistance", th.OHMMETER),
+        th.meter_of(meters, "emf", th.VOLTMETER),
+        beta=_range(coefficients, "beta_percent_K", th.COPPER),
+        alpha=_range(coefficients, "alpha_percent_K", th.NDFEB),
+        curve=th.saturation_of(coefficients),
     )
     for one in (machine, load, coefficients, meters):
         one.close()
     return record
 
 
-def _optional(table: TomlTable, key: str) -> float | None:
+def _optional(table: th.TomlTable, key: str) -> float | None:
     return table.number(key) if key in table else None
 
 
-def _cold(table: TomlTable) -> Cold:
+def _cold(table: th.TomlTable) -> Cold:
     cold = Cold(
         table.number("room_degC"),
         table.number("machine_degC"),
@@ -72,7 +59,7 @@ def _cold(table: TomlTable) -> Cold:
     return cold
 
 
-def _hot(table: TomlTable, file: Path) -> Hot:
+def _hot(table: th.TomlTable, file: Path) -> Hot:
     hot = Hot(
         table.number("ambient_degC"),
         timed_pairs(table, file, 1.0),
@@ -84,7 +71,7 @@ def _hot(table: TomlTable, file: Path) -> Hot:
     return hot
 
 
-def timed_pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
+def timed_pairs(source: th.TomlTable, beside: Path, unit_s: float) -> Pairs:
     """(time, value) of a table's `readings`, or of its file; the file's times (s) are divided by `unit_s`."""
     rows: Iterable[Sequence[float]]
     if "readings" in source:
@@ -93,12 +80,12 @@ def timed_pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
             raise source.error("readings is no list of pairs", "readings = [[time, value], ...]")
     elif "file" in source:
         path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
-        file = recording(path)
-        frame = read_recording(file, source.word("worksheet", ""))
+        file = th.recording(path)
+        frame = th.read_recording(file, source.word("worksheet", ""))
         for name in (time, column):
             if name not in frame.columns:
                 raise source.error(f"column '{name}' is not in {path.name}", f"known: {', '.join(frame.columns)}")
-        rows = [(t / unit_s, v) for t, v in pairs(frame, time, column, file)]
+        rows = [(t / unit_s, v) for t, v in th.pairs(frame, time, column, file)]
     else:
         return ()
     if late := next((b for (a, _), (b, _) in pairwise(rows) if b <= a), None):
@@ -106,11 +93,11 @@ def timed_pairs(source: TomlTable, beside: Path, unit_s: float) -> Pairs:
     return tuple((float(t), float(v)) for t, v in rows)
 
 
-def _range(table: TomlTable, key: str, usual: Reading) -> Reading:
+def _range(table: th.TomlTable, key: str, usual: th.Reading) -> th.Reading:
     if key not in table:
         return usual
     values = table.numbers(key)
     if len(values) not in (1, 2):
         raise table.error(f"{key} = {list(values)} is not possible", "one number, or [lowest, highest]")
     low, high = values[0], values[-1]
-    return Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)
+    return th.Reading(usual.name, (low + high) / 200.0, abs(high - low) / 200.0)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope import InputError
-from thermoscope.plugin import NORMAL_95, Array
+from thermoscope import plugin as th
 
 LEVEL = 0.05  # significance: how often equal runs are said to differ
 
@@ -55,12 +55,12 @@ def repeats(values: Sequence[float], u: float) -> Repeats:
         sd,
         max(sd, u) / np.sqrt(x.size),
         float(np.ptp(x)),
-        NORMAL_95 * np.sqrt(2.0) * u,
+        th.NORMAL_95 * np.sqrt(2.0) * u,
         float(chi2.sf(chi, x.size - 1)),
     )
 
 
-def pooled_curves(minutes: Sequence[Array], T: Sequence[Array]) -> tuple[Array, Array, Array]:
+def pooled_curves(minutes: Sequence[th.Array], T: Sequence[th.Array]) -> tuple[th.Array, th.Array, th.Array]:
     """Repeated records on their common times: (minutes, mean, sd between runs)."""
     common = [m for m in minutes[0] if all(o[0] - 1e-9 <= m <= o[-1] + 1e-9 for o in minutes[1:])]
     if len(common) < 2:

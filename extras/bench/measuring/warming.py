@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope import InputError
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 START_K = 2.0  # a fitted start further off the measured one than this is worth a warning
 
@@ -66,7 +66,7 @@ def eq8(minutes: Any, a: Any, b: Any, c: Any) -> Any:
     return a * np.exp(b * np.exp(c * np.asarray(minutes, float)))
 
 
-def fit_eq8(minutes: Array, T: Array, start_C: float | None = None, resolution_K: float = 0.5) -> Warming:
+def fit_eq8(minutes: th.Array, T: th.Array, start_C: float | None = None, resolution_K: float = 0.5) -> Warming:
     """Least squares, with 95 % intervals from Student's t.
 
     start_C : measured temperature at t = 0 (default: the first reading, if it was taken then)
@@ -126,12 +126,12 @@ class Equilibrium:
         return dict(vars(self))
 
 
-def spaced_window(minutes: Array, least_min: float = 10.0) -> float:
+def spaced_window(minutes: th.Array, least_min: float = 10.0) -> float:
     """Length (min) of a window in which readings can differ: twice the time between them where they are rare."""
     return max(least_min, 2.0 * float(np.median(np.diff(minutes)))) if len(minutes) > 1 else least_min
 
 
-def equilibrium(minutes: Array, T: Array, resolution_K: float, window_min: float = 10.0) -> Equilibrium:
+def equilibrium(minutes: th.Array, T: th.Array, resolution_K: float, window_min: float = 10.0) -> Equilibrium:
     """Eq. 9 as a detector: from when on no two readings a window apart differ by more than the sensor resolves.
 
     It must have held for a window's length of such pairs, so that one lucky pair does not count.

@@ -13,13 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from thermoscope import Network, read_network
-from thermoscope.plugin import RPM, SCHUBERT, PartRow, part_table, winding_conductivity
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
-Rows = Mapping[str, PartRow]
+Rows = Mapping[str, th.PartRow]
 K_AIR = 0.028  # W/m/K, air near 50 degC
 AIR_K = 0.026  # W/m/K
-K1, K2, K3 = SCHUBERT
+K1, K2, K3 = th.SCHUBERT
 WALL = 0.3  # share of the rotor's tip speed that passes a wall at rest
 # Of their space (assumed): end turns lie looser than wires in slots.
 COPPER_SHARE = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}
@@ -62,30 +61,30 @@ class PmSettings:
     friction_W: float = 10.0
 
 
-def pm_network(machine: Machine, settings: PmSettings, rows: Rows | None = None) -> Network:
+def pm_network(machine: th.MachineDescription, settings: PmSettings, rows: Rows | None = None) -> Network:
     """The network of a machine with magnets in open laminations.  rows : its table of parts, if already made"""
     return read_network(_Builder(machine, settings, rows or table_of(machine)).document(), machine.name)
 
 
-def table_of(machine: Machine) -> Rows:
+def table_of(machine: th.MachineDescription) -> Rows:
     """Areas and masses of the parts by name."""
-    return {row.name: row for row in part_table(machine, 72)}
+    return {row.name: row for row in th.part_table(machine, 72)}
 
 
 def bundle(fill: float, k_resin: float, impregnation: float) -> float:
     """Conductivity (W/m/K) across a bundle of wires whose voids resin fills only in part: air and resin mixed first."""
-    return winding_conductivity(fill, 385.0, filled(impregnation, k_resin))[0]
+    return th.winding_conductivity(fill, 385.0, filled(impregnation, k_resin))[0]
 
 
 def filled(share: float, k_resin: float) -> float:
     """Conductivity (W/m/K) of a void that resin fills to a share, air the rest."""
-    return k_resin if share >= 1 else winding_conductivity(share, k_resin, AIR_K)[0]
+    return k_resin if share >= 1 else th.winding_conductivity(share, k_resin, AIR_K)[0]
 
 
 class _Builder:
     """Collects the tables of the document."""
 
-    def __init__(self, machine: Machine, settings: PmSettings, rows: Rows) -> None:
+    def __init__(self, machine: th.MachineDescription, settings: PmSettings, rows: Rows) -> None:
         self.machine, self.settings, self.g = machine, settings, machine.dimensions
         self.rows = rows
         self.nodes: dict[str, Any] = {}
@@ -160,7 +159,7 @@ class _Builder:
             self.link("winding", f"winding.{side}", R_K_W=path / area)
 
     def _stirred(self, part: str, air: str, area: float, share: float) -> None:
-        tip = 383 * RPM * (self.g.stator.bore_diameter / 2 - self.g.stator.air_gap)
+        tip = 383 * th.RPM * (self.g.stator.bore_diameter / 2 - self.g.stator.air_gap)
         turning = {"input": "speed_rpm", "at": 383, "exponent": K3}
         forced = {"h_W_m2K": K1 * K2 * (share * tip) ** K3, "of": turning}
         self.link(part, air, area_m2=area, h_W_m2K=K1, forced=forced)

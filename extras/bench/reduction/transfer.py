@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope.plugin import MeasuredCase as Case
-from thermoscope.plugin import physical, predict, standing, with_model
+from thermoscope import plugin as th
 
 COVERAGE = 2.0  # standard uncertainties: 95 %
 LIMITS = np.sqrt(6.0)  # of a sum of two even errors of one size, both at their limit, over its standard deviation
@@ -46,7 +45,7 @@ class Row:
 class Transfer:
     """A case with another case's values: what was taken over, and how it stands."""
 
-    case: Case
+    case: th.MeasuredCase
     parameters: tuple[str, ...]
     rows: tuple[Row, ...]
 
@@ -63,23 +62,23 @@ class Transfer:
         }
 
 
-def transferred(source: Case, target: Case) -> Transfer:
+def transferred(source: th.MeasuredCase, target: th.MeasuredCase) -> Transfer:
     """Values of parameters that both networks declare under one name; sensors' own ones and losses stay behind.
 
     What a machine loses is its own: its resistance is measured cold, its magnetic loss given.
     """
     theirs = {p.name for p in target.model.network.parameters if not p.name.startswith("loss.")}
-    values = {k: v for k, v in physical(source).items() if k in theirs}
-    case = with_model(target, replace(target.model, values={**target.model.values, **values}))
+    values = {k: v for k, v in th.physical(source).items() if k in theirs}
+    case = th.with_model(target, replace(target.model, values={**target.model.values, **values}))
     return Transfer(case, tuple(values), tuple(end_errors(case)))
 
 
-def end_errors(case: Case) -> list[Row]:
+def end_errors(case: th.MeasuredCase) -> list[Row]:
     """Every channel of every test at its end, against the model as it stands."""
-    network = standing(case)
+    network = th.standing(case)
     out = []
     for test in case.tests:
-        y = predict(network, test, physical(case)).y
+        y = th.predict(network, test, th.physical(case)).y
         late = test.time >= test.time[-1] - LATE * (test.time[-1] - test.time[0])
         for j, c in enumerate(test.channels):
             rows = late & np.isfinite(c.y)

@@ -14,19 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermoscope import InputError, Network, Steady, ThermoscopeError, steady
-from thermoscope.plugin import (
-    Conductivity,
-    Constant,
-    Linear,
-    Source,
-    Test,
-    heat_model,
-    multipliers,
-    physical,
-    standing,
-    temperature_value,
-)
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
@@ -95,9 +83,11 @@ def two_paths(
     return TwoPaths(paths.R_ext, paths.R_w, paths.winding_K, paths.machine_K, paths.P_w, paths.P_all, residual)
 
 
-def of_test(case: Case, test: Test, winding: str = "winding.copper", machine: str = "magnets") -> TwoPaths:
+def of_test(
+    case: th.MeasuredCase, test: th.Test, winding: str = "winding.copper", machine: str = "magnets"
+) -> TwoPaths:
     """The case's model at the mean load of one of its tests."""
-    network, values = heat_model(standing(case), physical(case))
+    network, values = th.heat_model(th.standing(case), th.physical(case))
     load = {name: float(np.mean(v)) for name, v in test.inputs.items()}
     air = float(np.mean([np.mean(v) for v in test.boundaries.values()]))
     return two_paths(network, load, air, winding, machine, values=values)
@@ -109,20 +99,20 @@ def _state(
     """T_w, T_m (degC), P_w, P_all (W) at rest."""
     rows = [network.places[place].mean for place in at]
     state = steady(network, inputs, dict.fromkeys(network.boundaries, ambient), values, rows)
-    more = multipliers(network, values)
+    more = th.multipliers(network, values)
     power = {s.name: more.get(s.name, 1.0) * power_of(s, inputs, state) for s in network.sources}
     copper = sum(power[s.name] for s in network.sources if s.kind == "copper")
     return float(state.y[0]), float(state.y[1]), copper, sum(power.values())
 
 
-def power_of(source: Source, inputs: Mapping[str, float], state: Steady) -> float:
+def power_of(source: th.Source, inputs: Mapping[str, float], state: Steady) -> float:
     """Loss (W) of a source at rest, before the multipliers of parameters."""
     one = {name: np.array([float(value)]) for name, value in inputs.items()}
     factor = float(np.ravel(source.law.factor(one))[0])
     law = source.law.temperature
-    if not isinstance(law, Constant | Linear | Conductivity):
+    if not isinstance(law, th.Constant | th.Linear | th.Conductivity):
         raise InputError(
             f"loss '{source.name}' follows a {type(law).__name__}", "two resistances", "constant, or as copper does"
         )
     T = source.probe.at(state.z)
-    return factor * temperature_value(law, T, T)
+    return factor * th.temperature_value(law, T, T)

@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from extras.bench.steady_law.steady_tests import TINY, SteadyTests
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 LEVELS = 4  # of an input that may have a limit: two on each side
 STEEPEST = 12.0  # ln of a conductance over the usual one: beyond lies no machine
@@ -92,7 +92,7 @@ def edge(form: Form, share: float, tests: SteadyTests) -> tuple[float, float]:
     return low + (1.0 - low) * min(max(share, 0.01), 0.99), 1.0 - low
 
 
-def conductances(form: Form, x: Array, tests: SteadyTests) -> tuple[Array, Array, Array, Array]:
+def conductances(form: Form, x: th.Array, tests: SteadyTests) -> tuple[th.Array, th.Array, th.Array, th.Array]:
     """(n,) ln G and G0 (W/K), each with its (n, p) slopes, of G0 those of its logarithm;  x : numbers by `labels`"""
     at = {label: n for n, label in enumerate(form.labels)}
     n, p = len(tests.heat), x.size
@@ -136,7 +136,7 @@ def conductances(form: Form, x: Array, tests: SteadyTests) -> tuple[Array, Array
     return np.clip(log_G, tests.scales.log_G - STEEPEST, tests.scales.log_G + STEEPEST), slope, G0, slope0
 
 
-def temperature(form: Form, x: Array, tests: SteadyTests) -> tuple[Array, Array]:
+def temperature(form: Form, x: th.Array, tests: SteadyTests) -> tuple[th.Array, th.Array]:
     """(n,) mean temperature (degC) of the sensors, and its (n, p) slopes."""
     log_G, slope, G0, slope0 = conductances(form, x, tests)
     G = np.exp(log_G)

@@ -12,7 +12,7 @@ import numpy as np
 from extras.bench.steady_law.forms import Label, conductances, edge, temperature
 from extras.bench.steady_law.search import MOST, Fit, searched
 from extras.bench.steady_law.steady_tests import STEP_K, SteadyTests, steady_tests
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 SURE = 0.95  # probability from which an input is in the law
 LEAST_LEVELS = 3  # of an input whose highest may be left out: two others tell its exponent
@@ -23,10 +23,10 @@ FINEST_K = 1e-3  # no sensor agrees better with any law
 class Prediction:
     """mean, half : (n,) degC of the sensors' mean and half its 95 % band;  readings, halves : (n, c), of each sensor"""
 
-    mean: Array
-    half: Array
-    readings: Array
-    halves: Array
+    mean: th.Array
+    half: th.Array
+    readings: th.Array
+    halves: th.Array
 
     def agreement(self, tests: SteadyTests) -> dict[str, Any]:
         """Rms (K) of all readings and of the worst sensor, and the share of readings in their band."""
@@ -48,12 +48,12 @@ class SteadyLaw:
     tests: SteadyTests
     fits: Sequence[Fit]
     best: Fit
-    shares: Array
-    sensor_K: Array
-    spread: Array
+    shares: th.Array
+    sensor_K: th.Array
+    spread: th.Array
 
     @cached_property
-    def weights(self) -> Array:
+    def weights(self) -> th.Array:
         """Probabilities of the forms."""
         size = np.exp([f.log_evidence - self.fits[0].log_evidence for f in self.fits])
         return np.asarray(size / size.sum())
@@ -90,7 +90,7 @@ class SteadyLaw:
         halves = self.factor * np.sqrt(variance[:, None] * (1.0 + self.shares.sum(axis=0)) ** 2 + sensors)
         return Prediction(mean, self.factor * np.sqrt(variance), mean[:, None] + B @ self.shares, halves)
 
-    def curve(self, inputs: Array, inlet: float) -> tuple[Array, Array]:
+    def curve(self, inputs: th.Array, inlet: float) -> tuple[th.Array, th.Array]:
         """Conductance to the coolant (W/K) at some inputs and one inlet, and half its 95 % band."""
         T, none = np.full(len(inputs), inlet), np.empty((len(inputs), 0))
         at = steady_tests(self.tests.columns, (), inputs, np.ones(T.size), T, T, none, self.tests.scales)
@@ -100,7 +100,7 @@ class SteadyLaw:
             square += weight * (np.einsum("np,pq,nq->n", J, f.covariance, J) * G**2 + (np.exp(log_G) - G) ** 2)
         return G, self.factor * np.sqrt(square)
 
-    def to_coolant(self, tests: SteadyTests) -> Array:
+    def to_coolant(self, tests: SteadyTests) -> th.Array:
         """(n,) heat of tests (W), less what goes to ambient by the law."""
         G0 = conductances(self.best.form, self.best.x, tests)[2]
         return np.asarray(tests.heat - G0 * (tests.mean - tests.ambient))
@@ -217,7 +217,7 @@ def find_law(tests: SteadyTests, tell: Callable[[str], None] = lambda _: None) -
     """The law of at most seven numbers that a table of steady tests speaks for, with all that it cannot exclude."""
     fits, w = searched(tests, tell), tests.scatter(tests.mean)[:, None]
     rises, above = _rises(tests.mean, tests) / w, (tests.readings - tests.mean[:, None]) / w
-    choices: list[tuple[float, Array, Array, Array]] = []
+    choices: list[tuple[float, th.Array, th.Array, th.Array]] = []
     for s in (1, 2) if np.linalg.matrix_rank(rises) > 1 else (1,):
         B = rises[:, :s]
         shares = np.linalg.lstsq(B, above, rcond=None)[0]
@@ -243,6 +243,6 @@ def checks(law: SteadyLaw, tell: Callable[[str], None] = lambda _: None) -> list
     return out
 
 
-def _rises(T: Array, tests: SteadyTests) -> Array:
+def _rises(T: th.Array, tests: SteadyTests) -> th.Array:
     """(n, 2) K over the coolant, and over ambient."""
     return np.column_stack([T - tests.coolant, T - tests.ambient])

@@ -10,7 +10,7 @@ import numpy as np
 
 from extras.bench.steady_law.forms import PRIORS, Form, simplest, temperature
 from extras.bench.steady_law.steady_tests import SteadyTests
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 MOST = 7  # numbers of a law; forms of one more are weighed too, as doubts
 LEADING = 6  # forms that each round goes on from
@@ -24,8 +24,8 @@ class Fit:
     """x : numbers of a form;  covariance : of them;  sigma_K : of a test's mean about the law at the usual rise"""
 
     form: Form
-    x: Array
-    covariance: Array
+    x: th.Array
+    covariance: th.Array
     sigma_K: float
     log_evidence: float
 
@@ -36,7 +36,7 @@ def fitted(form: Form, tests: SteadyTests, parent: Fit | None = None) -> Fit:
     centre, sd = np.array([PRIORS[str(kind)] for kind, *_ in form.labels]).T
     free, earlier = READ_TESTS + y.size, dict(zip(parent.form.labels, parent.x, strict=True)) if parent else {}
 
-    def state(x: Array) -> tuple[float, float, Array, Array]:
+    def state(x: th.Array) -> tuple[float, float, th.Array, th.Array]:
         """-ln(probability), sigma squared, its gradient and Hessian (Gauss and Newton)"""
         T, J = temperature(form, x, tests)
         J, left, off = J / w[:, None], (T - y) / w, (x - centre) / sd

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from thermoscope import InputError
-from thermoscope.plugin import L_MIN, Array, Fluid, Ints, as_number, oil, read_csv, suggestion, water
+from thermoscope import plugin as th
 
-FLUIDS: dict[str, Callable[[float], Fluid]] = {"oil": oil, "water": water}
-FLOW_UNITS = {"l/min": L_MIN, "l/s": 60.0 * L_MIN, "m3/h": 1.0 / 3600.0, "m3/s": 1.0}
+FLUIDS: dict[str, Callable[[float], th.Fluid]] = {"oil": th.oil, "water": th.water}
+FLOW_UNITS = {"l/min": th.L_MIN, "l/s": 60.0 * th.L_MIN, "m3/h": 1.0 / 3600.0, "m3/s": 1.0}
 FEWEST = 8  # tests
 STEP_K = 10.0  # of a coolant without a name
 LEAST_RISE = 0.05  # of the usual one: a test with less scatters as one with so much
@@ -36,8 +36,8 @@ class Columns:
 class Scales:
     """Of the tests that a law is made from: lowest, highest (k,) input; usual ln conductance, rise (K), inlet (degC)"""
 
-    lowest: Array
-    highest: Array
+    lowest: th.Array
+    highest: th.Array
     log_G: float
     rise: float
     inlet: float
@@ -54,27 +54,27 @@ class SteadyTests:
     columns: Columns
     names: tuple[str, ...]
     scales: Scales
-    inputs: Array
-    heat: Array
-    coolant: Array
-    ambient: Array
-    readings: Array
-    thinner: Array
-    mcp: Array
+    inputs: th.Array
+    heat: th.Array
+    coolant: th.Array
+    ambient: th.Array
+    readings: th.Array
+    thinner: th.Array
+    mcp: th.Array
 
     @property
-    def mean(self) -> Array:
+    def mean(self) -> th.Array:
         return np.asarray(self.readings.mean(axis=1))
 
-    def levels(self, i: int) -> Array:
+    def levels(self, i: int) -> th.Array:
         """The values of an input."""
         return np.unique(self.inputs[:, i])
 
-    def scatter(self, T: Array) -> Array:
+    def scatter(self, T: th.Array) -> th.Array:
         """(n,) sd of a test about the law, over that at the usual rise: its square grows with the rise."""
         return np.asarray(np.sqrt(np.maximum((T - self.coolant) / self.scales.rise, LEAST_RISE)))
 
-    def only(self, rows: Ints) -> SteadyTests:
+    def only(self, rows: th.Ints) -> SteadyTests:
         """Some of the tests, on the scales of all of them."""
         of = (self.inputs, self.heat, self.coolant, self.ambient, self.readings, self.thinner, self.mcp)
         u, heat, coolant, ambient, readings, thinner, mcp = (x[rows] for x in of)
@@ -88,15 +88,15 @@ def read_tests(file: Path, columns: Columns, scales: Scales | None = None) -> St
 
     scales : of the tests whose law is to be used; the file needs no temperatures then
     """
-    table = read_csv(file)
+    table = th.read_csv(file)
     names = tuple(name for name in table.columns if fnmatchcase(name, columns.temperatures))
     if not names and scales is None:
-        right = suggestion(columns.temperatures, table.columns)
+        right = th.suggestion(columns.temperatures, table.columns)
         raise InputError(f"no column is called {columns.temperatures!r}", str(file), right)
 
-    def column(name: str) -> Array:
+    def column(name: str) -> th.Array:
         table.require([name], str(file))
-        values = [as_number(cell) for cell in table[name]]
+        values = [th.as_number(cell) for cell in table[name]]
         for n, v in enumerate(values):
             if v is None or not np.isfinite(v):
                 where = f"{file} column '{name}' line {n + table.line}"
@@ -114,11 +114,11 @@ def read_tests(file: Path, columns: Columns, scales: Scales | None = None) -> St
 def steady_tests(
     columns: Columns,
     names: Sequence[str],
-    inputs: Array,
-    heat: Array,
-    coolant: Array,
-    ambient: Array,
-    readings: Array,
+    inputs: th.Array,
+    heat: th.Array,
+    coolant: th.Array,
+    ambient: th.Array,
+    readings: th.Array,
     scales: Scales | None = None,
     where: str = "tests",
 ) -> SteadyTests:

@@ -8,21 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from extras.export.compilers import compiler, here
 from thermoscope import InputError, MissingDependency, ThermoscopeError
-from thermoscope.plugin import (
-    Folder,
-    Progress,
-    Summary,
-    give,
-    notes,
-    open_case,
-    plain,
-    progress,
-    suggestion,
-    tables,
-    write_csvs,
-    write_whole,
-    write_xlsx,
-)
+from thermoscope import plugin as th
 
 if TYPE_CHECKING:
     from extras.export.model import Model
@@ -38,7 +24,7 @@ def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping
     further : forms of other extras
     """
     if form not in (*WORKBOOKS, *MODELS, *further):
-        raise InputError(f"'{form}' is no form to export", "--as", suggestion(form, (*WORKBOOKS, *MODELS, *further)))
+        raise InputError(f"'{form}' is no form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further)))
     if version not in VERSIONS:
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
     if sensors and form not in further:
@@ -49,18 +35,18 @@ def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping
 
 def export_workbook(case: str, out: Path | None, form: str, target: str | None) -> int:
     """Results as a workbook or CSV files."""
-    with progress() as tell:
-        folder = open_case(case, tell)
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
         tell("running the model")
-        content = tables(folder)
+        content = th.tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
-    paths = write_csvs(where, content) if form == "csv" else [write_xlsx(where / f"{name}.xlsx", content)]
+    paths = th.write_csvs(where, content) if form == "csv" else [th.write_xlsx(where / f"{name}.xlsx", content)]
     document = {
         "case": folder.case.name,
         "files": [str(p) for p in paths],
         "worksheets": [table.title for table in content],
     }
-    give(document, target, lambda: Summary(f"{len(paths)} files written.", [str(p) for p in paths]))
+    th.give(document, target, lambda: th.Summary(f"{len(paths)} files written.", [str(p) for p in paths]))
     return 0
 
 
@@ -71,14 +57,14 @@ def export_model(
     from extras.export.c_code import state_bytes, step_operations
     from extras.export.model import exported
 
-    with progress() as tell:
-        folder = open_case(case, tell, untested=True)
+    with th.progress() as tell:
+        folder = th.open_case(case, tell, untested=True)
         tell("collecting the network")
         model = exported(folder, limits)
         differences = _differences(folder, model, tell) if form in ("c", "fmu") else {}
         files, platforms = _files(model, form, version, tell)
     where = out or folder.settings.out / form
-    paths = [write_whole(where / name, content) for name, content in files.items()]
+    paths = [th.write_whole(where / name, content) for name, content in files.items()]
     document = {
         "case": folder.case.name,
         "revision": model.revision,
@@ -94,11 +80,11 @@ def export_model(
         ],
         "difference_K": differences,
     }
-    give(document, target, lambda: export_summary(document))
+    th.give(document, target, lambda: export_summary(document))
     return 0
 
 
-def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, float]:
+def _differences(folder: th.Folder, model: Model, tell: th.Progress) -> dict[str, float]:
     """Test -> largest difference (K) between the code and the simulation; empty where nothing can compile here.
 
     Raises ThermoscopeError where they disagree.
@@ -107,7 +93,6 @@ def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, floa
 
     from extras.export.drive import AGREES_K, Compiled, difference, sampled
     from extras.export.model import reach_of
-    from thermoscope.plugin import model_of, record
 
     tell("holding the code against the simulation")
     try:
@@ -115,10 +100,10 @@ def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, floa
     except MissingDependency as fault:
         tell(f"not held against the simulation: {fault}")
         return {}
-    network, values = model_of(folder)
+    network, values = th.model_of(folder)
     out = {}
     for test in folder.case.tests:
-        out[test.name] = difference(code, network, sampled(record(test, {})), values)
+        out[test.name] = difference(code, network, sampled(th.record(test, {})), values)
         what = f"the exported code differs from the simulation of '{test.name}' by {out[test.name]:.3g} K"
         outside = [
             f"{s.name} = {u:.4g} (to {reach:.4g})"
@@ -126,13 +111,13 @@ def _differences(folder: Folder, model: Model, tell: Progress) -> dict[str, floa
             if (reach := reach_of(s)) < (u := float(np.max(np.abs(test.inputs.get(s.name, 0.0)))))
         ]
         if not out[test.name] <= AGREES_K and outside:
-            notes([f"{what}, where an input is beyond what the fitted tests give a table for: {', '.join(outside)}"])
+            th.notes([f"{what}, where an input is beyond what the fitted tests give a table for: {', '.join(outside)}"])
         elif not out[test.name] <= AGREES_K:
             raise ThermoscopeError(what)
     return out
 
 
-def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[str, str | bytes], list[str]]:
+def _files(model: Model, form: str, version: int, tell: th.Progress) -> tuple[dict[str, str | bytes], list[str]]:
     """File name -> content; the platforms that compiled code in them runs on."""
     import json
 
@@ -149,11 +134,11 @@ def _files(model: Model, form: str, version: int, tell: Progress) -> tuple[dict[
     beside = "reference_solver.py" if form == "json" else "thermal_solve.m"
     solver = {beside: (RUNTIME / beside).read_text(encoding="utf-8")}
     if form == "json":
-        return {"model.json": json.dumps(plain(document(model)), ensure_ascii=False), **solver}, []
+        return {"model.json": json.dumps(th.plain(document(model)), ensure_ascii=False), **solver}, []
     return {"model.mat": mat(model), **solver}, []
 
 
-def export_summary(document: Mapping[str, Any]) -> Summary:
+def export_summary(document: Mapping[str, Any]) -> th.Summary:
     """What was written and how well it agrees."""
     sentence = f"{document['states']} states, {document['state_bytes']} bytes from step to step."
     lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
@@ -162,4 +147,4 @@ def export_summary(document: Mapping[str, Any]) -> Summary:
         lines.append(
             f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
         )
-    return Summary(sentence, [*lines, *document["files"]], "--json FILE")
+    return th.Summary(sentence, [*lines, *document["files"]], "--json FILE")

@@ -14,34 +14,24 @@ from extras.monitor.fleet import Population, population
 from extras.monitor.fleet.population import DIFFERS
 from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
 from thermoscope import InputError
-from thermoscope.plugin import (
-    NORMAL_95,
-    Progress,
-    Summary,
-    Table,
-    dask_cluster,
-    load_sheet,
-    one_blas_thread,
-    open_case,
-    suggestion,
-)
+from thermoscope import plugin as th
 
 WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
 FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left
 
 
-@one_blas_thread
+@th.one_blas_thread
 def fleet_document(
-    case: str, names: Sequence[Path], like: str | None, cluster: str | None, tell: Progress
+    case: str, names: Sequence[Path], like: str | None, cluster: str | None, tell: th.Progress
 ) -> dict[str, Any]:
     """like : the test whose sheet the recordings have, else the first that fits;  cluster : of a Dask scheduler"""
-    files, folder = recordings(names), open_case(case, tell)
+    files, folder = recordings(names), th.open_case(case, tell)
     sheets = {e.name: e.sheet for e in folder.settings.tests}
     if like is not None and like not in sheets:
-        raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
-    of = {name: load_sheet(sheet) for name, sheet in sheets.items() if like in (None, name)}
+        raise InputError(f"no test '{like}'", "--like", th.suggestion(like, sheets))
+    of = {name: th.load_sheet(sheet) for name, sheet in sheets.items() if like in (None, name)}
     reader = Reader(replace(folder.case, tests=()), folder.case.tests, of, folder.settings.sample_s or STEP_S)
-    with dask_cluster(cluster) if cluster else nullcontext() as executor:
+    with th.dask_cluster(cluster) if cluster else nullcontext() as executor:
         units = histories(files, reader, tell, executor)
     tell("the motors together")
     fits = {u.name: float(np.sqrt(np.mean([s.rmse_K**2 for s in u.parts]))) for u in units}
@@ -61,7 +51,7 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
             "probability_equal": of.spread_probability[k],
         }
         if of.drift is not None and of.drift_sd is not None and of.drift_spread is not None:
-            low, high = of.drift[k] - NORMAL_95 * of.drift_sd[k], of.drift[k] + NORMAL_95 * of.drift_sd[k]
+            low, high = of.drift[k] - th.NORMAL_95 * of.drift_sd[k], of.drift[k] + th.NORMAL_95 * of.drift_sd[k]
             row["drift_percent_year"] = 100.0 * of.drift[k]
             row["drift_ci95"] = [100.0 * low, 100.0 * high]
             row["drift_spread_percent_year"] = 100.0 * of.drift_spread[k]
@@ -98,14 +88,14 @@ def _drifts(of: Population, i: int) -> dict[str, Any]:
     if of.unit_drift is None or of.unit_drift_sd is None:
         return {}
     rows = {
-        n: [100.0 * (of.unit_drift[i, k] + s * NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
+        n: [100.0 * (of.unit_drift[i, k] + s * th.NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
         for k, n in enumerate(of.names)
     }
     return {"drift_percent_year": {n: [low, high] for n, (low, _, high) in rows.items()}}
 
 
 def _factor(mean: float, sd: float) -> list[float]:
-    return [float(np.exp(mean - NORMAL_95 * sd)), float(np.exp(mean + NORMAL_95 * sd))]
+    return [float(np.exp(mean - th.NORMAL_95 * sd)), float(np.exp(mean + th.NORMAL_95 * sd))]
 
 
 def unequal_words(document: Mapping[str, Any]) -> str:
@@ -122,7 +112,7 @@ def unequal_words(document: Mapping[str, Any]) -> str:
     return f"Are these equal motors? {'; '.join(why)}. Give each type a folder of its own." if why else ""
 
 
-def fleet_summary(document: Mapping[str, Any]) -> Summary:
+def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
     worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
@@ -141,12 +131,12 @@ def fleet_summary(document: Mapping[str, Any]) -> Summary:
         for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])
     ]
     parts = [
-        Table("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
-        Table(
+        th.Table("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
+        th.Table(
             "Parameters over the fleet",
             ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"],
             differ,
             keep=["mean", "spread (%)", "differs", "drift (%/year)"],
         ),
     ]
-    return Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")
+    return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")

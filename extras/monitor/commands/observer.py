@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from thermoscope.plugin import Summary, give, open_case, progress, write_whole
+from thermoscope import plugin as th
 
 
 def export_observer(
@@ -16,17 +16,16 @@ def export_observer(
 
     from extras.monitor.observer_code import code_writer, observer_files, observer_model
     from extras.monitor.rows.observing import chosen, designed, less_sure, model_gap, taught_tests
-    from thermoscope.plugin import model_of, standing_reference
 
-    with progress() as tell:
-        whole = open_case(case, tell)
+    with th.progress() as tell:
+        whole = th.open_case(case, tell)
         folder = whole.small  # a controller's memory is short
-        looks, of_whole = (code_writer().outputs(model_of(f)[0], f, limits) for f in (folder, whole))
+        looks, of_whole = (code_writer().outputs(th.model_of(f)[0], f, limits) for f in (folder, whole))
         gap: dict[str, float] = {}
         if folder is not whole:
             tell("small network beside the large one")
             rows = [{o.name: o.row for o in each} for each in (of_whole, looks)]
-            gap = model_gap([model_of(whole), model_of(folder)], taught_tests(whole), rows)
+            gap = model_gap([th.model_of(whole), th.model_of(folder)], taught_tests(whole), rows)
             folder = less_sure(folder, gap)
         channels = {c.name: c for t in folder.case.tests for c in t.channels}
         sensors = chosen([*channels.values()], names, str(folder.settings.path))
@@ -39,12 +38,12 @@ def export_observer(
             design.noise.sd,
             design.rise_K,
             [s.channel for s in filters],
-            standing_reference(folder.case),
+            th.standing_reference(folder.case),
             looks,
             np.array([s.bias_K for s in filters]),
         )
     where = out or folder.settings.out / "observer"
-    paths = [write_whole(where / name, text) for name, text in observer_files(of).items()]
+    paths = [th.write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {
         "case": folder.case.name,
         "revision": folder.case.model.revision,
@@ -60,5 +59,5 @@ def export_observer(
     sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
     if gap:
         sentence += f" Its small network is within {max(gap.values()):.2g} K (rms) of the large one in the calibration."
-    give(document, target, lambda: Summary(sentence, [str(p) for p in paths], "--json FILE"))
+    th.give(document, target, lambda: th.Summary(sentence, [str(p) for p in paths], "--json FILE"))
     return 0

@@ -15,55 +15,40 @@ from extras.monitor.observer.process import Process
 from extras.monitor.rows.live_rows import PIPE, Rows
 from extras.monitor.rows.observing import joined, record_of
 from thermoscope import Record
-from thermoscope.plugin import (
-    NORMAL_95,
-    PACKAGE,
-    Array,
-    Channel,
-    Folder,
-    Summary,
-    Table,
-    csv_lines,
-    initial_state,
-    mean_rows,
-    model_of,
-    percent,
-    say,
-    stem_of,
-)
+from thermoscope import plugin as th
 
 MINUTE = 60.0
 
 
-def watched_file(folder: Folder, follow: str, out: Path | None) -> Path:
+def watched_file(folder: th.Folder, follow: str, out: Path | None) -> Path:
     """Where every sample is kept; beside no case that comes along."""
-    shipped = PACKAGE in folder.settings.path.resolve().parents
+    shipped = th.PACKAGE in folder.settings.path.resolve().parents
     where = out or (Path("out") / folder.settings.path.name if shipped else folder.settings.out)
-    return where / f"watch-{'pipe' if follow == PIPE else stem_of(Path(follow))}.csv"
+    return where / f"watch-{'pipe' if follow == PIPE else th.stem_of(Path(follow))}.csv"
 
 
 @dataclass
 class Session:
     """An observer as it goes on.  withheld : sensors that are only compared with;  loud : a line a minute on stdout"""
 
-    folder: Folder
+    folder: th.Folder
     design: Design
-    sensors: list[Channel]
-    withheld: list[Channel]
+    sensors: list[th.Channel]
+    withheld: list[th.Channel]
     loud: bool
     one: Observer | None = None
     before: Rows | None = None
-    free: Array | None = None
+    free: th.Array | None = None
     lines: list[str] = field(default_factory=list)
     hottest: dict[str, tuple[float, float]] = field(default_factory=dict)
-    errors: dict[str, list[Array]] = field(default_factory=dict)
+    errors: dict[str, list[th.Array]] = field(default_factory=dict)
     last: Sample | None = None
     spoken: float = -np.inf
     start_s: float = 0.0
 
     def __post_init__(self) -> None:
-        self.rows = mean_rows(self.design.process.network)
-        self.plain = Process(*model_of(self.folder), self.design.process.bodies)
+        self.rows = th.mean_rows(self.design.process.network)
+        self.plain = Process(*th.model_of(self.folder), self.design.process.bodies)
 
     def take(self, rows: Rows) -> None:
         if self.one is None:
@@ -72,7 +57,7 @@ class Session:
             self.one, self.start_s = self.design.started(self.sensors, readings, around), float(rows.time[0])
             first = {c.place: float(rows.readings[c.name][0]) for c in (*self.sensors, *self.withheld)}
             initial_T = {place: y for place, y in first.items() if np.isfinite(y)}
-            self.free = initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
+            self.free = th.initial_state(self.plain.network, initial_T or self.one.filter.x.mean())
         whole = joined(self.before, rows)
         record = record_of(whole, self.folder)
         y = np.column_stack([whole.readings[c.name] for c in self.sensors])
@@ -90,9 +75,9 @@ class Session:
             self.last = sample
             if self.loud and sample.time_s - self.spoken >= MINUTE - 1e-6:
                 self.spoken = sample.time_s
-                say(self._line(sample, temperatures))
+                th.say(self._line(sample, temperatures))
 
-    def _open_loop(self, record: Record, count: int) -> list[Array]:
+    def _open_loop(self, record: Record, count: int) -> list[th.Array]:
         """States (n,) of the model as it stands, without any reading but the very first, the withheld sensors' too."""
         if not self.withheld or self.free is None:
             return []
@@ -104,7 +89,7 @@ class Session:
             out.append(np.concatenate([np.asarray(self.free), by.u[k]]))
         return out
 
-    def _compare(self, rows: Rows, samples: Sequence[Sample], free: Sequence[Array]) -> None:
+    def _compare(self, rows: Rows, samples: Sequence[Sample], free: Sequence[th.Array]) -> None:
         for c in self.withheld:
             y = rows.readings[c.name]
             estimates = np.array([s.at(c.row)[0] for s in samples])
@@ -120,7 +105,7 @@ class Session:
         places = [c.place for c in self.sensors]
         places += [n for n in self.design.process.bodies if n not in places]
         temperatures = [
-            f"{n} {estimates[n][0]:.1f} +- {NORMAL_95 * estimates[n][1]:.1f}"
+            f"{n} {estimates[n][0]:.1f} +- {th.NORMAL_95 * estimates[n][1]:.1f}"
             for n in dict.fromkeys(places)
             if n in estimates
         ]
@@ -130,7 +115,7 @@ class Session:
     def csv(self) -> str:
         head = ["time_s", *(x for n in self.rows for x in (f"T {n} (degC)", f"sd T {n} (K)"))]
         head += [x for n in self.design.process.bodies for x in (f"missing heat {n} (W)", f"sd heat {n} (W)")]
-        return csv_lines([head]) + "\n".join([*self.lines, ""])
+        return th.csv_lines([head]) + "\n".join([*self.lines, ""])
 
     def document(self) -> dict[str, Any]:
         assert self.one is not None
@@ -155,7 +140,7 @@ class Session:
                 {
                     "place": n,
                     "end_C": T,
-                    "end_ci95": [T - NORMAL_95 * sd, T + NORMAL_95 * sd],
+                    "end_ci95": [T - th.NORMAL_95 * sd, T + th.NORMAL_95 * sd],
                     "max_C": self.hottest[n][0],
                     "max_at_s": self.hottest[n][1],
                 }
@@ -186,17 +171,17 @@ class Session:
 
 
 def _interval(value: float, sd: float) -> list[float]:
-    return [value - NORMAL_95 * sd, value + NORMAL_95 * sd]
+    return [value - th.NORMAL_95 * sd, value + th.NORMAL_95 * sd]
 
 
 def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
-        return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({percent(probability)})"
+        return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({th.percent(probability)})"
     size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
     return f"sensor {where} {kind}{size}"
 
 
-def watch_summary(document: dict[str, Any]) -> Summary:
+def watch_summary(document: dict[str, Any]) -> th.Summary:
     """Where the machine stands, what was dropped, where the model failed."""
     hottest = max(document["places"], key=lambda p: p["max_C"])
     sentence = (
@@ -215,8 +200,10 @@ def watch_summary(document: dict[str, Any]) -> Summary:
     ]
     withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
     parts = [
-        Table("What was said", ["event", "from (s)", "to (s)"], events),
-        Table("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
-        Table("", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]),
+        th.Table("What was said", ["event", "from (s)", "to (s)"], events),
+        th.Table("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
+        th.Table(
+            "", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]
+        ),
     ]
-    return Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
+    return th.Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")

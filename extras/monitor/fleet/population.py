@@ -18,7 +18,7 @@ import numpy as np
 from scipy.stats import norm
 
 from extras.monitor.fleet.unit import UnitHistory
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 FREEDOM = 4.0  # of Student's t: a motor at four deviations counts half
 ROUNDS, TOLERANCE = 300, 1e-4  # of the iteration: it ends far sooner or turns in a circle; a tenth of NARROW
@@ -55,62 +55,62 @@ class Population:
     """
 
     names: tuple[str, ...]
-    mean: Array
-    mean_sd: Array
-    spread: Array
-    spread_probability: Array
+    mean: th.Array
+    mean_sd: th.Array
+    spread: th.Array
+    spread_probability: th.Array
     units: tuple[str, ...]
-    posterior: Array
-    posterior_sd: Array
+    posterior: th.Array
+    posterior_sd: th.Array
     outliers: tuple[Outlier, ...]
     year: float
-    drift: Array | None = None
-    drift_sd: Array | None = None
-    drift_spread: Array | None = None
-    unit_drift: Array | None = None
-    unit_drift_sd: Array | None = None
+    drift: th.Array | None = None
+    drift_sd: th.Array | None = None
+    drift_spread: th.Array | None = None
+    unit_drift: th.Array | None = None
+    unit_drift_sd: th.Array | None = None
 
 
 @dataclass(frozen=True)
 class _Moments:
     """H (u, k, k), eta (u, k) of every motor;  prior_sd (k,) of the mean;  mean, variance (k,) of the population"""
 
-    H: Array
-    eta: Array
-    prior_sd: Array
-    mean: Array
-    variance: Array
+    H: th.Array
+    eta: th.Array
+    prior_sd: th.Array
+    mean: th.Array
+    variance: th.Array
 
-    def with_mean(self, weights: Array) -> _Moments:
+    def with_mean(self, weights: th.Array) -> _Moments:
         """With the mean that is likeliest under these variances."""
         bare = replace(self, mean=np.zeros_like(self.mean))
         M, u = bare.outside()
         return replace(self, mean=np.asarray(np.linalg.solve(self.precision(M, weights), weights @ u), float))
 
-    def precision(self, M: Array, weights: Array) -> Array:
+    def precision(self, M: th.Array, weights: th.Array) -> th.Array:
         """(k, k) of the mean."""
         return np.asarray(np.einsum("u,uij->ij", weights, M) + np.diag(self.prior_sd**-2.0), float)
 
-    def posterior(self) -> tuple[Array, Array]:
+    def posterior(self) -> tuple[th.Array, th.Array]:
         """Mean (u, k) and covariance (u, k, k) of every motor."""
         P = np.linalg.inv(self.H + np.diag(1.0 / self.variance))
         return np.einsum("uij,uj->ui", P, self.eta + self.mean / self.variance), np.asarray(P, float)
 
-    def outside(self) -> tuple[Array, Array]:
+    def outside(self) -> tuple[th.Array, th.Array]:
         """S^-1 (u, k, k) of how far each motor may lie from the mean, and S^-1 r (u, k) of how far it does."""
         P = np.linalg.inv(self.H + np.diag(1.0 / self.variance))
         M = self.H - self.H @ P @ self.H
         r = self.eta - self.H @ self.mean
         return M, r - np.einsum("uij,ujk,uk->ui", self.H, P, r)
 
-    def weights(self) -> Array:
+    def weights(self) -> th.Array:
         """(u,) by Student's t; twins of the mean count fully."""
         m, P = self.posterior()
         away = (m - self.mean) ** 2 + np.einsum("uii->ui", P)
         square = np.sum(away / self.variance, axis=1)
         return np.minimum((FREEDOM + self.mean.size) / (FREEDOM + square), 1.0)
 
-    def log_likelihood(self, weights: Array) -> float:
+    def log_likelihood(self, weights: th.Array) -> float:
         """Up to what does not depend on the variances."""
         inner = self.H + np.diag(1.0 / self.variance)
         r = self.eta - self.H @ self.mean
@@ -160,7 +160,7 @@ def population(units: Sequence[UnitHistory]) -> Population:
     )
 
 
-def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[Array, Array]:
+def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[th.Array, th.Array]:
     """H and eta over [a, b], or over a alone where nothing can drift."""
     p = len(unit.parts[0].names)
     k = 2 * p if drifts else p
@@ -172,7 +172,7 @@ def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[Array, Arr
     return H, eta
 
 
-def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments, Array]:
+def _converged_moments(H: th.Array, eta: th.Array, prior_sd: th.Array) -> tuple[_Moments, th.Array]:
     """Mean and variance that no longer move, and the weights of the motors."""
     k, weights = eta.shape[1], np.ones(len(H))
     now = _Moments(H, eta, prior_sd, np.zeros(k), np.full(k, FIRST**2)).with_mean(weights)
@@ -188,13 +188,13 @@ def _converged_moments(H: Array, eta: Array, prior_sd: Array) -> tuple[_Moments,
     return now, weights
 
 
-def _mean_sd(of: _Moments, weights: Array) -> Array:
+def _mean_sd(of: _Moments, weights: th.Array) -> th.Array:
     """(k,) how sure the population's mean is."""
     M, _ = of.outside()
     return np.sqrt(np.diag(np.linalg.inv(of.precision(M, weights))))
 
 
-def _equal(of: _Moments, weights: Array, p: int) -> Array:
+def _equal(of: _Moments, weights: th.Array, p: int) -> th.Array:
     """(p,) probability of as much spread where all motors have one value: half a chi-square of one degree."""
     best, out = of.log_likelihood(weights), np.ones(p)
     for k in range(p):

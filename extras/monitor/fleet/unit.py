@@ -15,8 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thermoscope import Network, Parameter
-from thermoscope.plugin import Array, Test, minimise, parameter_values, standing_reference, to_coordinate, working
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 CAPACITY_YEAR, LOSS_YEAR = 0.005, 0.03  # masses stay, magnets and sheets age by per cents (of the logarithm)
 PATH_YEAR = 0.3  # a film or joint that loses a quarter in a year is fouling or loosening badly
@@ -32,10 +31,10 @@ class Statistics:
     """
 
     names: tuple[str, ...]
-    sd: Array
-    drift_sd: Array
-    H: Array
-    eta: Array
+    sd: th.Array
+    drift_sd: th.Array
+    H: th.Array
+    eta: th.Array
     rmse_K: float
     samples: int
 
@@ -56,15 +55,15 @@ class UnitHistory:
     parts: tuple[Statistics, ...]
 
 
-def statistics(case: Case, test: Test) -> Statistics:
+def statistics(case: th.MeasuredCase, test: th.Test) -> Statistics:
     """Of a recording, for the parameters that the case leaves free, and its effects, from the model as it stands."""
-    model = replace(case.model, reference=standing_reference(case))  # one for all recordings of a fleet
+    model = replace(case.model, reference=th.standing_reference(case))  # one for all recordings of a fleet
     one = replace(case, model=model, tests=(replace(test, role="calibrate"),))
-    network, unknowns = working(one)
+    network, unknowns = th.working(one)
     free = {p.name for p in (case.nuisances or case.model.network.parameters)} | {e.name for e in case.model.effects}
-    values = parameter_values(network, case.model.values)
-    start = np.array([to_coordinate(p, values[p.name]) for p in unknowns.parameters])
-    fit = minimise(network, one.tests, unknowns, start, None, values, ITERATIONS)
+    values = th.parameter_values(network, case.model.values)
+    start = np.array([th.to_coordinate(p, values[p.name]) for p in unknowns.parameters])
+    fit = th.minimise(network, one.tests, unknowns, start, None, values, ITERATIONS)
     unit = np.array([p.name in free for p in unknowns.parameters], bool)
     information, eta = fit.H.copy(), fit.H @ fit.theta
     information[unit, unit] -= unknowns.sd[unit] ** -2.0

@@ -14,24 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from thermoscope import Network, Parameter
-from thermoscope.plugin import (
-    AIR,
-    LIQUID,
-    Array,
-    Channel,
-    Doubt,
-    Fixed,
-    InputPower,
-    Link,
-    Row,
-    Test,
-    copy_link,
-    head,
-    neighbours,
-    to_value,
-)
+from thermoscope import plugin as th
 
-MOVING = ("speed", "vehicle_speed", AIR, LIQUID)
+MOVING = ("speed", "vehicle_speed", th.AIR, th.LIQUID)
 FARTHEST = 1.5  # of a logarithm: beyond, a tangent says nothing
 LEARNED = "learned:"
 
@@ -40,15 +25,15 @@ LEARNED = "learned:"
 class Sensor:
     """A channel as its readings are to be taken.  bias_K : what it reads too much"""
 
-    channel: Channel
+    channel: th.Channel
     bias_K: float = 0.0
 
-    def of(self, c: Channel) -> Sensor:
+    def of(self, c: th.Channel) -> Sensor:
         """The same sensor in another recording, which has its own lag."""
         return replace(self, channel=replace(c, row=self.channel.row))
 
 
-def with_motion(network: Network, tests: Sequence[Test]) -> Network:
+def with_motion(network: Network, tests: Sequence[th.Test]) -> Network:
     """The network with a neutral parameter for every conductance that may follow what moves air or liquid."""
     for signal in [s for q in MOVING if (s := network.signal(q)) and all(s in t.inputs for t in tests)]:
         level = float(np.sqrt(np.mean(np.concatenate([np.square(t.inputs[signal]) for t in tests]))))
@@ -64,9 +49,9 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
         return network
     names = [f"{x.name} by {signal}" for x in links]
     for link, name in zip(links, names, strict=True):
-        assert isinstance(link.law, Fixed)
-        law = InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
-        network = copy_link(network, link, name, law)
+        assert isinstance(link.law, th.Fixed)
+        law = th.InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
+        network = th.copy_link(network, link, name, law)
     new = Parameter(
         f"{LEARNED}{p.name} by {signal}",
         tuple((n, 1.0) for n in names),
@@ -81,8 +66,8 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
     return replace(network, parameters=(*network.parameters, new))
 
 
-def _still(link: Link) -> bool:
-    return isinstance(link.law, Fixed) and link.kind != "stream" and not link.origin
+def _still(link: th.Link) -> bool:
+    return isinstance(link.law, th.Fixed) and link.kind != "stream" and not link.origin
 
 
 @dataclass(frozen=True)
@@ -94,30 +79,30 @@ class Constants:
 
     network: Network
     start: Mapping[str, float]
-    channels: tuple[Channel, ...]
-    doubt: Doubt
+    channels: tuple[th.Channel, ...]
+    doubt: th.Doubt
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """Those of the network that heat depends on and that may move."""
-        return tuple(p for p in self.network.parameters if head(p) == "thermal" and p.prior_sd > 0.0)
+        return tuple(p for p in self.network.parameters if th.head(p) == "thermal" and p.prior_sd > 0.0)
 
     @cached_property
-    def beside(self) -> tuple[tuple[tuple[Row, float], ...], ...]:
+    def beside(self) -> tuple[tuple[tuple[th.Row, float], ...], ...]:
         """Of each sensor its neighbours, as rows, and the share (one sigma) of each in its reading."""
         return tuple(
-            tuple((self.network.places[n].mean, share) for n, share in neighbours(self.network, c, self.doubt))
+            tuple((self.network.places[n].mean, share) for n, share in th.neighbours(self.network, c, self.doubt))
             for c in self.channels
         )
 
     @cached_property
-    def air(self) -> Row:
+    def air(self) -> th.Row:
         """Mean of all boundaries: from there a slope counts."""
         n, count = len(self.network.states), len(self.network.boundaries)
-        return Row(n + np.arange(count), np.full(count, 1.0 / max(count, 1)))
+        return th.Row(n + np.arange(count), np.full(count, 1.0 / max(count, 1)))
 
     @cached_property
-    def sd(self) -> Array:
+    def sd(self) -> th.Array:
         """(k,) priors."""
         of_sensors = [
             x
@@ -130,7 +115,7 @@ class Constants:
         """Where sensor j begins in the vector."""
         return len(self.parameters) + sum(len(near) + 2 for near in self.beside[:j])
 
-    def values(self, w: Array) -> dict[str, float]:
+    def values(self, w: th.Array) -> dict[str, float]:
         """Of the network's parameters, as far from where they began as w (k,) says."""
         return {**self.start, **{p.name: self._value(p, float(x)) for p, x in zip(self.parameters, w)}}
 
@@ -138,17 +123,17 @@ class Constants:
         usual = self.start.get(p.name, p.value)
         if p.mapping == "log":
             return float(np.clip(usual * np.exp(np.clip(x, -FARTHEST, FARTHEST)), p.low, p.high))
-        return float(np.clip(usual + to_value(p, x) - p.neutral, p.low, p.high))
+        return float(np.clip(usual + th.to_value(p, x) - p.neutral, p.low, p.high))
 
-    def sensor_row(self, j: int, w: Array) -> Row:
+    def sensor_row(self, j: int, w: th.Array) -> th.Row:
         """The row that sensor j reads, over z = [x; u]."""
         i, c, near = self.first(j), self.channels[j], self.beside[j]
         shares, slope = w[i : i + len(near)], w[i + len(near)]
         parts = [(c.row, 1.0 - shares.sum() + slope), (self.air, -slope)]
         parts += [(row, float(a)) for (row, _), a in zip(near, shares, strict=True)]
-        return Row(np.concatenate([r.index for r, _ in parts]), np.concatenate([f * r.weights for r, f in parts]))
+        return th.Row(np.concatenate([r.index for r, _ in parts]), np.concatenate([f * r.weights for r, f in parts]))
 
-    def by_sensor(self, j: int, z: Array) -> Iterator[tuple[int, float]]:
+    def by_sensor(self, j: int, z: th.Array) -> Iterator[tuple[int, float]]:
         """Where in the vector, and how much (K) its reading at z = [x; u] changes with it."""
         i, reading = self.first(j), self.channels[j].row.at(z)
         for k, (row, _) in enumerate(self.beside[j]):
@@ -156,10 +141,10 @@ class Constants:
         yield i + len(self.beside[j]), reading - self.air.at(z)
         yield i + len(self.beside[j]) + 1, 1.0
 
-    def bias(self, j: int, w: Array) -> float:
+    def bias(self, j: int, w: th.Array) -> float:
         return float(w[self.first(j) + len(self.beside[j]) + 1])
 
-    def sensors(self, w: Array) -> dict[str, Sensor]:
+    def sensors(self, w: th.Array) -> dict[str, Sensor]:
         """Name -> the sensor as it was learned."""
         return {
             c.name: Sensor(replace(c, row=self.sensor_row(j, w)), self.bias(j, w)) for j, c in enumerate(self.channels)

@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermoscope.plugin import PRIOR, Array, temper
-from thermoscope.plugin import USUAL_DOUBT as USUAL
+from thermoscope import plugin as th
 
 FORGETS_S = 1800.0  # half an hour: a motor's own time constant
 SURE = 0.95  # probability from which a hypothesis is said
@@ -34,36 +33,36 @@ class Hypotheses:
     """
 
     names: tuple[str, ...]
-    spread: Array
-    tolerance: Array
-    prior: Array
-    score: Array
-    information: Array
+    spread: th.Array
+    tolerance: th.Array
+    prior: th.Array
+    score: th.Array
+    information: th.Array
 
     def forget(self, seconds: float) -> None:
         keeps = float(np.exp(-seconds / FORGETS_S))
         self.score *= keeps
         self.information *= keeps
 
-    def weigh(self, signature: Array, innovation: float, variance: float) -> None:
+    def weigh(self, signature: th.Array, innovation: float, variance: float) -> None:
         self.score += signature * innovation / variance
         self.information += signature**2 / variance
 
     @property
-    def amplitude(self) -> Array:
+    def amplitude(self) -> th.Array:
         """(h,) K or W, shrunk by the prior."""
         return self.score / (self.information + 1.0 / (self.spread**2 + self.tolerance**2))
 
-    def _evidence(self, variance: Array) -> Array:
+    def _evidence(self, variance: th.Array) -> th.Array:
         """(h,) e(v)"""
         V = self.information
         return 0.5 * variance * self.score**2 / (1.0 + variance * V) - 0.5 * np.log1p(variance * V)
 
     @property
-    def probability(self) -> Array:
+    def probability(self) -> th.Array:
         """(h,) of each against nothing and the others."""
         gain = self._evidence(self.spread**2 + self.tolerance**2) - self._evidence(self.tolerance**2)
-        log = np.concatenate([[0.0], self.prior + gain / temper(float(gain.max(initial=0.0)))])
+        log = np.concatenate([[0.0], self.prior + gain / th.temper(float(gain.max(initial=0.0)))])
         weight = np.exp(log - log.max())
         return np.asarray(weight[1:] / weight.sum())
 
@@ -73,12 +72,12 @@ class Hypotheses:
 
 
 def hypotheses(
-    sensors: tuple[str, ...], sigma: Array, tolerance_K: Array, bodies: tuple[str, ...], table_sd: Array
+    sensors: tuple[str, ...], sigma: th.Array, tolerance_K: th.Array, bodies: tuple[str, ...], table_sd: th.Array
 ) -> Hypotheses:
     """sigma, tolerance_K (s,) K of the sensors;  table_sd (m,) W that the table of doubt allows the bodies"""
-    fault = PRIOR["fault"].share / max(len(sensors), 1)
-    fails = sum(PRIOR[name].share for name in ("effect", "condition", "heat")) / max(len(bodies), 1)
-    log = np.log(np.array([*[fault] * len(sensors), *[fails] * len(bodies)]) / PRIOR["nothing"].share)
-    spread = np.concatenate([DRIFT * sigma, USUAL["switched"] * table_sd])
+    fault = th.PRIOR["fault"].share / max(len(sensors), 1)
+    fails = sum(th.PRIOR[name].share for name in ("effect", "condition", "heat")) / max(len(bodies), 1)
+    log = np.log(np.array([*[fault] * len(sensors), *[fails] * len(bodies)]) / th.PRIOR["nothing"].share)
+    spread = np.concatenate([DRIFT * sigma, th.USUAL_DOUBT["switched"] * table_sd])
     tolerance = np.concatenate([tolerance_K, np.zeros(len(bodies))])
     return Hypotheses((*sensors, *bodies), spread, tolerance, log, np.zeros(spread.size), np.zeros(spread.size))

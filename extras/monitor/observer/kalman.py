@@ -13,7 +13,7 @@ import numpy as np
 
 from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 
 @dataclass
@@ -26,12 +26,12 @@ class Filter:
 
     process: Process
     noise: ProcessNoise
-    x: Array
-    q: Array
-    S: Array
-    error: Array
-    heats: Array
-    along: Array
+    x: th.Array
+    q: th.Array
+    S: th.Array
+    error: th.Array
+    heats: th.Array
+    along: th.Array
 
     def predict(self, by: Driven, k: int) -> None:
         """To sample k of the record from the one before."""
@@ -51,7 +51,7 @@ class Filter:
         if path and self.process.fast.size:
             self.along = self.process.balance(path[-1].G)
 
-    def gain(self, h: Array, variance: float) -> tuple[Array, float]:
+    def gain(self, h: th.Array, variance: float) -> tuple[th.Array, float]:
         """Gain (N,) for a reading that sees h (N,), and the variance of its innovation; the covariance is updated."""
         phi = self.S.T @ h
         total = float(phi @ phi) + variance
@@ -59,7 +59,7 @@ class Filter:
         self.S = self.S - np.outer(through, phi) / (total + np.sqrt(variance * total))
         return through / total, total
 
-    def correct(self, change: Array) -> None:
+    def correct(self, change: th.Array) -> None:
         """Move the estimate by (N,) K and W."""
         n = self.process.slow.size
         self.x = self.x + self.along @ change[:n]
@@ -73,7 +73,7 @@ class Filter:
 
 
 def begun(
-    process: Process, noise: ProcessNoise, x: Array, sd: Mapping[int, float], usual_sd: float, heats: Array
+    process: Process, noise: ProcessNoise, x: th.Array, sd: Mapping[int, float], usual_sd: float, heats: th.Array
 ) -> Filter:
     """A filter at its start.  sd : column of a state -> its deviation (K), else the usual one;  heats (m, h)"""
     n, m = process.slow.size, len(process.bodies)

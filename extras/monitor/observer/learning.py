@@ -13,8 +13,7 @@ from extras.monitor.observer.observer import Observer, Sample, observer
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Network, Parameter
-from thermoscope.plugin import Array, Channel, Doubt, ParameterPosterior, Test, heat_model, parameter_posterior, record
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 Progress = Callable[[str], None]
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor
@@ -33,27 +32,27 @@ class Design:
     learned: Mapping[str, Sensor]
     rise_K: float
 
-    def started(self, sensors: Sequence[Channel], readings: Array, boundaries: Mapping[str, float]) -> Observer:
+    def started(self, sensors: Sequence[th.Channel], readings: th.Array, boundaries: Mapping[str, float]) -> Observer:
         """With some sensors, from their first readings (s,)."""
         sensor_models = [self.as_learned(c) for c in sensors]
         bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
         return observer(self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias)
 
-    def as_learned(self, c: Channel) -> Sensor:
+    def as_learned(self, c: th.Channel) -> Sensor:
         """A sensor by its name; as declared where no test had it."""
         constants = self.learned.get(c.name)
         return Sensor(c) if constants is None else constants.of(c)
 
 
-def unsettled(case: Case) -> ParameterPosterior:
+def unsettled(case: th.MeasuredCase) -> th.ParameterPosterior:
     """The model as it stands, as unsure as before any calibration; an effect that was added by half of itself."""
-    prior = parameter_posterior(replace(case, model=replace(case.model, revision=0)))
+    prior = th.parameter_posterior(replace(case, model=replace(case.model, revision=0)))
     network = narrowed(prior.network, prior.values, case)
     sd = {p.name: p.prior_sd for p in network.parameters}
     return replace(prior, network=network, covariance=np.diag([sd[n] ** 2 for n in prior.names]))
 
 
-def narrowed(network: Network, values: Mapping[str, float], case: Case) -> Network:
+def narrowed(network: Network, values: Mapping[str, float], case: th.MeasuredCase) -> Network:
     """With priors of added effects that say half of what was found: in a fit they say nothing."""
     effects = {e.name for e in case.model.effects}
 
@@ -69,17 +68,17 @@ class Lesson:
     """bodies : where heat may be missing;  table (m, m) W2 : how much, by the table of doubt;  constants (k,)"""
 
     bodies: tuple[str, ...]
-    table: Array
-    constants: Array
+    table: th.Array
+    constants: th.Array
 
 
 def taught(
     network: Network,
     values: Mapping[str, float],
     bodies: Sequence[str],
-    table: Array,
-    tests: Sequence[Test],
-    doubt: Doubt,
+    table: th.Array,
+    tests: Sequence[th.Test],
+    doubt: th.Doubt,
     progress: Progress = lambda message: None,
 ) -> Lesson:
     """What some tests, those of a calibration, tell of the constants."""
@@ -91,7 +90,7 @@ def taught(
 
 
 def design_of(
-    network: Network, values: Mapping[str, float], lesson: Lesson, tests: Sequence[Test], doubt: Doubt
+    network: Network, values: Mapping[str, float], lesson: Lesson, tests: Sequence[th.Test], doubt: th.Doubt
 ) -> Design:
     """tests : those of the lesson"""
     constants = constants_of(network, values, tests, doubt)
@@ -100,30 +99,30 @@ def design_of(
     return Design(process, noise, constants.sensors(lesson.constants), usual_rise(tests))
 
 
-def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[Test], doubt: Doubt) -> Constants:
+def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[th.Test], doubt: th.Doubt) -> Constants:
     """Of the network's heat, and of every sensor of the tests."""
-    bare, start = heat_model(network, values)
+    bare, start = th.heat_model(network, values)
     channels = {c.name: c for t in tests for c in t.channels}
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
 
 
-def over(design: Design, test: Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
+def over(design: Design, test: th.Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
     """An observer after a test, and its samples."""
     test = thinned(test)
-    course, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
+    course, sensors = th.record(test, {}), [c for c in test.channels if c.name in measured]
     y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
     around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
     one = design.started(sensors, y[0], around)
     return one, list(one.follow(course, y))
 
 
-def usual_rise(tests: Sequence[Test]) -> float:
+def usual_rise(tests: Sequence[th.Test]) -> float:
     """Root mean square (K) of what the sensors of some tests read above the surroundings."""
     rises = list(_rises(tests))
     return float(np.sqrt(np.nanmean(np.concatenate(rises) ** 2))) if rises else 0.0
 
 
-def _rises(tests: Sequence[Test]) -> Iterator[Array]:
+def _rises(tests: Sequence[th.Test]) -> Iterator[th.Array]:
     for t in tests:
         around = np.mean([np.broadcast_to(u, t.time.shape) for u in t.boundaries.values()], axis=0)
         for c in t.channels:

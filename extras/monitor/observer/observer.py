@@ -14,8 +14,7 @@ from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
 from extras.monitor.observer.sensor_faults import SensorState
 from thermoscope import Record
-from thermoscope.plugin import USUAL_DOUBT as USUAL
-from thermoscope.plugin import Array, Channel, Row, initial_state
+from thermoscope import plugin as th
 
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
 
@@ -44,15 +43,15 @@ class Sample:
     """
 
     time_s: float
-    x: Array
-    u: Array
-    heat: Array
-    heat_sd: Array
-    S: Array
-    along: Array
+    x: th.Array
+    u: th.Array
+    heat: th.Array
+    heat_sd: th.Array
+    S: th.Array
+    along: th.Array
     open: tuple[Event, ...] = ()
 
-    def at(self, row: Row) -> tuple[float, float]:
+    def at(self, row: th.Row) -> tuple[float, float]:
         """Temperature (degC) and its deviation (K) at a row over z = [x; u]."""
         z = np.concatenate([self.x, self.u])
         inside = row.index < self.x.size
@@ -70,17 +69,17 @@ class Observer:
     """
 
     filter: Filter
-    table_sd: Array
-    sensors: tuple[Channel, ...]
-    bias: Array
+    table_sd: th.Array
+    sensors: tuple[th.Channel, ...]
+    bias: th.Array
     states: list[SensorState]
     tests: Hypotheses
-    lagged: Array
+    lagged: th.Array
     started: bool = False
     open: dict[int, Event] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
 
-    def follow(self, record: Record, readings: Array) -> list[Sample]:
+    def follow(self, record: Record, readings: th.Array) -> list[Sample]:
         """Samples of a record, its first being where the last record ended (or the start).
 
         readings (nt, s) degC, NaN where nothing was read
@@ -96,7 +95,7 @@ class Observer:
             self.started = True
         return out
 
-    def _update(self, by: Driven, k: int, readings: Array, seconds: float) -> None:
+    def _update(self, by: Driven, k: int, readings: th.Array, seconds: float) -> None:
         z = np.concatenate([self.filter.x, by.u[k]])
         expected = np.array([c.row.at(z) for c in self.sensors])
         lag = np.array([c.lag_s for c in self.sensors])
@@ -111,7 +110,7 @@ class Observer:
             self.lagged[j] += self.filter.process.sensed(c.row, self.filter.along) @ change[:n]
         self._judge(float(by.time[k]))
 
-    def _reading(self, j: int, reading: float, change: Array, time: float, seconds: float) -> None:
+    def _reading(self, j: int, reading: float, change: th.Array, time: float, seconds: float) -> None:
         """One reading into the filter; change (N,) grows by what it moves."""
         c, state, f = self.sensors[j], self.states[j], self.filter
         h = np.zeros(len(f.S))
@@ -186,12 +185,12 @@ class Observer:
 def observer(
     process: Process,
     noise: ProcessNoise,
-    table_sd: Array,
-    sensors: Sequence[Channel],
-    readings: Array,
+    table_sd: th.Array,
+    sensors: Sequence[th.Channel],
+    readings: th.Array,
     boundaries: Mapping[str, float],
     rise_K: float,
-    bias: Array | None = None,
+    bias: th.Array | None = None,
 ) -> Observer:
     """At its start, from the first readings (s,): places without a sensor begin at the mean of the others.
 
@@ -200,14 +199,14 @@ def observer(
     """
     off = np.zeros(len(sensors)) if bias is None else bias
     start_T = {c.place: float(y) for c, y in zip(sensors, readings - off, strict=True) if np.isfinite(y)}
-    x = initial_state(process.network, start_T or float(np.mean([*boundaries.values()])))
+    x = th.initial_state(process.network, start_T or float(np.mean([*boundaries.values()])))
     around = np.array([*start_T.values(), *boundaries.values()])
-    sd = {process.state(c): USUAL["start"] for c in sensors if c.place in start_T}
+    sd = {process.state(c): th.USUAL_DOUBT["start"] for c in sensors if c.place in start_T}
     count, m = len(sensors), len(process.bodies)
     heats = np.hstack([np.zeros((m, count)), np.eye(m)])
-    start = begun(process, noise, x, sd, float(np.hypot(USUAL["start"], np.std(around))), heats)
+    start = begun(process, noise, x, sd, float(np.hypot(th.USUAL_DOUBT["start"], np.std(around))), heats)
     sigma = np.array([c.sigma_K for c in sensors])
-    tolerance_K = np.hypot(sigma, USUAL["gain"] * rise_K)
+    tolerance_K = np.hypot(sigma, th.USUAL_DOUBT["gain"] * rise_K)
     tests = hypotheses(tuple(c.name for c in sensors), sigma, tolerance_K, process.bodies, table_sd)
     states = [SensorState() for _ in sensors]
     return Observer(start, table_sd, tuple(sensors), off, states, tests, np.zeros(count))

@@ -12,26 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thermoscope import Network, Parameter, simulate
-from thermoscope.plugin import (
-    Array,
-    Assembly,
-    ParameterPosterior,
-    Test,
-    acting,
-    assembly,
-    capacity_slopes,
-    head,
-    heat_model,
-    moved_boundaries,
-    moved_inputs,
-    multipliers,
-    record,
-    separated,
-    slopes,
-    turned,
-    values_of,
-    within_silence,
-)
+from thermoscope import plugin as th
 
 INSTANTS = 100  # of a test: heat turns slowly
 MOST_BODIES = 10  # heat in small parts shows in their neighbours
@@ -42,32 +23,32 @@ REMAINS = 1e-6  # of the largest variance: keeps a covariance positive where not
 class ProcessNoise:
     """Missing heat wanders with this covariance (m, m) W2 and forgets itself in time_s."""
 
-    covariance: Array
+    covariance: th.Array
     time_s: float
 
     @property
-    def root(self) -> Array:
+    def root(self) -> th.Array:
         """(m, m) lower triangular."""
         floor = REMAINS * max(float(np.diag(self.covariance).max()), 1.0)
         return np.asarray(np.linalg.cholesky(self.covariance + floor * np.eye(len(self.covariance))), float)
 
     @property
-    def sd(self) -> Array:
+    def sd(self) -> th.Array:
         return np.sqrt(np.diag(self.covariance))
 
 
-def of_doubt(of: ParameterPosterior, tests: Sequence[Test], bodies: Sequence[str]) -> Array:
+def of_doubt(of: th.ParameterPosterior, tests: Sequence[th.Test], bodies: Sequence[str]) -> th.Array:
     """(m, m) W2, mean over the tests."""
     return np.mean([_in_test(of, test, bodies) for test in tests], axis=0)
 
 
-def _in_test(of: ParameterPosterior, test: Test, bodies: Sequence[str]) -> Array:
-    network, free, size = acting(of, test)
+def _in_test(of: th.ParameterPosterior, test: th.Test, bodies: Sequence[str]) -> th.Array:
+    network, free, size = th.acting(of, test)
     look = _Flows(network, of.values, test, bodies)
     beside = ("boundary", "initial")  # which `moved_boundaries` has, and what is no heat
-    columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if head(p) not in beside}
-    responses = {name: look.driven(other) for name, other in moved_inputs(network, test, of.doubt)}
-    responses |= {name: look.beside(other) for name, other in moved_boundaries(test, of.doubt)}
+    columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if th.head(p) not in beside}
+    responses = {name: look.driven(other) for name, other in th.moved_inputs(network, test, of.doubt)}
+    responses |= {name: look.beside(other) for name, other in th.moved_boundaries(test, of.doubt)}
     sd = [p.prior_sd / s for p, s in zip(free, size, strict=True) if p.name in columns]
     Sigma = of.of([*columns, *responses], np.array([*sd, *np.ones(len(responses))]))
     A = np.stack([*columns.values(), *responses.values()], axis=2)
@@ -80,15 +61,15 @@ class _Flows:
     shape (nt, ne, m) : of unit multiplier and factor;  factor (nt, ne);  m (ne,) multipliers
     """
 
-    def __init__(self, network: Network, values: Mapping[str, float], test: Test, bodies: Sequence[str]) -> None:
-        self.network, mine = heat_model(network, values)
-        self.values = values_of(self.network, mine)
+    def __init__(self, network: Network, values: Mapping[str, float], test: th.Test, bodies: Sequence[str]) -> None:
+        self.network, mine = th.heat_model(network, values)
+        self.values = th.values_of(self.network, mine)
         self.test, self.columns = test, [network.column(b) for b in bodies]
-        course = record(test, {})
+        course = th.record(test, {})
         self.z = np.asarray(simulate(self.network, course, self.values, keep_states=True).z)
         self.some = np.unique(np.linspace(0, test.time.size - 1, INSTANTS).astype(int))
-        self.terms = assembly(self.network)
-        acting_now = multipliers(self.network, self.values)
+        self.terms = th.assembly(self.network)
+        acting_now = th.multipliers(self.network, self.values)
         self.m = np.array([acting_now.get(name, 1.0) for name in self.terms.names])
         self.factor = self._factors(test)
         self.law = _laws(self.terms, self.z[self.some])
@@ -96,12 +77,12 @@ class _Flows:
         rate = np.gradient(self.z[:, self.columns], test.time, axis=0)[self.some]
         self.stored = rate * network.C[self.columns]
 
-    def _factors(self, test: Test) -> Array:
-        with within_silence():  # a comparison says so
-            every = [test.signals.factor(p.name, separated(p.law)) for p in self.terms.patterns]
+    def _factors(self, test: th.Test) -> th.Array:
+        with th.within_silence():  # a comparison says so
+            every = [test.signals.factor(p.name, th.separated(p.law)) for p in self.terms.patterns]
         return np.stack([np.broadcast_to(f, test.time.shape) for f in every], axis=1)[self.some]
 
-    def _shape(self, z: Array) -> Array:
+    def _shape(self, z: th.Array) -> th.Array:
         z = np.column_stack([z, np.ones(len(z))])
         out = np.zeros((len(z), len(self.terms.patterns), len(self.columns)))
         for e, p in enumerate(self.terms.patterns):
@@ -111,20 +92,20 @@ class _Flows:
                     out[:, e, i] = -self.law[:, e] * (z[:, p.cols[here]] @ p.vals[here])
         return out
 
-    def by(self, p: Parameter) -> Array:
+    def by(self, p: Parameter) -> th.Array:
         """(nt, m) change of heat by a parameter; d log(value) for mapping "log"."""
-        moves, at = slopes(self.network, self.values, [p])[0], {n: e for e, n in enumerate(self.terms.names)}
+        moves, at = th.slopes(self.network, self.values, [p])[0], {n: e for e, n in enumerate(self.terms.names)}
         out = np.zeros((len(self.some), len(self.columns)))
         for target, slope in moves.items():
             if target in at:
                 out += slope * self.factor[:, at[target], None] * self.shape[:, at[target]]
-        return out - capacity_slopes(self.network, moves)[self.columns] * self.stored
+        return out - th.capacity_slopes(self.network, moves)[self.columns] * self.stored
 
-    def driven(self, other: Test) -> Array:
+    def driven(self, other: th.Test) -> th.Array:
         """(nt, m) change of heat where inputs are as in another record."""
         return np.asarray(np.einsum("te,tei->ti", self.m * (self._factors(other) - self.factor), self.shape))
 
-    def beside(self, other: Test) -> Array:
+    def beside(self, other: th.Test) -> th.Array:
         """(nt, m) change of heat where boundaries are as in another record, all states as they are."""
         z = self.z[self.some].copy()
         n = len(self.network.states)
@@ -134,23 +115,23 @@ class _Flows:
         return np.asarray(np.einsum("te,tei->ti", self.m * self.factor, change))
 
 
-def _laws(terms: Assembly, z: Array) -> Array:
+def _laws(terms: th.Assembly, z: th.Array) -> th.Array:
     """(nt, ne) temperature laws of all terms."""
     out = np.ones((len(z), len(terms.patterns)))
     for e, p in enumerate(terms.patterns):
         if p.bends:
             hot, cold = z[:, p.hot.index] @ p.hot.weights, z[:, p.cold.index] @ p.cold.weights
             pairs = zip(hot, np.broadcast_to(cold, hot.shape), strict=True)
-            out[:, e] = [turned(p.law.temperature, float(a), float(b)) for a, b in pairs]
+            out[:, e] = [th.turned(p.law.temperature, float(a), float(b)) for a, b in pairs]
     return out
 
 
-def thinned(test: Test) -> Test:
+def thinned(test: th.Test) -> th.Test:
     """The test without its finer record: a filter looks at its samples."""
     return replace(test, recorded=None)
 
 
-def most_doubtful(bodies: Sequence[str], covariance: Array) -> tuple[tuple[str, ...], Array]:
+def most_doubtful(bodies: Sequence[str], covariance: th.Array) -> tuple[tuple[str, ...], th.Array]:
     """The bodies where most heat may be missing, so that the filter stays small, with their covariance."""
     order = np.sort(np.argsort(-np.diag(covariance), kind="stable")[:MOST_BODIES])
     return tuple(bodies[i] for i in order), covariance[np.ix_(order, order)]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from thermoscope.plugin import COLDEST, HOTTEST, Array
+from thermoscope import plugin as th
 
 LOST_S = 30.0  # a plug that is wiggled comes back sooner
 BACK_S = 60.0  # of good readings, before a sensor is believed again
@@ -31,13 +31,20 @@ class SensorState:
     same_s: float = 0.0
     longest_s: float = 0.0
     last: float = np.nan
-    then: Array = field(default_factory=lambda: np.empty(0))
+    then: th.Array = field(default_factory=lambda: np.empty(0))
 
     def take(
-        self, reading: float, predicted: float, sd: float, around: Array, sigma_K: Array, time_s: float, step_s: float
+        self,
+        reading: float,
+        predicted: float,
+        sd: float,
+        around: th.Array,
+        sigma_K: th.Array,
+        time_s: float,
+        step_s: float,
     ) -> bool:
         """Whether the reading is to be used.  sd : of the innovation;  around, sigma_K (s,) : of all sensors"""
-        good = bool(COLDEST <= reading <= HOTTEST) and abs(reading - predicted) <= OUTLIER * sd
+        good = bool(th.COLDEST <= reading <= th.HOTTEST) and abs(reading - predicted) <= OUTLIER * sd
         self.missing_s, self.good_s = (0.0, self.good_s + step_s) if good else (self.missing_s + step_s, 0.0)
         if reading == self.last:
             self.same_s += step_s
@@ -54,5 +61,5 @@ class SensorState:
             self.dropped, self.since_s = "frozen", time_s - self.same_s
         return good and not self.dropped
 
-    def _others_moved(self, around: Array, sigma_K: Array) -> bool:
+    def _others_moved(self, around: th.Array, sigma_K: th.Array) -> bool:
         return bool(np.any(np.abs(around - self.then) > MOTION * sigma_K))

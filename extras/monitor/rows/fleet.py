@@ -14,10 +14,7 @@ import numpy as np
 from extras.monitor.fleet import Statistics, UnitHistory, statistics
 from extras.monitor.rows.live_rows import Rows, table_of
 from thermoscope import InputError
-from thermoscope.plugin import LAW_RUNNING as RUNNING
-from thermoscope.plugin import SUFFIXES, Array, Channel, Sheet, Test, stem_of
-from thermoscope.plugin import CaseProgress as Progress
-from thermoscope.plugin import MeasuredCase as Case
+from thermoscope import plugin as th
 
 PIECE = 20_000  # rows that are in memory at once: five hours at 1 Hz
 LEAST = 60  # rows worth a fit
@@ -42,9 +39,9 @@ class Reader:
     piece : rows that are in memory at once
     """
 
-    case: Case
-    tests: tuple[Test, ...]
-    sheets: Mapping[str, Sheet]
+    case: th.MeasuredCase
+    tests: tuple[th.Test, ...]
+    sheets: Mapping[str, th.Sheet]
     step_s: float
     piece: int = PIECE
 
@@ -62,13 +59,13 @@ class Reader:
             raise InputError("holds no row", str(recording.file), "rows of numbers under the header")
         return total
 
-    def _test(self, rows: Rows, recording: Recording, fitting: Test) -> Test:
+    def _test(self, rows: Rows, recording: Recording, fitting: th.Test) -> th.Test:
         if rows.time.size < LEAST:
             raise InputError(f"holds {rows.time.size} rows", str(recording.file), f"at least {LEAST} to fit a motor to")
         cell = np.floor((rows.time - rows.time[0]) / self.step_s)
         start = np.flatnonzero(np.diff(cell, prepend=-1.0) > 0)
 
-        def mean(y: Array) -> Array:
+        def mean(y: th.Array) -> th.Array:
             good = np.isfinite(y).astype(float)
             count = np.add.reduceat(good, start)
             with np.errstate(invalid="ignore"):
@@ -79,12 +76,14 @@ class Reader:
             raise InputError("no sensor of the machine", str(recording.file), "a temperature that the sheet knows")
         time = mean(rows.time)
         inputs = {n: mean(u) for n, u in rows.inputs.items()}
-        inputs |= {f"{RUNNING}{test.name}": np.zeros(time.size) for test in self.tests}
+        inputs |= {f"{th.LAW_RUNNING}{test.name}": np.zeros(time.size) for test in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
-        return Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air))
+        return th.Test(
+            recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air)
+        )
 
 
-def _initial(channels: Sequence[Channel], air: dict[str, Array]) -> dict[str, float]:
+def _initial(channels: Sequence[th.Channel], air: dict[str, th.Array]) -> dict[str, float]:
     first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
     return first or {name: float(u[0]) for name, u in air.items()}
 
@@ -107,7 +106,7 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
 
 
 def _inside(folder: Path) -> list[Path]:
-    files = sorted(f for ending in SUFFIXES for f in folder.glob(f"[!.]*{ending}"))
+    files = sorted(f for ending in th.SUFFIXES for f in folder.glob(f"[!.]*{ending}"))
     if not files:
         raise InputError("no recording in the folder", str(folder), "recordings named UNIT.csv or UNIT@2026-03.csv")
     return files
@@ -116,9 +115,9 @@ def _inside(folder: Path) -> list[Path]:
 def _recording(file: Path) -> Recording:
     if not file.is_file():
         raise InputError("no such file", str(file), "recordings or folders of them")
-    match = DATED.fullmatch(stem_of(file))
+    match = DATED.fullmatch(th.stem_of(file))
     if match is None:
-        return Recording(file, stem_of(file), 0.0)
+        return Recording(file, th.stem_of(file), 0.0)
     try:
         day = date(int(match["year"]), int(match["month"]), int(match["day"] or 15))
     except ValueError:
@@ -127,7 +126,7 @@ def _recording(file: Path) -> Recording:
 
 
 def histories(
-    files: Sequence[Recording], reader: Reader, tell: Progress, executor: Executor | None = None
+    files: Sequence[Recording], reader: Reader, tell: th.CaseProgress, executor: Executor | None = None
 ) -> list[UnitHistory]:
     """Motor by motor, in the order of their names."""
     by_unit: dict[str, list[tuple[float, Statistics]]] = {}

@@ -12,22 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from thermoscope import InputError, Network
-from thermoscope.plugin import (
-    BINARY,
-    Array,
-    Column,
-    DataTable,
-    Sheet,
-    Stream,
-    each_book_once,
-    imported_table,
-    notes,
-    numbers,
-    read_recording,
-    recording_pieces,
-    seconds_of,
-    suggestion,
-)
+from thermoscope import plugin as th
 
 TOGETHER = 500  # rows of a file that are read at once
 PIPE = "-"
@@ -37,10 +22,10 @@ PIPE = "-"
 class Rows:
     """time (n,) s;  inputs, boundaries : name -> (n,);  readings : sensor -> (n,) degC, NaN where nothing was read"""
 
-    time: Array
-    inputs: dict[str, Array]
-    boundaries: dict[str, Array]
-    readings: dict[str, Array]
+    time: th.Array
+    inputs: dict[str, th.Array]
+    boundaries: dict[str, th.Array]
+    readings: dict[str, th.Array]
 
 
 @dataclass
@@ -50,7 +35,7 @@ class LiveTable:
     first_line : of the rows
     """
 
-    sheet: Sheet
+    sheet: th.Sheet
     network: Network
     header: Sequence[str]
     where: str
@@ -64,7 +49,7 @@ class LiveTable:
         needed += [c.header for c in self.sheet.columns if self._drives(c)]
         return [name for name in needed if name not in self.header]
 
-    def _drives(self, c: Column) -> bool:
+    def _drives(self, c: th.Column) -> bool:
         laws = [*(x.law for x in self.network.links), *(x.law for x in self.network.sources)]
         read = {name for law in laws for name in law.reads}
         read |= {feeds for name, of in self.sheet.squares.items() if name in read for feeds in self._feeds(of)}
@@ -80,10 +65,10 @@ class LiveTable:
         means = [m.name for m in self.sheet.means if set(m.of) <= set(names)]
         return [*(name for name in names if name not in inside), *means]
 
-    def _columns(self) -> list[Column]:
+    def _columns(self) -> list[th.Column]:
         return [c for c in self.sheet.columns if c.header in self.header]
 
-    def rows(self, table: DataTable) -> Rows:
+    def rows(self, table: th.DataTable) -> Rows:
         """Some rows, checked and converted; inputs and boundaries hold where nothing was read."""
         columns, file = self._columns(), Path(self.where)
         outside = [c for c in columns if not c.is_temperature or c.place in self.network.boundaries]
@@ -104,7 +89,7 @@ class LiveTable:
         readings |= {m.name: np.mean([values[n] for n in m.of], axis=0) for m in means}
         return Rows(time, inputs, air, readings)
 
-    def _forward_fill(self, name: str, values: Array, first: int) -> Array:
+    def _forward_fill(self, name: str, values: th.Array, first: int) -> th.Array:
         if not np.isfinite(values[0]):
             if name not in self.last:
                 raise InputError(
@@ -117,11 +102,11 @@ class LiveTable:
         self.last[name] = float(values[at[-1]])
         return np.asarray(values[at], float)
 
-    def _times(self, table: DataTable, file: Path) -> Array:
+    def _times(self, table: th.DataTable, file: Path) -> th.Array:
         if not self.sheet.time:
             self.first_line = self.first_line or table.line
             return np.asarray((table.line - self.first_line + np.arange(table.rows)) * self.sheet.period_s, float)
-        time = seconds_of(table, self.sheet, file)
+        time = th.seconds_of(table, self.sheet, file)
         wrong = np.flatnonzero(~(np.diff(time, prepend=self.time) > 0.0))
         if wrong.size:
             raise InputError(
@@ -133,20 +118,20 @@ class LiveTable:
         return time
 
 
-def _values(c: Column, table: DataTable, file: Path) -> Array:
-    read = c.in_memory(numbers(table, c.header, file))
+def _values(c: th.Column, table: th.DataTable, file: Path) -> th.Array:
+    read = c.in_memory(th.numbers(table, c.header, file))
     return np.asarray(read if c.electrical is None else c.electrical.temperature(read), float)
 
 
 def table_of(
-    follow: str, most: int, sheets: Mapping[str, Sheet], network: Network, like: str | None
-) -> tuple[str, LiveTable, Iterator[DataTable]]:
+    follow: str, most: int, sheets: Mapping[str, th.Sheet], network: Network, like: str | None
+) -> tuple[str, LiveTable, Iterator[th.DataTable]]:
     """The test whose sheet fits a recording, its columns under it, and its rows, at most so many at once."""
     if like is not None and like not in sheets:
-        raise InputError(f"no test '{like}'", "--like", suggestion(like, sheets))
+        raise InputError(f"no test '{like}'", "--like", th.suggestion(like, sheets))
     sheets = sheets if like is None else {like: sheets[like]}
     plain, imported = _readers(follow, most, next(iter(sheets.values())).worksheet)
-    with each_book_once():
+    with th.each_book_once():
         try:
             return _fitting(follow, plain(), sheets, network)
         except InputError as fault:
@@ -156,34 +141,36 @@ def table_of(
                 raise fault from None
 
 
-def _readers(follow: str, most: int, worksheet: str) -> tuple[Callable[[], Iterator[DataTable]], ...]:
+def _readers(follow: str, most: int, worksheet: str) -> tuple[Callable[[], Iterator[th.DataTable]], ...]:
     """The rows of a recording under its own header, and as the tests of a case have them."""
     if follow == PIPE:
-        stream = Stream(sys.stdin.buffer, PIPE)
+        stream = th.Stream(sys.stdin.buffer, PIPE)
         return stream.tables, stream.imported
     file = Path(follow)
     if not file.is_file():
         raise InputError("no such file", follow, "a recording, or - for rows from a pipe")
-    if file.suffix.lower() in BINARY:  # read once for both
-        whole = read_recording(file, worksheet, 0)
-        return partial(whole.cut, most), lambda: imported_table(file, whole).cut(most)
-    return partial(recording_pieces, file, most, worksheet), lambda: imported_table(file).cut(most)
+    if file.suffix.lower() in th.BINARY:  # read once for both
+        whole = th.read_recording(file, worksheet, 0)
+        return partial(whole.cut, most), lambda: th.imported_table(file, whole).cut(most)
+    return partial(th.recording_pieces, file, most, worksheet), lambda: th.imported_table(file).cut(most)
 
 
 def _fitting(
-    follow: str, parts: Iterator[DataTable], sheets: Mapping[str, Sheet], network: Network
-) -> tuple[str, LiveTable, Iterator[DataTable]]:
+    follow: str, parts: Iterator[th.DataTable], sheets: Mapping[str, th.Sheet], network: Network
+) -> tuple[str, LiveTable, Iterator[th.DataTable]]:
     """The first sheet that has what drives the machine."""
-    first = next(parts, DataTable({}))
+    first = next(parts, th.DataTable({}))
     if not first.columns:
         raise InputError("holds no row", follow, "a header line and rows of numbers")
     tables = {n: LiveTable(s, network, first.columns, follow) for n, s in sheets.items()}
     for fitting, one in tables.items():
         if not one.missing():
-            notes(first.notes)
+            th.notes(first.notes)
             return fitting, one, (part for part in chain([first], parts) if part.rows)
     name = next(iter(sheets))
     lacks = tables[name].missing()[0]
     raise InputError(
-        f"column '{lacks}' is not in the header", f"{follow} (read as test '{name}')", suggestion(lacks, first.columns)
+        f"column '{lacks}' is not in the header",
+        f"{follow} (read as test '{name}')",
+        th.suggestion(lacks, first.columns),
     )

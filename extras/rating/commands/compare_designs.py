@@ -17,24 +17,7 @@ from extras.rating.optimisation.auxiliaries import auxiliary_power
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import row
 from thermoscope import InputError, ThermoscopeError, steady
-from thermoscope.plugin import GEOMETRY_UNITS as UNITS
-from thermoscope.plugin import (
-    Folder,
-    Progress,
-    Summary,
-    Table,
-    TableResult,
-    bands_requested,
-    cell,
-    families,
-    machine_row,
-    named_rows,
-    posterior_of,
-    progress,
-    require_gl,
-    split,
-)
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 MOST = 6  # designs side by side: more do not fit on a screen
 RUNAWAY_C = 1e3  # no part of a motor gets as hot: it does not settle
@@ -44,11 +27,11 @@ RUNAWAY_C = 1e3  # no part of a motor gets as hot: it does not settle
 class Design:
     """A machine at its own rated load, with what surrounds it as it surrounds the first.  it : what rates it"""
 
-    folder: Folder
+    folder: th.Folder
     it: Rated
 
     @property
-    def machine(self) -> Machine:
+    def machine(self) -> th.MachineDescription:
         if self.folder.built is None:
             raise InputError("has no machine file to compare", self.folder.case.name, "machine files, or cases of one")
         return self.folder.built.machine
@@ -69,10 +52,10 @@ def compared_designs(
     if picture is not None and picture.suffix != ".png":
         raise InputError("is not the name of a picture", f"--picture {picture}", "a file NAME.png")
     if picture is not None:
-        require_gl()  # before anything is built
+        th.require_gl()  # before anything is built
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
-    with progress() as tell:
+    with th.progress() as tell:
         designs: list[Design] = []
         for name in names:
             folder = case_or_machine(name, tell)
@@ -99,17 +82,17 @@ def _draw_designs(designs: Sequence[Design], picture: Path) -> None:
         except ThermoscopeError:  # one that does not settle has no picture; the first sentence names it
             continue
         assert one.folder.built is not None
-        nodes = split(one.folder.built.mesh)
+        nodes = th.split(one.folder.built.mesh)
         T = network.on_parts(nodes.parts, z)
         rows.append((nodes, T, f"{one.machine.name}: {T.max():.0f} °C at most"))
     if not rows:
         raise InputError(
             "no design settles at its rated load", f"--picture {picture}", "a smaller load: --at NAME=VALUE"
         )
-    machine_row(rows, png=picture)
+    th.machine_row(rows, png=picture)
 
 
-class Designs(TableResult):
+class Designs(th.TableResult):
     """Designs side by side.  document : as `use compare-designs --json` gives it"""
 
     def __init__(self, document: dict[str, Any]) -> None:
@@ -118,11 +101,11 @@ class Designs(TableResult):
     def __repr__(self) -> str:
         summary = designs_summary(self.document)
         columns, rows = self.tables()[0].columns, self.tables()[0].rows
-        return "\n".join([summary.sentence, *("  ".join(map(cell, row)) for row in (columns, *rows))])
+        return "\n".join([summary.sentence, *("  ".join(map(th.cell, row)) for row in (columns, *rows))])
 
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[th.Table, ...]:
         """Figures, what differs in the files, and masses."""
-        return tuple(part for part in designs_summary(self.document).parts if isinstance(part, Table))
+        return tuple(part for part in designs_summary(self.document).parts if isinstance(part, th.Table))
 
 
 def compare_designs(
@@ -145,7 +128,7 @@ def compare_designs(
     )
 
 
-def design(folder: Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:
+def design(folder: th.Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:
     """At its rated load.  around : boundaries (degC) and inputs of all designs; a design takes those that it has"""
     bare = rated_model(folder, RatingRequest(limits, {}))
     mine = {n: u for n, u in around.items() if n in bare.op.boundaries or n in bare.op.inputs}
@@ -154,16 +137,16 @@ def design(folder: Folder, limits: Mapping[str, float], around: Mapping[str, flo
     return Design(folder, replace(bare, op=op))
 
 
-def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell: Progress) -> dict[str, Any]:
+def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell: th.Progress) -> dict[str, Any]:
     """One design of the document: masses (kg), powers (W), hottest points (degC), its continuous rating."""
     machine, op, network = one.machine, one.it.op, one.it.model.network
-    rows = named_rows(network, one.folder)
+    rows = th.named_rows(network, one.folder)
     heated = [n for n in dict.fromkeys(network.heated) if n in rows]
     spots = hot_spots(network, rows, dict.fromkeys(heated, 0.0))
     T = replace(one.it.model, rows=spots).rest(op, 1.0, None)
     free = sure is None and not one.folder.case.tests  # of priors alone: there is nothing to look at
-    banded = limits and (free or bands_requested(network, sure))
-    posterior = posterior_of(one.folder, tell) if banded else None
+    banded = limits and (free or th.bands_requested(network, sure))
+    posterior = th.posterior_of(one.folder, tell) if banded else None
     rating = rated(one.it.model, op, one.it.limits, "S1", None) if limits else None
     ambient = next((T for b, T in op.boundaries.items() if b not in coolant_boundaries(network)), 20.0)
     return {
@@ -182,7 +165,7 @@ def _described(one: Design, limits: Mapping[str, float], sure: bool | None, tell
     }
 
 
-def masses(machine: Machine) -> dict[str, float]:
+def masses(machine: th.MachineDescription) -> dict[str, float]:
     """Material -> kg of it in all solids, most first."""
     out: dict[str, float] = {}
     for part in machine.parts:
@@ -190,7 +173,7 @@ def masses(machine: Machine) -> dict[str, float]:
     return dict(sorted(out.items(), key=lambda item: -item[1]))
 
 
-def dimensions(machines: Sequence[Machine]) -> list[dict[str, Any]]:
+def dimensions(machines: Sequence[th.MachineDescription]) -> list[dict[str, Any]]:
     """Parameters of their families and keys of [cooling], [fans] and [ratings] that are not the same in all."""
     values = [_values(machine) for machine in machines]
     keys = dict.fromkeys(key for one in values for key in one)
@@ -198,20 +181,20 @@ def dimensions(machines: Sequence[Machine]) -> list[dict[str, Any]]:
     return [r for r in rows if any(v != r["values"][0] for v in r["values"])]
 
 
-def _values(machine: Machine) -> dict[str, Any]:
+def _values(machine: th.MachineDescription) -> dict[str, Any]:
     """Key with dots -> value in the key's own unit."""
     out: dict[str, Any] = {"machine.family": machine.family}
-    parameters = families()[machine.family].parameters if machine.geometry is not None else ()
+    parameters = th.families()[machine.family].parameters if machine.geometry is not None else ()
     for p in parameters:
         value = getattr(getattr(machine.geometry, p.group), p.attribute)
         numeric = isinstance(value, int | float) and not isinstance(value, bool)
-        out[f"geometry.{p.key}"] = float(f"{value / UNITS.get(p.unit, 1.0):.6g}") if numeric else value
+        out[f"geometry.{p.key}"] = float(f"{value / th.GEOMETRY_UNITS.get(p.unit, 1.0):.6g}") if numeric else value
     for section in ("cooling", "fans", "ratings"):
         out |= {f"{section}.{k}": v for k, v in machine.sections.get(section, {}).items() if not isinstance(v, dict)}
     return out
 
 
-def designs_summary(document: Mapping[str, Any]) -> Summary:
+def designs_summary(document: Mapping[str, Any]) -> th.Summary:
     """Which carries most, or stays coolest; what was assumed; each figure side by side, what differs in the files."""
     designs = document["designs"]
     around = ", ".join(f"{b} {T:g} degC" for b, T in document["boundaries"].items())
@@ -227,14 +210,14 @@ def designs_summary(document: Mapping[str, Any]) -> Summary:
     materials = [(m, *(d["masses_kg"].get(m) for d in designs)) for m in every]
     bare = " and ".join(d["name"] for d in designs if d["asks_for_bands"])
     differ = [(r["parameter"], *("" if v is None else v for v in r["values"])) for r in document["dimensions"]]
-    return Summary(
+    return th.Summary(
         f"{_verdict(designs)} Assumed of all: {around}.",
         [
             f"At rest under the rated load, {loads}.",
             f"The rating of {bare} has no band yet: --bands reads the tests for it, a minute or so." if bare else "",
-            Table("", ["", *names], figures, keep=names),
-            Table("What differs in the files", ["key", *names], differ, keep=names),
-            Table("Mass by material (kg)", ["material", *names], materials, keep=names),
+            th.Table("", ["", *names], figures, keep=names),
+            th.Table("What differs in the files", ["key", *names], differ, keep=names),
+            th.Table("Mass by material (kg)", ["material", *names], materials, keep=names),
         ],
         "--limit PLACE=DEGC for ratings; --at ambient=DEGC for all; --json FILE; --picture FILE.png",
     )

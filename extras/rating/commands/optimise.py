@@ -18,7 +18,7 @@ from extras.rating.designs import WORDS, column, page
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, StoppedSearchError, pareto_set
 from thermoscope import InputError
-from thermoscope.plugin import Summary, Table, csv_lines, file_stem, notes, progress, write_whole
+from thermoscope import plugin as th
 
 
 def optimised(
@@ -26,23 +26,21 @@ def optimised(
 ) -> tuple[dict[str, Any], Path, bool]:
     """The Pareto set of a case or a machine file, the folder of its table, plots and machine files, and whether the
     user stopped the search."""
-    from thermoscope.plugin import dask_cluster
-
-    with progress() as tell, dask_cluster(cluster) if cluster else nullcontext() as executor:
+    with th.progress() as tell, th.dask_cluster(cluster) if cluster else nullcontext() as executor:
         folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
-        notes([effort_words(problem, effort)])
+        th.notes([effort_words(problem, effort)])
         count, stopped = effort.population * effort.generations, False
         try:
             designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         except StoppedSearchError as stop:
-            notes([f"stopped: {stop.judged} of {count} designs were judged; the best of these are written and stay"])
+            th.notes([f"stopped: {stop.judged} of {count} designs were judged; the best of these are written and stay"])
             designs, count, stopped = stop.designs, stop.judged, True
         document = document_of(problem, designs, method, count)
         if not stopped and file is not None and any(v.conducts for v in problem.space.variables):
             samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
             document["interpolation_error"] = Condensations(problem, tell).verified(samples)
-        where = out or Path("out") / f"{file_stem(folder.case.name)}-designs"
+        where = out or Path("out") / f"{th.file_stem(folder.case.name)}-designs"
         tell(f"writing {where}")
         files = _write(where, problem, designs, document, file)
     return {"case": folder.case.name, **document, "files": files}, where, stopped
@@ -119,23 +117,23 @@ def _write(
     """pareto.csv, pareto.html, and a machine file per design."""
     rows = [{"design": d["design"], **{o: d[o] for o in problem.aimed}, **d["values"]} for d in document["designs"]]
     lines = ([f"{v:.6g}" if isinstance(v, float) else v for v in row.values()] for row in rows)
-    out = [write_whole(folder / "pareto.csv", csv_lines([list(rows[0]), *lines]))]
+    out = [th.write_whole(folder / "pareto.csv", th.csv_lines([list(rows[0]), *lines]))]
     html = page(rows, problem.aimed, {v.name: short_key(v.name) for v in problem.space.variables}, folder.name)
-    out.append(write_whole(folder / "pareto.html", html))
+    out.append(th.write_whole(folder / "pareto.html", html))
     for row, design in zip(rows, designs, strict=True) if file is not None else ():
         assert file is not None
         name, does = row["design"], design.performance.objectives
         comments = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
         values = problem.space.named(design.x)
         out.append(
-            write_whole(
+            th.write_whole(
                 folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
             )
         )
     return [str(path) for path in out]
 
 
-def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
+def optimisation_summary(document: Mapping[str, Any], where: Path) -> th.Summary:
     """How far the objectives reach, the designs, and how sure the reduced models are of them."""
     designs, reference, objectives = document["designs"], document["reference"], document["objectives"]
     ends = ", ".join(f"{WORDS[o]} {min(column(designs, o)):.4g} to {max(column(designs, o)):.4g}" for o in objectives)
@@ -145,7 +143,7 @@ def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     rows = [_row("as it is" + (" (too hot)" if not reference["feasible"] else ""), reference, objectives, names)]
     picked = [designs[round(k)] for k in np.linspace(0, len(designs) - 1, min(12, len(designs)))]
     rows += [_row(d["design"], d, objectives, names) for d in picked]
-    parts: list[Table | str] = [Table("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
+    parts: list[th.Table | str] = [th.Table("Pareto set", headers, rows, keep=[WORDS[o] for o in objectives])]
     if error := document.get("interpolation_error"):
         rises = 100.0 * max(e for n, e in error.items() if n not in (SETTLING, COPPER))
         parts.append(
@@ -157,7 +155,7 @@ def optimisation_summary(document: Mapping[str, Any], where: Path) -> Summary:
     torque = "" if document["torque_Nm"] is None else f"{document['torque_Nm']:.4g} N m; "
     point = {**document["operating_point"]["inputs"], **document["operating_point"]["boundaries"]}
     parts.append(f"At {torque}{', '.join(f'{n} = {u:.4g}' for n, u in point.items())}.")
-    return Summary(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
+    return th.Summary(sentence, parts, f"table, plots and machine files in {where}; --json FILE")
 
 
 def _row(word: str, design: Mapping[str, Any], objectives: Sequence[str], names: Sequence[str]) -> list[Any]:

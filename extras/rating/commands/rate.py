@@ -19,27 +19,7 @@ from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import derated, load_of, point, row
 from thermoscope import InputError
-from thermoscope.plugin import (
-    Array,
-    Folder,
-    Progress,
-    RangeWarning,
-    Settings,
-    Summary,
-    Table,
-    as_number,
-    bands_requested,
-    before_last,
-    find_case,
-    notes,
-    open_case,
-    posterior_of,
-    read_pairs,
-    read_settings,
-    short_of,
-    standing_reference,
-    toml_value,
-)
+from thermoscope import plugin as th
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
@@ -49,7 +29,7 @@ WARM = 0.75  # load at rest from which an overload begins warm
 
 def holding_times(
     model: Model, op: Operation, limits: Mapping[str, float], loads: Sequence[float], speeds: Sequence[float]
-) -> Array:
+) -> th.Array:
     """(n_speed, n_load) seconds from cold until a limit is reached; inf where it may stay for ever."""
     return np.array([[_time(model, op, list(limits.values()), load, n) for load in loads] for n in speeds])
 
@@ -62,33 +42,33 @@ def _time(model: Model, op: Operation, most: Sequence[float], load: float, speed
 
 def read_at(words: Sequence[str]) -> dict[str, float]:
     """NAME=VALUE, ..."""
-    return read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
+    return th.read_pairs(words, "--at", "operating point", "NAME=VALUE, for example speed_rpm=2000")
 
 
 def read_start(word: str) -> float | None:
     """The load from whose rest S2 begins, in the unit of the input that carries it; None for "cold"."""
     if word == "cold":
         return None
-    load = as_number(word)
+    load = th.as_number(word)
     if load is None or not 0.0 <= load <= LARGEST_START:
         raise InputError(f"'{word}' is no start", "--start", f"cold, or a load from 0 to {LARGEST_START:g}, e.g. 120")
     return load
 
 
-def case_or_machine(name: str, tell: Progress, check: Callable[[Settings], None] = lambda settings: None) -> Folder:
+def case_or_machine(
+    name: str, tell: th.Progress, check: Callable[[th.Settings], None] = lambda settings: None
+) -> th.Folder:
     """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
-    from thermoscope.plugin import library
-
     path = Path(name)
-    if not (path.is_file() or (not path.exists() and name in library())):
-        check(read_settings(find_case(name), untested=True))
-        return open_case(name, tell, untested=True)
+    if not (path.is_file() or (not path.exists() and name in th.library())):
+        check(th.read_settings(th.find_case(name), untested=True))
+        return th.open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name
-        text = f"[case]\nname = {toml_value(path.stem)}\nmachine = {toml_value(machine)}\n"
+        text = f"[case]\nname = {th.toml_value(path.stem)}\nmachine = {th.toml_value(machine)}\n"
         Path(folder, "case.toml").write_text(text, encoding="utf-8")
-        check(read_settings(Path(folder), untested=True))
-        return open_case(folder, tell, untested=True)
+        check(th.read_settings(Path(folder), untested=True))
+        return th.open_case(folder, tell, untested=True)
 
 
 @contextmanager
@@ -97,25 +77,27 @@ def once() -> Iterator[list[str]]:
     notes: list[str] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("ignore")
-        warnings.simplefilter("always", RangeWarning)
+        warnings.simplefilter("always", th.RangeWarning)
         yield notes
-    last = {w.message.subject: str(w.message) for w in caught if isinstance(w.message, RangeWarning)}
+    last = {w.message.subject: str(w.message) for w in caught if isinstance(w.message, th.RangeWarning)}
     notes.extend(f"{what} (a rating looks beyond what it ends at)" for what in last.values())
 
 
-def rating_document(folder: Folder, request: RatingRequest, sure: bool | None, tell: Progress) -> dict[str, Any]:
+def rating_document(folder: th.Folder, request: RatingRequest, sure: bool | None, tell: th.Progress) -> dict[str, Any]:
     it = rated_model(folder, request)
     model, op, limits = it.model, it.op, it.limits
     tell("ratings")
     here = {form: rated(model, op, limits, form, None) for form in DUTIES}
     old = _before(folder, request, tell)
     before = {} if old is None else {form: load_of(old, form, None) for form in DUTIES}
-    posterior = posterior_of(folder, tell) if request.losses is None and bands_requested(model.network, sure) else None
+    posterior = (
+        th.posterior_of(folder, tell) if request.losses is None and th.bands_requested(model.network, sure) else None
+    )
     tell("envelope over the speed")
     speeds = _speeds(folder, op, request)
     envelope = [r for form in DUTIES for n in speeds if (r := _rated_at(it, form, n))]
     if short := [n for n in speeds if n not in {r.speed for r in envelope if r.form == "S1"}]:
-        notes([f"at {', '.join(f'{n:.4g}' for n in short)} 1/min a limit is exceeded without any load; --top RPM"])
+        th.notes([f"at {', '.join(f'{n:.4g}' for n in short)} 1/min a limit is exceeded without any load; --top RPM"])
     tell("derating")
     load, main = here["S1"].load, op.inputs[op.main]
     return {
@@ -146,16 +128,16 @@ def _rated_at(it: Rated, form: str, speed: float) -> Rating | None:
         return None
 
 
-def _before(folder: Folder, request: RatingRequest, tell: Progress) -> Rated | None:
+def _before(folder: th.Folder, request: RatingRequest, tell: th.Progress) -> Rated | None:
     """The model before its last step; none without a step."""
-    earlier = before_last(folder)
+    earlier = th.before_last(folder)
     if earlier is None:
         return None
     tell("ratings of the model before its last step")
     return rated_model(replace(folder, case=earlier), request)
 
 
-def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Progress) -> dict[str, Any]:
+def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: th.Progress) -> dict[str, Any]:
     """Seconds from cold at every speed and load, from half of what holds for ever to what holds for ten seconds."""
     if not speeds or not np.all(np.isfinite(ends)):
         raise InputError("there is no map", "--map", "a model whose losses or films know a speed, and a limit in reach")
@@ -166,28 +148,25 @@ def _map(it: Rated, ends: tuple[float, float], speeds: Sequence[float], tell: Pr
     return {"speed_rpm": list(speeds), it.op.main: [main * x for x in loads], "seconds": seconds.tolist()}
 
 
-def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) -> dict[str, Any]:
+def _cycle(folder: th.Folder, it: Rated, request: RatingRequest, tell: th.Progress) -> dict[str, Any]:
     """The share of a drive cycle's load that may be repeated for ever; how long all of it from cold."""
     if request.cycle is None:
         return {}
-    from thermoscope.plugin import find_cycle, load_cycle
 
     tell(f"cycle {request.cycle}")
     network, op, model = it.model.network, it.op, it.model
     ratings = folder.built.machine.sections.get("ratings", {}) if folder.built is not None else {}
-    cycle = load_cycle(find_cycle(folder.settings.path, request.cycle), network, ratings)
-    notes(cycle.notes)
+    cycle = th.load_cycle(th.find_cycle(folder.settings.path, request.cycle), network, ratings)
+    th.notes(cycle.notes)
     record = cycle.record
     if cycle.drive is not None:
-        from thermoscope.plugin import coupled
-
         model = replace(model, network=cycle.on(network))
-        drive = coupled(model.network, record, cycle.drive, cycle.watched, model.values)
+        drive = th.coupled(model.network, record, cycle.drive, cycle.watched, model.values)
         record = replace(record, inputs=drive.inputs)
         currents = {n: float(np.mean(record.inputs[n])) for law in cycle.laws.values() for n in law.reads}
         op = replace(op, inputs={**currents, **op.inputs}, loads=tuple(dict.fromkeys((*op.loads, *currents))))
-    lap, short = Lap(record, op.loads), short_of(record)
-    notes(
+    lap, short = Lap(record, op.loads), th.short_of(record)
+    th.notes(
         f"{cycle.name}: {name} misses what was wanted by more than 1 % for {seconds:.4g} s of a lap"
         for name, seconds in short.items()
     )
@@ -196,11 +175,11 @@ def _cycle(folder: Folder, it: Rated, request: RatingRequest, tell: Progress) ->
     return {"name": cycle.name, "share": share, "at": at, "until_s": until_s, "short_of_s": short}
 
 
-def _speeds(folder: Folder, op: Operation, request: RatingRequest) -> list[float]:
+def _speeds(folder: th.Folder, op: Operation, request: RatingRequest) -> list[float]:
     """From rest to the largest speed that was fitted or asked for; none where it carries the load itself."""
     if op.speed is None or op.speed in op.loads:
         return []
-    fitted = standing_reference(folder.case).signals.get(op.speed)
+    fitted = th.standing_reference(folder.case).signals.get(op.speed)
     peaks = [abs(fitted.low), abs(fitted.high)] if fitted else []
     top = request.top_rpm or max([abs(op.inputs[op.speed]), *peaks])
     return [float(n) for n in np.linspace(0.0, top, POINTS)] if top > 0.0 else []
@@ -215,7 +194,7 @@ def _overload(it: Rated, request: RatingRequest, load: float) -> dict[str, Any]:
     return {"percent": 100.0 * request.overload, "from_cold_s": cold, "from_warm_s": warm, "warm_percent": 100.0 * WARM}
 
 
-def rating_summary(document: Mapping[str, Any]) -> Summary:
+def rating_summary(document: Mapping[str, Any]) -> th.Summary:
     """The continuous rating with its band; the other forms; cycle, map, envelope and derating."""
     first, reference = document["ratings"][0], document["reference"]
     main = reference["input"]
@@ -232,8 +211,8 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
     ends: dict[str, Any] = {"low": lambda r: (r["ci95"] or [None])[0], "high": lambda r: (r["ci95"] or [None])[-1]}
     heading = main.replace("|", "/").replace("=", "/")  # signs that end the name of a column
     band = f"*{heading}=value | *95 % from=low | *to=high | limited by=at | before"
-    table = Table.of("", document["ratings"], f"form | {band} | *change (%)=change_percent", **ends)
-    parts: list[Table | str] = [table, f"At {at}; S2 from {begin}."]
+    table = th.Table.of("", document["ratings"], f"form | {band} | *change (%)=change_percent", **ends)
+    parts: list[th.Table | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(
             f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
@@ -252,10 +231,10 @@ def rating_summary(document: Mapping[str, Any]) -> Summary:
         for d in document["derating"]
     ]
     elsewhere = "over=of | *value | unit | *% of it=share | *95 % from=low | *to=high | before (%)=share_before"
-    parts.append(Table.of("Continuous rating elsewhere", shares, elsewhere, **ends))
+    parts.append(th.Table.of("Continuous rating elsewhere", shares, elsewhere, **ends))
     over_speed = f"form | *speed (1/min)=speed_rpm | {band.replace('*95', '95').replace('*to', 'to')}"
-    parts.append(Table.of("Over the speed", document["envelope"], over_speed, **ends))
-    return Summary(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
+    parts.append(th.Table.of("Over the speed", document["envelope"], over_speed, **ends))
+    return th.Summary(sentence, parts, "--json FILE; --limit, --at, --losses, --cycle, --map")
 
 
 def _change(first: Mapping[str, Any]) -> str:
@@ -278,10 +257,10 @@ def _of_cycle(cycle: Mapping[str, Any]) -> str:
     return f"Cycle {cycle['name']}: {share} may be repeated for ever ({cycle['at'] or 'nothing'} limits); {whole}."
 
 
-def _of_map(grid: Mapping[str, Any], main: str) -> Table:
+def _of_map(grid: Mapping[str, Any], main: str) -> th.Table:
     """A row per load, the largest first; a column per speed."""
     rows = [
         [u, *(s[k] if np.isfinite(s[k]) else "for ever" for s in grid["seconds"])]
         for k, u in reversed(list(enumerate(grid[main])))
     ]
-    return Table("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)
+    return th.Table("Seconds from cold, over the speed (1/min)", [main, *(f"{n:.0f}" for n in grid["speed_rpm"])], rows)

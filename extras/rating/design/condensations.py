@@ -18,22 +18,19 @@ from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.scaling import Scaling, design_parameters
 from extras.rating.optimisation.space import Variable
 from thermoscope import InputError, Network
-from thermoscope.plugin import MachineDescription as Machine
-from thermoscope.plugin import Recipe
+from thermoscope import plugin as th
 
 Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing
 SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
 # Fewer snapshots than a case's: enough to rank designs.
-COARSE = Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
+COARSE = th.Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
 
 
-def coarse_network(machine: Machine, progress: Progress) -> Network:
+def coarse_network(machine: th.MachineDescription, progress: Progress) -> Network:
     """Seconds; from the cache where it was made before."""
-    from thermoscope.plugin import motor_network, prepared, reduced
-
-    ready = prepared(machine, SIZE_M, 48, progress, across=ACROSS)
-    return motor_network(machine, reduced(ready, COARSE).network(max_states=COARSE.max_states))
+    ready = th.prepared(machine, SIZE_M, 48, progress, across=ACROSS)
+    return th.motor_network(machine, th.reduced(ready, COARSE).network(max_states=COARSE.max_states))
 
 
 class Condensations:
@@ -78,7 +75,7 @@ class Condensations:
         out = {n: (T - around) / (scaled.places[n] - around) for n, T in condensed.places.items()}
         return out | {q: condensed.objectives[q] / scaled.objectives[q] for q in (COPPER, SETTLING)}
 
-    def _machine(self, design: Mapping[str, float]) -> Machine:
+    def _machine(self, design: Mapping[str, float]) -> th.MachineDescription:
         """Of the geometry alone: films and streams follow the inputs, so that the cache serves every flow."""
         assert self.problem.machine_at is not None
         return self.problem.machine_at({**self.usual, **dict(self._geometry(design))})

@@ -19,25 +19,7 @@ from extras.rating.optimisation.scaling import Scaling, design_parameters
 from extras.rating.optimisation.space import Space, Variable
 from extras.rating.request import places, usual_point
 from thermoscope import InputError, Network
-from thermoscope.plugin import (
-    AtRest,
-    Folder,
-    Role,
-    Settings,
-    Sheet,
-    boundaries,
-    find_cycle,
-    fluids,
-    load_sheet,
-    model_of,
-    named_rows,
-    posterior_of,
-    rated_inputs,
-    suggestion,
-    thermal,
-)
-from thermoscope.plugin import CaseProgress as Progress
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 GAIN_RANGE = (0.25, 4.0)  # of a controller's gain
 INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where nothing else is said
@@ -60,12 +42,14 @@ class DesignRequest:
     cycle: str | None = None
 
 
-def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -> tuple[Problem, MachineFile | None]:
+def design_problem(
+    folder: th.Folder, request: DesignRequest, progress: th.CaseProgress
+) -> tuple[Problem, MachineFile | None]:
     """The problem with what its reduced model gets wrong about other geometries learned, and the file of its machine.
 
     Raises InputError for what is not known, and where a limit is exceeded without any load.
     """
-    network, values = model_of(folder)
+    network, values = th.model_of(folder)
     file = None if folder.settings.machine is None else MachineFile.read(folder.settings.machine)
     op = operation(network, usual_point(folder, network), request.at or {})
     sections = {} if file is None else file.sections
@@ -73,7 +57,7 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     electrics = electrics_of(series, sections.get("ratings", {}), sections.get("losses", {}))
     inputs = wanted_inputs(op.inputs, request.torque, electrics)
     larger, sure = _grown(folder, network, request.robust, progress)
-    rows = named_rows(network, folder)
+    rows = th.named_rows(network, folder)
     limits = places(request.limits, rows, network.identities)
     first = len(places(dict(list(request.limits.items())[:1]), rows, network.identities))
     drive = None if request.cycle is None else _driven(folder, network, request, sections.get("ratings", {}))
@@ -100,16 +84,18 @@ def design_problem(folder: Folder, request: DesignRequest, progress: Progress) -
     return problem, file
 
 
-def checked_request(settings: Settings, request: DesignRequest) -> None:
+def checked_request(settings: th.Settings, request: DesignRequest) -> None:
     """Raises InputError for a name in a request that a machine file cannot mean, before its mesh is made."""
     if request.cycle is not None:
-        find_cycle(settings.path, request.cycle)
+        th.find_cycle(settings.path, request.cycle)
     file = None if settings.machine is None else MachineFile.read(settings.machine)
     if file is None or settings.model_file.exists():  # what its effects add is not known without the network
         return
-    sheets = [load_sheet(entry.sheet) for entry in settings.tests]
-    inputs = {*rated_inputs(file.machine), *(name for sheet in sheets for name in _inputs_of(sheet))}
-    _check_names(request.at or {}, {*inputs, *boundaries(file.machine)}, "--at", "is no input or boundary of the model")
+    sheets = [th.load_sheet(entry.sheet) for entry in settings.tests]
+    inputs = {*th.rated_inputs(file.machine), *(name for sheet in sheets for name in _inputs_of(sheet))}
+    _check_names(
+        request.at or {}, {*inputs, *th.boundaries(file.machine)}, "--at", "is no input or boundary of the model"
+    )
     _check_names(request.limits, temperatures_of(file.machine, sheets), "--limit", "is no temperature of the machine")
     vary = request.vary or {}
     for name in filter(file.knows, vary):
@@ -118,37 +104,39 @@ def checked_request(settings: Settings, request: DesignRequest) -> None:
     _check_names(vary, variables, "--vary", "is nothing that a design could change")
 
 
-def _inputs_of(sheet: Sheet) -> set[str]:
+def _inputs_of(sheet: th.Sheet) -> set[str]:
     """Inputs and boundaries that a test has."""
     columns = {name for c in sheet.columns for name in (c.feeds, c.place)}
     return {*columns, *sheet.inputs, *sheet.boundaries, *sheet.squares, *sheet.events}
 
 
-def temperatures_of(machine: Machine, sheets: Sequence[Sheet]) -> set[str]:
+def temperatures_of(machine: th.MachineDescription, sheets: Sequence[th.Sheet]) -> set[str]:
     """Names, and roles, of all that a limit may be for."""
     parts = (*machine.parts, *machine.fluids)
-    roles = {role.value for role in Role}
+    roles = {role.value for role in th.Role}
     jackets = {f"{part.name}.outlet" for part in machine.fluids}
     sensors = {f"sensor {c.name}" for sheet in sheets for c in sheet.columns}
     sensors |= {f"sensor {mean.name}" for sheet in sheets for mean in sheet.means}
-    cells = {*fluids(machine), *boundaries(machine), *machine.sections.get("sensors", {})}
+    cells = {*th.fluids(machine), *th.boundaries(machine), *machine.sections.get("sensors", {})}
     return {part.name for part in parts} | roles | jackets | sensors | cells
 
 
 def _check_names(names: Iterable[str], choices: Collection[str], option: str, what: str) -> None:
     for name in names:
         if name not in choices:
-            raise InputError(f"'{name}' {what}", option, suggestion(name, choices))
+            raise InputError(f"'{name}' {what}", option, th.suggestion(name, choices))
 
 
-def _grown(folder: Folder, network: Network, robust: bool, progress: Progress) -> tuple[Network, AtRest | None]:
+def _grown(
+    folder: th.Folder, network: Network, robust: bool, progress: th.CaseProgress
+) -> tuple[Network, th.AtRest | None]:
     """The network with the parameters of a design; for a robust one with those of the table of doubt too."""
     if not robust:
         return network.extended(parameters=design_parameters(network)), None
-    of = posterior_of(folder, progress)
-    larger = thermal(of.network)
+    of = th.posterior_of(folder, progress)
+    larger = th.thermal(of.network)
     larger = larger.extended(parameters=design_parameters(larger))
-    return larger, AtRest(of, larger)
+    return larger, th.AtRest(of, larger)
 
 
 def _variables(
@@ -178,7 +166,7 @@ def _variables(
                 *(GAINS if drive is not None else ()),
                 *([v.name for v in file.usual()] if file is not None else []),
             ]
-            raise InputError(f"'{name}' is nothing that a design could change", "--vary", suggestion(name, here))
+            raise InputError(f"'{name}' is nothing that a design could change", "--vary", th.suggestion(name, here))
     return out
 
 
@@ -192,11 +180,9 @@ def _gain(key: str, drive: Driven, bounds: tuple[float, float] | None) -> Variab
     return Variable(key, low, high, drive.usual(key))
 
 
-def _driven(folder: Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
+def _driven(folder: th.Folder, network: Network, request: DesignRequest, ratings: Mapping[str, float]) -> Driven:
     """The vehicle of a cycle, its windings at the first limit."""
-    from thermoscope.plugin import load_cycle
-
-    cycle = load_cycle(find_cycle(folder.settings.path, str(request.cycle)), network, ratings)
+    cycle = th.load_cycle(th.find_cycle(folder.settings.path, str(request.cycle)), network, ratings)
     s = cycle.series
     if s is None:
         raise InputError("the cycle has no controller", f"--cycle {request.cycle}", "a cycle with [vehicle]")

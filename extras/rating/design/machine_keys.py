@@ -12,13 +12,10 @@ from typing import Any
 from extras.rating.optimisation.auxiliaries import FAN
 from extras.rating.optimisation.space import Variable
 from thermoscope import InputError
-from thermoscope.plugin import FLOW, families, library, machine_from, read_toml, suggestion
-from thermoscope.plugin import GEOMETRY_UNITS as UNITS
-from thermoscope.plugin import GeometryParameter as Parameter
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 GEOMETRY = "geometry"
-FLOWS = {"cooling.flow_L_per_min": FLOW, "fans.flow_m3_h": FAN}  # key -> the input of the network that it rates
+FLOWS = {"cooling.flow_L_per_min": th.FLOW, "fans.flow_m3_h": FAN}  # key -> the input of the network that it rates
 # Key -> how far below and above its value a design goes where nothing else is said: halves and doubles of what moves
 # by itself, less of what has to be cast or milled.
 USUAL = {
@@ -43,27 +40,29 @@ class MachineFile:
 
     sections: Mapping[str, Any]
     where: str
-    machine: Machine
+    machine: th.MachineDescription
 
     @classmethod
     def read(cls, file: Path) -> MachineFile | None:
         """By its path or the name of a machine that comes along; None for a STEP file, which has no keys."""
-        path = file if file.exists() else library()[file.name.removesuffix(".toml")]
+        path = file if file.exists() else th.library()[file.name.removesuffix(".toml")]
         if path.suffix != ".toml":
             return None
-        sections = read_toml(path, "a machine file with [machine] and [geometry]")
-        return cls(sections, path.name, machine_from(sections, path.name))
+        sections = th.read_toml(path, "a machine file with [machine] and [geometry]")
+        return cls(sections, path.name, th.machine_from(sections, path.name))
 
     @cached_property
-    def parameters(self) -> dict[str, Parameter]:
+    def parameters(self) -> dict[str, th.GeometryParameter]:
         """Key -> geometric parameter of the family."""
-        return {f"{GEOMETRY}.{p.key}": p for p in families()[self.machine.family].parameters if not p.choices}
+        return {f"{GEOMETRY}.{p.key}": p for p in th.families()[self.machine.family].parameters if not p.choices}
 
     def value(self, key: str) -> float:
         """As it stands, in the key's own unit; 0 where the file has no such number."""
         if key in self.parameters:
             p = self.parameters[key]
-            return float(getattr(getattr(self.machine.geometry, p.group), p.attribute)) / UNITS.get(p.unit, 1.0)
+            return float(getattr(getattr(self.machine.geometry, p.group), p.attribute)) / th.GEOMETRY_UNITS.get(
+                p.unit, 1.0
+            )
         section, _, name = key.partition(".")
         return float(self.sections.get(section, {}).get(name, 0.0))
 
@@ -78,9 +77,9 @@ class MachineFile:
             table[name] = round(value) if self._whole(key) else value
         return out
 
-    def at(self, values: Mapping[str, float]) -> Machine:
+    def at(self, values: Mapping[str, float]) -> th.MachineDescription:
         """The machine with some numbers replaced; InputError where that is none."""
-        return machine_from(self.tables({k: v for k, v in values.items() if self.knows(k)}), self.where)
+        return th.machine_from(self.tables({k: v for k, v in values.items() if self.knows(k)}), self.where)
 
     def knows(self, key: str) -> bool:
         return key in self.parameters or key in FLOWS
@@ -93,7 +92,7 @@ class MachineFile:
         """Between bounds (of the key's unit), or around its value as usual."""
         usual = self.value(key)
         if usual == 0.0 or not self.knows(key):
-            raise InputError(f"'{key}' is no number of {self.where}", "--vary", suggestion(key, self._keys()))
+            raise InputError(f"'{key}' is no number of {self.where}", "--vary", th.suggestion(key, self._keys()))
         low, high = bounds or tuple(share * usual for share in USUAL.get(key, (0.5, 2.0)))
         p = self.parameters.get(key)
         if p is not None and bounds is None:

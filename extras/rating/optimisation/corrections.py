@@ -13,16 +13,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
 class Corrections:
     """slopes : quantity -> (k,) of log ratios, per share of every variable that changes conduction"""
 
-    slopes: Mapping[str, Array] = field(default_factory=dict)
+    slopes: Mapping[str, th.Array] = field(default_factory=dict)
 
-    def ratio(self, quantity: str, share: Array) -> float:
+    def ratio(self, quantity: str, share: th.Array) -> float:
         """Condensed over scaled; 1 for what was not learned."""
         slope = self.slopes.get(quantity)
         return 1.0 if slope is None else float(np.exp(slope @ share))
@@ -31,7 +31,7 @@ class Corrections:
 NONE = Corrections()
 
 
-def learned(shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]) -> Corrections:
+def learned(shares: Sequence[th.Array], ratios: Sequence[Mapping[str, float]]) -> Corrections:
     """From geometries at `shares` (n, k), each with the ratio of every quantity there; least squares, least norm."""
     if not shares:
         return NONE
@@ -41,7 +41,7 @@ def learned(shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]) -> C
 
 
 def errors(
-    corrections: Corrections, shares: Sequence[Array], ratios: Sequence[Mapping[str, float]]
+    corrections: Corrections, shares: Sequence[th.Array], ratios: Sequence[Mapping[str, float]]
 ) -> dict[str, float]:
     """Quantity -> the largest relative error at geometries that were not learned from."""
     return {

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermoscope.plugin import ALPHA_CU, Array, Controller, SeriesMachine, Vehicle, drive_cycle
+from thermoscope import plugin as th
 
 GAINS = {"controller.Kp": "Kp", "controller.Ki": "Ki"}  # keys of a cycle that a design may change
 LAG = 0.05  # of the cycle's mean speed: what the vehicle may lack on average; it coasts where it is too fast
@@ -24,17 +24,17 @@ class Driven:
     warm : resistance over that of the machine, with the winding at its limit
     """
 
-    machine: SeriesMachine
-    vehicle: Vehicle
-    controller: Controller
-    time: Array
-    target_mps: Array
-    slope: Array
+    machine: th.SeriesMachine
+    vehicle: th.Vehicle
+    controller: th.Controller
+    time: th.Array
+    target_mps: th.Array
+    slope: th.Array
     warm: float = 1.0
 
     def at(self, degC: float, reference_degC: float) -> Driven:
         """With the winding at a temperature."""
-        return replace(self, warm=1.0 + ALPHA_CU * (degC - reference_degC))
+        return replace(self, warm=1.0 + th.ALPHA_CU * (degC - reference_degC))
 
     def usual(self, key: str) -> float:
         return float(getattr(self.controller, GAINS[key]))
@@ -43,7 +43,7 @@ class Driven:
         """Inputs of a network at the gains of a design, and limit -> the share by which it is exceeded."""
         gains = {GAINS[key]: design[key] for key in GAINS if key in design}
         R = np.full(self.time.size, self.warm * self.machine.R)
-        course = drive_cycle(
+        course = th.drive_cycle(
             self.machine,
             self.vehicle,
             replace(self.controller, **gains),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from thermoscope import InputError
-from thermoscope.plugin import RPM, SeriesMachine, suggestion
+from thermoscope import plugin as th
 
 CURRENT, SPEED = "current_A", "speed_rpm"
 
@@ -21,7 +21,7 @@ class Electrics:
     current_limit: float | None = None
     voltage_limit: float | None = None
     brush_V: float = 0.0
-    series: SeriesMachine | None = None
+    series: th.SeriesMachine | None = None
     rated: tuple[float, float] | None = None
 
     def current(self, torque: float) -> float:
@@ -44,7 +44,7 @@ class Electrics:
         """V = w L_af i + P_copper / i + brushes, of a series machine."""
         if self.series is None or current == 0.0:
             return None
-        return self.series.L_af * RPM * speed_rpm * current + copper_W / current + self.brush_V
+        return self.series.L_af * th.RPM * speed_rpm * current + copper_W / current + self.brush_V
 
     def excess(self, inputs: Mapping[str, float], copper_W: float) -> dict[str, float]:
         """Limit -> by which share it is exceeded; negative where it is kept."""
@@ -62,7 +62,7 @@ def electrics_of(series: bool, ratings: Mapping[str, float], losses: Mapping[str
     limits, brush = (ratings.get(CURRENT), ratings.get("voltage_V")), float(losses.get("brush_drop_V", 0.0))
     needed = ("power_W", SPEED, "voltage_V", CURRENT)
     if series and all(k in ratings for k in needed):
-        return Electrics(*limits, brush, SeriesMachine.from_ratings(*(float(ratings[k]) for k in needed)))
+        return Electrics(*limits, brush, th.SeriesMachine.from_ratings(*(float(ratings[k]) for k in needed)))
     rated = (ratings["torque_Nm"], ratings[CURRENT]) if "torque_Nm" in ratings and CURRENT in ratings else None
     return Electrics(limits[0], None, 0.0, None, rated)
 
@@ -72,5 +72,5 @@ def wanted_inputs(inputs: Mapping[str, float], torque: float | None, electrics: 
     if torque is None:
         return dict(inputs)
     if CURRENT not in inputs:
-        raise InputError("no law reads the current", "--torque", suggestion(CURRENT, tuple(inputs)))
+        raise InputError("no law reads the current", "--torque", th.suggestion(CURRENT, tuple(inputs)))
     return {**inputs, CURRENT: electrics.current(torque)}

@@ -18,8 +18,7 @@ from extras.rating.optimisation.rest import Rest, losses, rest, without_feedback
 from extras.rating.optimisation.scaling import Scaling
 from extras.rating.optimisation.space import Space
 from thermoscope import InputError, Network
-from thermoscope.plugin import NORMAL_95, Array, Row
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 PEAK, SETTLING, COPPER, AUXILIARY = OBJECTIVES = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
 IMPOSSIBLE = 1e9  # what a design costs that no file can describe
@@ -30,7 +29,7 @@ class Uncertainty(Protocol):
     """How sure a temperature at rest is."""
 
     def sd(
-        self, values: Mapping[str, float], inputs: Mapping[str, float], boundaries: Mapping[str, float], row: Row
+        self, values: Mapping[str, float], inputs: Mapping[str, float], boundaries: Mapping[str, float], row: th.Row
     ) -> float: ...
 
 
@@ -72,7 +71,7 @@ class Problem:
     spots: tuple[HotSpots, ...]
     peak: int
     electrics: Electrics = field(default_factory=Electrics)
-    machine_at: Callable[[Mapping[str, float]], Machine] | None = None
+    machine_at: Callable[[Mapping[str, float]], th.MachineDescription] | None = None
     scaling: Scaling | None = None
     from_machine: tuple[str, ...] = ()
     corrections: Corrections = NONE
@@ -84,7 +83,7 @@ class Problem:
     def _without_feedback(self) -> Network:
         return without_feedback(self.network, max(s.limit for s in self.spots))
 
-    def of(self, x: Sequence[float] | Array) -> Performance:
+    def of(self, x: Sequence[float] | th.Array) -> Performance:
         """The design at a point of the space."""
         try:
             return self.judged(self.space.named(x))
@@ -116,14 +115,12 @@ class Problem:
         return Performance(objectives, {**excess, **limits}, places, inputs, "runaway" * runaway)
 
     def _inputs(
-        self, design: Mapping[str, float], machine: Machine | None
+        self, design: Mapping[str, float], machine: th.MachineDescription | None
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Of the network; and what the drive misses of its cycle."""
         out = {**self.inputs, **{n: u for n, u in design.items() if n in self.inputs}}
         if machine is not None:
-            from thermoscope.plugin import rated_inputs
-
-            rated = rated_inputs(machine)
+            rated = th.rated_inputs(machine)
             out |= {n: rated[n] for n in self.from_machine}
         if self.driven is None:
             return out, {}
@@ -141,7 +138,7 @@ class Problem:
         return again, True
 
     def _temperatures(
-        self, rest: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: Array
+        self, rest: Rest, values: Mapping[str, float], inputs: Mapping[str, float], share: th.Array
     ) -> tuple[dict[str, float], float]:
         """Place -> degC, of the hottest point; the settling time (s) of the hottest of the first `peak` places."""
         around = float(np.mean(list(self.boundaries.values())))
@@ -150,7 +147,7 @@ class Problem:
             T, rows[s.name] = s.hottest(rest.z)
             out[s.name] = around + (T - around) * self.corrections.ratio(s.name, share)
             if self.sure is not None:
-                out[s.name] += NORMAL_95 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
+                out[s.name] += th.NORMAL_95 * self.sure.sd(values, inputs, self.boundaries, rows[s.name])
         hottest = max([s.name for s in self.spots][: self.peak], key=lambda name: out[name])
         return out, rest.settling(rows[hottest])
 

@@ -15,25 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from thermoscope import Network, Record
-from thermoscope.plugin import (
-    Array,
-    Law,
-    Linear,
-    Row,
-    Scaled,
-    WithTemperature,
-    assembly,
-    coefficient,
-    compiled,
-    grows,
-    loss_slope,
-    multipliers,
-    solve_steady_start,
-    tell_reach,
-    temperature_value,
-    work,
-)
-from thermoscope.plugin import integration_stages as stages
+from thermoscope import plugin as th
 
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
 SMALLEST = 1e-6  # of the largest heat capacity: what stands for none
@@ -45,18 +27,18 @@ GRID = np.geomspace(1e-4, 10.0, 400)  # of the slowest time constant
 class Rest:
     """z (n + n_boundaries,) degC;  A (n, n) 1/s;  start (n,) : the state from which it settles;  stable : no runaway"""
 
-    z: Array
-    A: Array
-    start: Array
+    z: th.Array
+    A: th.Array
+    start: th.Array
     stable: bool
 
     @cached_property
-    def modes(self) -> tuple[Array, Array]:
+    def modes(self) -> tuple[th.Array, th.Array]:
         """Rates (n,) 1/s and their shapes (n, n), complex where a stream turns them."""
         rate, shapes = np.linalg.eig(self.A)
         return rate, shapes
 
-    def settling(self, row: Row) -> float:
+    def settling(self, row: th.Row) -> float:
         """Seconds after which a temperature stays within 5 % of its rise."""
         rate, shapes = self.modes
         n = rate.size
@@ -74,47 +56,48 @@ def rest(
     network: Network, values: Mapping[str, float], inputs: Mapping[str, float], boundaries: Mapping[str, float]
 ) -> Rest | None:
     """At constant inputs from all at the mean of the boundaries (settling starts there too); None without a rest."""
-    core = compiled(network, Record(np.zeros(1), inputs, boundaries), values)
+    core = th.compiled(network, Record(np.zeros(1), inputs, boundaries), values)
     n, u = len(network.states), core.forcing.u[0]
     hidden = np.array(["#" in s for s in network.states], bool)
     cold = np.where(hidden, 0.0, u.mean() if u.size else 20.0)
-    both, scratch = stages(cold + np.where(hidden, 0.0, ABOVE_K), u, core.terms), work(n, u.size, core.terms, 0)
+    both = th.integration_stages(cold + np.where(hidden, 0.0, ABOVE_K), u, core.terms)
+    scratch = th.work(n, u.size, core.terms, 0)
     zero = np.zeros(n)
-    if not solve_steady_start(zero, core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch):
+    if not th.solve_steady_start(zero, core.K0, core.terms, core.tangents, core.forcing.factor[0], both, scratch):
         return None
     C, z = np.maximum(core.C, SMALLEST * core.C.max()), both.z[0, :-1].copy()
     stable = bool(np.linalg.eigvals(scratch.G[:, :n]).real.min() > 0.0)
     if stable:
-        tell_reach(core, z)
+        th.tell_reach(core, z)
     return Rest(z, _slopes(network, values, inputs, z) / C[:, None], cold, stable)
 
 
-def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, float], z: Array) -> Array:
+def _slopes(network: Network, values: Mapping[str, float], inputs: Mapping[str, float], z: th.Array) -> th.Array:
     """K - dq/dT (n, n) W/K at temperatures z."""
-    n, every = len(network.states), assembly(network)
-    m, at = multipliers(network, values), {name: np.array([float(u)]) for name, u in inputs.items()}
+    n, every = len(network.states), th.assembly(network)
+    m, at = th.multipliers(network, values), {name: np.array([float(u)]) for name, u in inputs.items()}
     strength = np.array(
         [
             m.get(p.name, 1.0)
-            * (coefficient(p.law, at, p.hot.at(z), p.cold.at(z)) if p.touches else float(np.mean(p.law.factor(at))))
+            * (th.coefficient(p.law, at, p.hot.at(z), p.cold.at(z)) if p.touches else float(np.mean(p.law.factor(at))))
             for p in every.patterns
         ]
     )
     G = every.matrix(strength)[:, :n]
     for s, c in zip(network.sources, strength[len(network.links) :], strict=True):
-        if slope_1_K := loss_slope(s.law.temperature, s.probe.at(z), at):
+        if slope_1_K := th.loss_slope(s.law.temperature, s.probe.at(z), at):
             slope = c * slope_1_K * s.weights
             np.subtract.at(G, (s.index[:, None], s.probe.index[None, :]), np.outer(slope, s.probe.weights))
     return G
 
 
 def losses(
-    network: Network, values: Mapping[str, float], inputs: Mapping[str, float], z: Array, kinds: Sequence[str]
+    network: Network, values: Mapping[str, float], inputs: Mapping[str, float], z: th.Array, kinds: Sequence[str]
 ) -> float:
     """Heat (W) of the sources of some kinds at temperatures z."""
-    m, at = multipliers(network, values), {n: np.array([float(u)]) for n, u in inputs.items()}
+    m, at = th.multipliers(network, values), {n: np.array([float(u)]) for n, u in inputs.items()}
     sources = [s for s in network.sources if s.kind in kinds]
-    watts = [coefficient(s.law, at, s.probe.at(z), 0.0) for s in sources]
+    watts = [th.coefficient(s.law, at, s.probe.at(z), 0.0) for s in sources]
     return sum(m.get(s.name, 1.0) * w for s, w in zip(sources, watts, strict=True))
 
 
@@ -123,10 +106,10 @@ def without_feedback(network: Network, T: float) -> Network:
 
     It is above T where the true one is above T or runs away, and below where that one is: which one, a limit can ask.
     """
-    hot = (replace(s, law=_at(s.law, T)) if grows(s.law) else s for s in network.sources)
+    hot = (replace(s, law=_at(s.law, T)) if th.grows(s.law) else s for s in network.sources)
     return replace(network, sources=tuple(hot))
 
 
-def _at(law: Law, T: float) -> Law:
+def _at(law: th.Law, T: float) -> th.Law:
     """Another law at a temperature of its own (degC)."""
-    return WithTemperature(Scaled(law, temperature_value(law.temperature, T, T)), Linear(0.0, T))
+    return th.WithTemperature(th.Scaled(law, th.temperature_value(law.temperature, T, T)), th.Linear(0.0, T))

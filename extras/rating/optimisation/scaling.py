@@ -10,20 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from thermoscope import Network, Parameter
-from thermoscope.plugin import (
-    FLOW,
-    Law,
-    Part,
-    Place,
-    Surroundings,
-    coefficient,
-    face_films,
-    loop_length,
-    onto_outlet,
-    stem,
-    surroundings,
-)
-from thermoscope.plugin import MachineDescription as Machine
+from thermoscope import plugin as th
 
 DIFFERENCE_K = 30.0  # at which still films of two sizes are compared: both go with the difference to the same power
 
@@ -38,14 +25,14 @@ def design_parameters(network: Network) -> list[Parameter]:
 class Scaling:
     """Of the network of one machine; what the machine itself is needs to be looked at once."""
 
-    def __init__(self, network: Network, machine: Machine) -> None:
+    def __init__(self, network: Network, machine: th.MachineDescription) -> None:
         self.machine, self.places = machine, [p for p in network.places.values() if p.kind == "surface" and p.fluid]
         self.volumes = {p.name: p.volume for p in machine.parts}
         self.liquids = {p.name for p in machine.fluids if p.material != "air"}
-        self.here = Films(surroundings(machine, ()))
+        self.here = Films(th.surroundings(machine, ()))
         self.known = {f"design {link.name}" for link in network.links}
 
-    def of(self, machine: Machine, inputs: Mapping[str, float]) -> dict[str, float]:
+    def of(self, machine: th.MachineDescription, inputs: Mapping[str, float]) -> dict[str, float]:
         """Values of `design_parameters` that make the network one of another machine, at an operating point.
 
         Only faces are looked at whose part or fluid has another shape.
@@ -54,17 +41,17 @@ class Scaling:
         differing = {p.name for p in (*machine.parts, *machine.fluids) if before.get(p.name) != p.prisms}
         if not differing:
             return {}
-        there = Films(surroundings(machine, ()))
+        there = Films(th.surroundings(machine, ()))
         out = {
             f"design capacity:{p.name}": p.volume / self.volumes[p.name] for p in machine.parts if p.name in differing
         }
         for face in self.places:
-            if face.part in differing or stem(str(face.fluid)) in differing:
+            if face.part in differing or th.stem(str(face.fluid)) in differing:
                 out |= self._face(face, there, inputs)
         return out
 
-    def _face(self, face: Place, there: Films, inputs: Mapping[str, float]) -> dict[str, float]:
-        fluid = stem(str(face.fluid))
+    def _face(self, face: th.Place, there: Films, inputs: Mapping[str, float]) -> dict[str, float]:
+        fluid = th.stem(str(face.fluid))
         areas = self.area_ratio(there, face.part, fluid)
         if fluid in self.liquids:
             cell = sum(p.area or 0.0 for p in self.places if p.fluid == face.fluid)
@@ -85,15 +72,15 @@ class Scaling:
 class Films:
     """Films and walls of a machine's parts, worked out once each: many faces of a part are alike."""
 
-    def __init__(self, around: Surroundings) -> None:
+    def __init__(self, around: th.Surroundings) -> None:
         self.around = around
-        self._laws: dict[tuple[str, str], Mapping[str, Law]] = {}
+        self._laws: dict[tuple[str, str], Mapping[str, th.Law]] = {}
         self._walls: dict[str, float] = {}
 
-    def laws(self, part: str, fluid: str) -> Mapping[str, Law]:
+    def laws(self, part: str, fluid: str) -> Mapping[str, th.Law]:
         """Mechanism -> law of its faces to a fluid."""
         if (part, fluid) not in self._laws:
-            self._laws[part, fluid] = face_films(part, fluid, self.around)
+            self._laws[part, fluid] = th.face_films(part, fluid, self.around)
         return self._laws[part, fluid]
 
     def walls(self, part: str) -> float:
@@ -103,19 +90,19 @@ class Films:
         return self._walls[part]
 
 
-def _conductance(where: Surroundings, jacket: str, area: float, inputs: Mapping[str, float]) -> float:
+def _conductance(where: th.Surroundings, jacket: str, area: float, inputs: Mapping[str, float]) -> float:
     """Of one cell's walls onto what leaves it (W/K)."""
     cooling = where.cooling
     assert cooling is not None
-    return area * float(onto_outlet(where.machine, jacket, cooling, area).size({FLOW: np.array(inputs[FLOW])}))
+    return area * float(th.onto_outlet(where.machine, jacket, cooling, area).size({th.FLOW: np.array(inputs[th.FLOW])}))
 
 
-def _value(law: Law, inputs: Mapping[str, float]) -> float:
+def _value(law: th.Law, inputs: Mapping[str, float]) -> float:
     at = {name: np.array([float(u)]) for name, u in inputs.items()}
-    return coefficient(law, at, 20.0 + DIFFERENCE_K, 20.0)
+    return th.coefficient(law, at, 20.0 + DIFFERENCE_K, 20.0)
 
 
-def _walls(part: Part) -> float:
+def _walls(part: th.Part) -> float:
     """Area (m2) of all walls along the axis, and of the ends of rings."""
-    sides = sum(loop_length(loop) * (z1 - z0) for profile, z0, z1 in part.prisms for loop in profile.loops)
+    sides = sum(th.loop_length(loop) * (z1 - z0) for profile, z0, z1 in part.prisms for loop in profile.loops)
     return float(sides + sum(2.0 * profile.area for profile, _, _ in part.prisms if profile.holes))

@@ -15,7 +15,7 @@ import numpy as np
 
 from extras.rating.optimisation.problem import Performance, Problem
 from thermoscope import InputError, MissingDependency
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 Progress = Callable[[str], None]
 Method = Callable[[int, int, int], Any]
@@ -26,7 +26,7 @@ CHUNKS = 16  # tasks per generation on a cluster
 class Design:
     """x : point of the space;  performance : what it does"""
 
-    x: Array
+    x: th.Array
     performance: Performance
 
 
@@ -117,7 +117,7 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
                 xu=space.high,
             )
 
-        def _evaluate(self, X: Array, out: dict[str, Array], *args: Any, **others: Any) -> None:
+        def _evaluate(self, X: th.Array, out: dict[str, th.Array], *args: Any, **others: Any) -> None:
             designs = judged(problem, X, executor)
             archive.extend(Design(x, p) for x, p in zip(X, designs, strict=True))
             out["F"] = np.array([[p.objectives[o] for o in problem.aimed] for p in designs])
@@ -126,7 +126,7 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
     return Judged()
 
 
-def judged(problem: Problem, X: Sequence[Array] | Array, executor: Executor | None = None) -> list[Performance]:
+def judged(problem: Problem, X: Sequence[th.Array] | th.Array, executor: Executor | None = None) -> list[Performance]:
     """What the designs X (n, k) do."""
     if executor is None:
         return [problem.of(x) for x in X]
@@ -134,7 +134,7 @@ def judged(problem: Problem, X: Sequence[Array] | Array, executor: Executor | No
     return [p for job in jobs for p in job.result()]
 
 
-def _some(problem: Problem, X: Array) -> list[Performance]:
+def _some(problem: Problem, X: th.Array) -> list[Performance]:
     return [problem.of(x) for x in X]
 
 

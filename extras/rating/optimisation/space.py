@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermoscope.plugin import Array
+from thermoscope import plugin as th
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class Space:
     variables: tuple[Variable, ...]
 
     @property
-    def low(self) -> Array:
+    def low(self) -> th.Array:
         return np.array([v.low for v in self.variables])
 
     @property
-    def high(self) -> Array:
+    def high(self) -> th.Array:
         return np.array([v.high for v in self.variables])
 
     @property
@@ -45,11 +45,11 @@ class Space:
         """Name -> its value in the reference."""
         return {v.name: v.usual for v in self.variables}
 
-    def named(self, x: Sequence[float] | Array) -> dict[str, float]:
+    def named(self, x: Sequence[float] | th.Array) -> dict[str, float]:
         """Name -> value; integers rounded."""
         return {v.name: float(round(u)) if v.whole else float(u) for v, u in zip(self.variables, x, strict=True)}
 
-    def share(self, values: Mapping[str, float]) -> Array:
+    def share(self, values: Mapping[str, float]) -> th.Array:
         """(k,) how far each variable that changes conduction is from the reference, in widths of its range."""
         conducting = [v for v in self.variables if v.conducts]
         return np.array([(values[v.name] - v.usual) / (v.high - v.low) for v in conducting])

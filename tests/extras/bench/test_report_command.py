@@ -75,7 +75,7 @@ def without_readings(more=""):
 @pytest.fixture
 def report(thermoscope, tmp_path, monkeypatch):
     """report(text) -> Answer of the command on a record; its files are in tmp_path/out, printed by nobody."""
-    monkeypatch.setattr("extras.bench.heat_run.page.write_pdf", lambda page: None)
+    monkeypatch.setattr("thermoscope.plugin.write_pdf", lambda page: None)
 
     def run(text, *more):
         (tmp_path / "motor.toml").write_text(text)
@@ -220,7 +220,7 @@ def two_bodies(seconds, off_s, current=15.0):
 
 def test_way_back_along_the_network_of_a_case(thermoscope, tmp_path, monkeypatch):
     """From readings that begin 30 s late the network of the case finds the truth at switching off within 0.1 K."""
-    monkeypatch.setattr("extras.bench.heat_run.page.write_pdf", lambda page: None)
+    monkeypatch.setattr("thermoscope.plugin.write_pdf", lambda page: None)
     off, later = 72000.0, np.arange(30.0, 331.0, 15.0)
     load = np.arange(0.0, off + 1.0, 600.0)
     T = two_bodies(np.append(load, off + later), off)
@@ -258,7 +258,7 @@ def test_pdf_is_one_page(thermoscope, tmp_path):
 )
 def test_machines_of_the_second_paper(thermoscope, root, tmp_path, monkeypatch, case, test, verdict):
     """The true rise at switching off lies within the fits' own uncertainty; what the standard counts is lower."""
-    monkeypatch.setattr("extras.bench.heat_run.page.write_pdf", lambda page: None)
+    monkeypatch.setattr("thermoscope.plugin.write_pdf", lambda page: None)
     truth = tomllib.loads((root / "simulated/pmsm.truth.toml").read_text())[test]
     rise = truth["winding_degC"] - truth["ambient_degC"]
     folder = root / "cases" / case

@@ -9,8 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import lumped
+from extras.export.document import factor
 from extras.export.expansion import expanded
-from extras.export.products import value
+from extras.export.runtime.reference_solver import function
 from extras.export.tables import factors
 from geom.errors import InputError
 from lumped.correlations.ducts import duct_film
@@ -31,6 +32,16 @@ from validation.effects.build import Shaped
 from validation.effects.losses.iron_pwm import Ripple
 from validation.effects.streams.fouling import hours
 from validation.parameters.model_form import ExponentError, exponent_derivative
+
+
+def value(total, inputs):
+    """At every instant, by the solver that is written beside an exported model."""
+    products = factor(total)
+    instants = [dict(zip(inputs, u)) for u in zip(*inputs.values())]
+    return np.array(
+        [sum(p["coefficient"] * np.prod([function(f, u) for f in p["functions"]]) for p in products) for u in instants]
+    )
+
 
 COPPER = EddyLoss(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), (1.1, 0.02, 0.4), "speed_rpm", 4000.0)
 MAP = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0), ((0.0, 1.0), (5.0, 9.0), (20.0, 60.0)), torque="iq_A")

@@ -20,7 +20,7 @@ from lumped.correlations.contacts import (
 from lumped.correlations.ducts import duct_film, hausen_laminar, shah_london, staton_rectangle
 from lumped.correlations.end_space import end_space
 from lumped.correlations.fins import heiles, van_de_pol_tierney
-from lumped.correlations.forced import churchill_bernstein, churchill_mixed, flat_plate
+from lumped.correlations.forced import churchill_bernstein, flat_plate
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate
 from lumped.correlations.rotating import saari_windage
 from lumped.correlations.windings import mellor as mellor_circuit
@@ -139,12 +139,6 @@ def test_windage_is_zero_at_rest_and_near_cubic_at_speed():
     assert saari_windage(0.0, 0.1, 0.001, 0.2)[0] == 0.0
     low, high = (saari_windage(w, 0.1, 0.001, 0.2)[0] for w in (300.0, 600.0))
     assert 2.2 < math.log2(high / low) < 3.0
-
-
-def test_opposing_films_cancel_and_assisting_ones_add():
-    assert churchill_mixed(5.0, 5.0, assisting=False) == 0.0
-    assert churchill_mixed(5.0, 0.0) == pytest.approx(5.0)
-    assert churchill_mixed(5.0, 5.0) == pytest.approx(5.0 * 2 ** (1 / 3))
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from lumped.correlations import RangeWarning, air_gap, contacts, ducts, natural, rotating
 from lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
 from lumped.correlations.fins import heiles, heiles_decaying, mean_of_decay, straight_decay
-from lumped.correlations.views import coaxial_discs, groove, parallel_rectangles
+from lumped.correlations.views import coaxial_discs, parallel_rectangles
 from lumped.transfer.properties import air
 
 
@@ -54,8 +54,6 @@ def test_view_factors_are_the_published_values():
     assert parallel_rectangles(1.0, 1.0, 1.0) == pytest.approx(0.1998, abs=5e-5)
     assert coaxial_discs(1.0, 2.0, 1.5) == pytest.approx(coaxial_discs(2.0, 1.0, 1.5) * 4.0, rel=1e-12)
     assert parallel_rectangles(1.0, 1.0, 1e-6) == pytest.approx(1.0, abs=1e-4)
-    assert groove(0.0, 1.0) == 1.0
-    assert groove(1.0, 1.0) == pytest.approx(math.sqrt(2) - 1)
 
 
 def test_disc_friction_is_the_moment_of_von_karman():

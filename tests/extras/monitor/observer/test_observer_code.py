@@ -143,7 +143,7 @@ def test_sensors_of_a_small_network_are_as_unsure_as_it_is_off_the_large_one(tmp
     rows = {(t.name, c.name): c.row for t in folder.case.tests for c in t.channels}
     case = replace(folder.case, low=LowFidelity(large, small, rows))
     both = replace(folder, case=case, built=TwoNetworks(large, small, NONE, NONE))
-    monkeypatch.setattr(command, "open_case", lambda name, tell: both)
+    monkeypatch.setattr("thermoscope.plugin.open_case", lambda name, tell: both)
     assert command.export_observer("three", tmp_path, {}, (), str(tmp_path / "said.json")) == 0
 
     one = next(t for t in case.tests if t.role == "calibrate")
