@@ -48,7 +48,7 @@ class SharedBlockage(Blockage):
     sits = "a boundary that cools more than one part"
     source = "definition: films of one flow of air or coolant follow it together"
     isolating_test = "read the flow or the fan's speed; clean the filter; repeat the test without a cover"
-    confused_with = ("blockage", "flow", "loss.factor")
+    confused_with = ("blockage", "flow")
     temporary = True
 
     @property
