@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,8 @@ def loaded_when_used(
         if name == "__all__":
             return names()
         if name not in typed_homes(Path(file)):
+            if find_spec(f"{package}.{name}"):  # `from package import module` looks here before it imports that
+                return import_module(f"{package}.{name}")
             if name in offered():
                 return offered()[name]
             every = [*names(), *offered()]

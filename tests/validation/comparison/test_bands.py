@@ -62,6 +62,7 @@ def test_stretch_by_stretch_they_are_the_same(monkeypatch):
     whole, last = bands(of, test, places(network)), at_end(of, test)
     monkeypatch.setattr("validation.bands.band.NUMBERS", 1)
     monkeypatch.setattr("validation.comparison.linearisation.SHORTEST", 7)
+    monkeypatch.setattr("validation.bands.band.FEWEST", 7)
     parts = list(band_stretches(of, test, places(network)))
     assert max(part.time.size for part in parts) == 7
     assert_allclose(np.concatenate([part.time for part in parts]), TIME)

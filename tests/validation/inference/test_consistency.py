@@ -14,6 +14,7 @@ from validation.consistency import doubts_check, free_network_check, persistence
 from validation.diagnosis import infer
 from validation.inference.decide import Decision, consistent_decision
 from validation.inference.result import Check, Remainder
+from validation.scope import Scope
 
 
 def moved_probe(share):
@@ -32,13 +33,21 @@ def moved_probe(share):
 
 @pytest.fixture(scope="module")
 def found():
-    return diagnose(moved_probe(0.5), plan=False)
+    return diagnose(moved_probe(0.5), plan=False, scope=Scope(without=("sensor.loose",)))
+
+
+def test_a_probe_between_part_and_air_has_a_name():
+    found = diagnose(moved_probe(0.5), plan=False)
+    assert found.verdict == "data"
+    assert found.groups[0] == ("sensor.loose@core in dusk",)
+    (row,) = [c for c in found.candidates if c.effect == found.groups[0][0]]
+    assert row.value == pytest.approx(0.5, abs=0.1)
 
 
 def test_a_record_far_beyond_its_uncertainty_is_not_adequate(found):
     """Half of a rise of 14 K at a sensor of 0.3 K, which no effect explains."""
     assert found.verdict == "outside"
-    assert found.words.startswith("core in dusk reads ")
+    assert found.words.startswith("as asked, without sensor.loose; core in dusk reads ")
     assert "times its uncertainty: nothing in the catalogue explains it" in found.words
     assert "in that test the sensor or its place differed" in found.words
     assert found.named == ()
