@@ -38,7 +38,8 @@ def loaded_when_used(
         if name == "__all__":
             return names()
         if name not in typed_homes(Path(file)):
-            if find_spec(f"{package}.{name}"):  # `from package import module` looks here before it imports that
+            inside = "__path__" in vars(sys.modules[package]) and find_spec(f"{package}.{name}")
+            if inside:  # `from package import module` looks here before it imports that
                 return import_module(f"{package}.{name}")
             if name in offered():
                 return offered()[name]
