@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,7 +26,17 @@ SHIFTS = ("boundary", "initial")
 GAIN_ZERO = 20.0  # degC, at which sensors are compared
 STEP = {"lag": 0.05, "delay": 0.05}  # s, of a difference quotient; chosen, small beside any sample step
 Memory = dict[str, Array]
-NOTHING: Mapping[str, tuple[str, str, Array]] = MappingProxyType({})
+
+
+class While(NamedTuple):
+    """What acts on a channel for a while.  share : (n_time,) of each sample in which it does"""
+
+    kind: str
+    channel: str
+    share: Array
+
+
+NOTHING: Mapping[str, While] = MappingProxyType({})
 
 
 # The cubic spline without knots at its second points (de Boor 1978, ch. IV), for thousands of columns at once. SciPy's
@@ -134,7 +145,7 @@ class Stretch:
 
     memory : variant -> how far its sensors are behind at the end of what was read last. A stretch that follows another
         starts with the time at which that ended.
-    whiles : what acts on a channel for a while -> its kind, the channel, and the share of each sample in which it does
+    whiles : what a parameter acts on for a while -> what that is
     """
 
     time: Array
@@ -142,7 +153,7 @@ class Stretch:
     began: float
     channels: tuple[Channel, ...]
     memory: Memory
-    whiles: Mapping[str, tuple[str, str, Array]] = field(default_factory=dict)
+    whiles: Mapping[str, While]
 
     def read(self, T: Array, now: Mapping[str, float], variant: str = "", linear: bool = False) -> Array:
         """Readings (n_time, n_channel, ...) from temperatures that are delayed already; linear: without the constants.
@@ -164,9 +175,10 @@ class Stretch:
 
         def each(kind: str) -> Array:
             every = np.array([now.get(f"{kind}:{c.name}", 0.0) for c in channels]).reshape(columns)
-            for key in [key for key, (of, *_) in self.whiles.items() if of == kind and key in now]:
-                _, name, share = self.whiles[key]
-                every = every + now[key] * share.reshape(rows) * np.reshape([c.name == name for c in channels], columns)
+            for key, w in self.whiles.items():
+                if w.kind == kind and key in now:
+                    mine = np.reshape([c.name == w.channel for c in channels], columns)
+                    every = every + now[key] * w.share.reshape(rows) * mine
             return every
 
         stem, gain, bias, drift = each("stem"), each("gain"), each("bias"), each("drift")
@@ -185,12 +197,12 @@ class Stretch:
 
 
 def stretch_of(
-    network: Network, test: Test, some: slice, memory: Memory, whiles: Mapping[str, tuple[str, str, Array]] = NOTHING
+    network: Network, test: Test, some: slice, memory: Memory, whiles: Mapping[str, While] = NOTHING
 ) -> Stretch:
     """The samples of a test from some.start to some.stop; whiles of all its samples."""
     air = test.boundaries.get(ambient(network) or "")
     around = None if air is None else np.broadcast_to(np.asarray(air, float), test.time.shape)[some]
-    here = {key: (kind, name, share[some]) for key, (kind, name, share) in whiles.items()}
+    here = {key: w._replace(share=w.share[some]) for key, w in whiles.items()}
     return Stretch(test.time[some], around, float(test.time[0]), test.channels, memory, here)
 
 

@@ -22,6 +22,7 @@ from measured.sensors.operators import (
     SHIFTS,
     Memory,
     Stretch,
+    While,
     head,
     moved,
     setting,
@@ -185,9 +186,9 @@ class Watch:
         self.hot = [*hot, *shift_of]
         moving = [tangents[i] for i in hot], list(shift_of.values())
         self.course = Course(bare, test, heat, self.now, *moving, precision)
-        every = {target for p in (*network.parameters, *tangents) for target, _ in p.targets}
+        every = {*self.now, *(target for p in tangents for target, _ in p.targets)}
         self.whiles = {
-            target: (*channel_of(target), holds(target.rpartition(IN)[2], test))
+            target: While(*channel_of(target), holds(target.rpartition(IN)[2], test))
             for target in every
             if IN in target and target.startswith(SENSORS)
         }

@@ -82,7 +82,7 @@ class During(Effect):
     def extend(self, network: Network) -> Network:
         larger = self.base.extend(network)
         amplitude = replace(larger.parameters[-1], prior_sd=USUAL["switched"] * larger.parameters[-1].prior_sd)
-        if of_measurement(amplitude) and not self.base.of_tests and self.base.temporary:
+        if self.base.temporary and of_measurement(amplitude):
             targets = tuple((f"{t}{IN}{self.condition}", factor) for t, factor in amplitude.targets)
             return with_parameter(network, replace(amplitude, name=self.name, targets=targets))
         if amplitude.mapping == "amplitude":

@@ -29,7 +29,7 @@ from validation.effects.during import During
 from validation.effects.registry import catalogue, effect, kinds
 from validation.effects.time_window import Event, event
 from validation.inference.columns import amplitudes, effect_columns
-from validation.inference.events import TimedEvent, predicted_repeats, timed_event
+from validation.inference.events import TimedEvent, predicted_repeats, time_around, timed_event
 from validation.inference.evidence import Evidence, Progress
 from validation.inference.hypotheses import NOTHING, condition_prior, is_rare, law_prior, repeats_price
 from validation.inference.missing_heat import MissingHeat, Scan
@@ -255,9 +255,11 @@ def loose_sensors(evidence: Evidence, sensors: Sequence[Effect], values: Values,
     out = []
     for e, t in sorted(pairs, key=lambda x: -worth[x[0].name, x[1].name])[:LOOSE]:
         at = np.unique(t.time[groups(t.time.size)][1:-1])
+        if not at.size:
+            continue
         bayes = slip_bayes(evidence, [(e, t, float(x)) for x in at], values)
         prior = condition_prior(share / len(evidence.tests))
-        density = float(logsumexp(bayes - bayes.max() + np.log(np.gradient(at) / np.ptp(t.time))))
+        density = float(logsumexp(bayes - bayes.max() + np.log(time_around(at) / np.ptp(t.time))))
         effect = slipped(e, t, float(at[np.argmax(bayes)]))
         out.append(Promising(effect, prior + density, float(bayes.max()) + prior + density - NOTHING.log_prior))
     return out
@@ -270,12 +272,7 @@ def slipped(sensor: Effect, test: Test, since: float) -> During:
 
 def slip_bayes(evidence: Evidence, many: Sequence[tuple[Effect, Test, float]], values: Values) -> Array:
     """Log Bayes factor by its tangent of each (sensor, test, since when) against nothing."""
-    effects = [slipped(*one) for one in many]
-    parameters = amplitudes(evidence.fit.network, effects)
-    scores = fit_score(
-        evidence.fit, effect_columns(evidence.fit, evidence.tests, effects, values), np.ones(len(many), int)
-    )
-    return scores.log_bayes(np.array([p.prior_sd for p in parameters]))
+    return tangent_bayes(evidence, [slipped(*one) for one in many], values)[0]
 
 
 def timed_worth(
@@ -295,18 +292,23 @@ def tangent_worth(
 
     share : of the prior of all conditions
     """
-    effects, fit, prior = [During.of(base, condition) for base in bases], evidence.fit, condition_prior(share)
-    parameters = amplitudes(fit.network, effects)
-    parts = effect_columns(fit, evidence.tests, effects, values)
-    scores = fit_score(fit, parts, np.array([q.sign for q in parameters], int))
-    bayes = scores.log_bayes(np.array([q.prior_sd for q in parameters]))
+    effects, prior = [During.of(base, condition) for base in bases], condition_prior(share)
+    bayes, visible = tangent_bayes(evidence, effects, values)
     if occurrence := event(condition):
         bayes -= repeats_price(evidence.tests, occurrence)
     return [
         Promising(e, prior, float(b) + prior - NOTHING.log_prior)
-        for e, b, visible in zip(effects, bayes, scores.visible, strict=True)
-        if visible
+        for e, b, shows in zip(effects, bayes, visible, strict=True)
+        if shows
     ]
+
+
+def tangent_bayes(evidence: Evidence, effects: Sequence[Effect], values: Values) -> tuple[Array, NDArray[np.bool_]]:
+    """(K,) log Bayes factors of effects against nothing by their tangents, and which of them leave any trace."""
+    parameters = amplitudes(evidence.fit.network, effects)
+    parts = effect_columns(evidence.fit, evidence.tests, effects, values)
+    scores = fit_score(evidence.fit, parts, np.array([q.sign for q in parameters], int))
+    return scores.log_bayes(np.array([q.prior_sd for q in parameters])), scores.visible
 
 
 def law_errors(evidence: Evidence, values: Values) -> dict[Effect, float]:
@@ -322,10 +324,9 @@ def law_errors(evidence: Evidence, values: Values) -> dict[Effect, float]:
     if not effects:
         return {}
     prior = law_prior(1.0 / len(effects))
-    scores = fit_score(evidence.fit, effect_columns(evidence.fit, evidence.tests, effects, values))
-    scale = np.array([q.prior_sd for q in amplitudes(evidence.fit.network, effects)])
-    worth = scores.log_bayes(scale) + prior - NOTHING.log_prior
-    rows = [Promising(e, prior, float(x)) for e, x, shows in zip(effects, worth, scores.visible, strict=True) if shows]
+    bayes, visible = tangent_bayes(evidence, effects, values)
+    worth = bayes + prior - NOTHING.log_prior
+    rows = [Promising(e, prior, float(x)) for e, x, shows in zip(effects, worth, visible, strict=True) if shows]
     return {c.effect: prior for c in best(rows, LAWS)}
 
 

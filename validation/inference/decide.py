@@ -285,12 +285,13 @@ def half_posterior(posterior: Posterior, first: int) -> Posterior:
         if h.fit and h.members
     }
     best = max((h for h in every if h.members in bayes), key=lambda h: h.log_bayes, default=None)
-    whole, half = bayes[best.members] if best else (0.0, 0.0)
-    nothing = (
-        max(whole - best.log_bayes, 0.0) * (1.0 - np.clip(half / whole, 0.0, 1.0)) if best and whole > 0.0 else 0.0
-    )
+    if best is None:
+        return replace(posterior, evidence=new)
+    whole, half = bayes[best.members]
+    lost = 1.0 - float(np.clip(half / whole, 0.0, 1.0)) if whole > 0.0 else 0.0
+    nothing = lost * max(whole - best.log_bayes, 0.0)  # of its gain by a noise of its own
     gained = {members: now - was + nothing for members, (was, now) in bayes.items()}
-    share = max(gained[best.members] / best.log_bayes, -1.0) if best and best.log_bayes > 0.0 else 0.0
+    share = max(gained[best.members] / best.log_bayes, -1.0) if best.log_bayes > 0.0 else 0.0
     increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
     now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))
     return replace(posterior, evidence=new, hypotheses=now)

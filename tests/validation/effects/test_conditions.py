@@ -338,3 +338,19 @@ def test_what_blocks_a_face_blocks_the_film_that_an_effect_brought(order):
     right = predict(bare, measured("day"), {}).y
     assert predict(adopted, measured("day"), amplitudes).y == pytest.approx(right, abs=1e-6)
     assert predict(on_trial, measured("day"), amplitudes).y[-1, 0] < right[-1, 0] - 1.0, "on trial each stands alone"
+
+
+@pytest.mark.parametrize("rows", [3, 4])
+def test_a_record_of_few_rows_is_diagnosed(rows):
+    """With three there is one instant at which a sensor may have come loose."""
+
+    def few(test):
+        at = np.linspace(0, test.time.size - 1, rows).astype(int)
+        air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[at] for n, u in test.boundaries.items()}
+        read = tuple(replace(c, y=c.y[at]) for c in test.channels)
+        return replace(
+            test, time=test.time[at], inputs={n: u[at] for n, u in test.inputs.items()}, boundaries=air, channels=read
+        )
+
+    case = bench(())
+    assert diagnose(replace(case, tests=tuple(map(few, case.tests))), plan=False).verdict == "adequate"
