@@ -30,6 +30,9 @@ TABLE: Mapping[str, Line] = MappingProxyType(
         "start": Line(0.5, "K", "a machine that stood overnight is uneven by half a kelvin"),
         "gain": Line(0.03, "1", "a thermocouple's place has another share of the rise than the node's mean"),
         "gain of stream": Line(0.1, "1", "a stream is not of one temperature: no thermometer reads its mean"),
+        "gain of reading": Line(
+            0.004, "1", "class 1 thermocouples (IEC 60584-1), where a node is what its sensor reads"
+        ),
         "lag": Line(10.0, "s", "diffusion in the part a sensor sits in, L^2 / 2a of some centimetres of metal"),
         "boundary": Line(0.5, "K", "a thermometer of room or inlet reads one spot"),
         "clock": Line(1.0, "s", "recorders are started by hand or by a trigger"),

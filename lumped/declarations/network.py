@@ -144,7 +144,8 @@ def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Ite
     places = dict(network.places) | {c: replace(network.places[c], kind="fluid") for c in cells}
     for i, (name, table) in enumerate(nodes.items()):
         kind = table.word("kind", "node", ("node", "part", "fluid"))
-        places[name] = replace(places[name], kind=kind)  # type: ignore[arg-type]
+        reading = table.flag("reading") if "reading" in table else False
+        places[name] = replace(places[name], kind=kind, reading=reading)  # type: ignore[arg-type]
         if "area_m2" in table:
             face = f"{name}.outer"
             fluid = _end(network, table, table.word("washed_by"))

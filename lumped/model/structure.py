@@ -47,6 +47,7 @@ class Place:
     area : m2, or None where unknown (then links carry W/K and films cannot be made from h)
     fluid : name of the state or boundary that washes it, if any
     channel : of a cell that a stream passes with others, the channel they make up
+    reading : whether it is what a sensor reads, and nothing larger
     """
 
     name: str
@@ -58,6 +59,7 @@ class Place:
     area: float | None = None
     fluid: str | None = None
     channel: str | None = None
+    reading: bool = False
 
     @property
     def mean(self) -> Row:

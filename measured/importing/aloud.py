@@ -23,6 +23,7 @@ from measured.importing.guess import (
     HARDLY,
     NO_UNIT,
     NUMBERED,
+    OF_DEVICE,
     OF_INSTRUMENT,
     OF_SENSOR,
     THAT_CAN_BE,
@@ -50,7 +51,7 @@ OUTLET = "it warms with the machine: an outlet?"
 SHEETS = "tests/*.toml"  # where each column has its doubt
 PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
 WEAK = (
-    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT),
+    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE),
     "gives coolant already",
 )
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")

@@ -92,10 +92,15 @@ def _unwound_by_termination() -> Iterator[None]:
 
 
 def write_case(
-    folder: Path, name: str, model: Callable[[Path], str], drafts: Sequence[Draft], doubts: str = ""
+    folder: Path,
+    name: str,
+    model: Callable[[Path], str],
+    drafts: Sequence[Draft],
+    doubts: str = "",
+    learnt: bool = False,
 ) -> None:
     """model : puts the machine or network into the folder and returns its line of case.toml;  doubts : to be repeated
-    until the user takes them out."""
+    until the user takes them out;  learnt : from the readings of all tests but the one held out."""
     lines = [
         "# Written by thermoscope test new. Every line may be changed.",
         "[case]",
@@ -105,7 +110,7 @@ def write_case(
         *[f"guesses = {toml_value(doubts)}   # compare repeats it: take out what you have checked"] * bool(doubts),
         "",
     ]
-    for draft, role, names in zip(drafts, roles(len(drafts)), sensor_names(drafts), strict=True):
+    for draft, role, names in zip(drafts, roles(len(drafts), learnt), sensor_names(drafts), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]
         for i, record in enumerate(draft.records):
             write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record.source, record.clock)))
@@ -113,11 +118,14 @@ def write_case(
     write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
 
 
-def roles(count: int) -> list[str]:
-    """The first test to fit, the last of three or more to hold out, the others to choose with."""
+def roles(count: int, learnt: bool) -> list[str]:
+    """The first test to fit, the last of three or more to hold out, the others to choose with.
+
+    learnt : the network is learnt from the readings of them all, so they are fitted together as well
+    """
     if count < 3:
         return list(ROLES[:count])
-    return ["calibrate", *["validate"] * (count - 2), "hold-out"]
+    return ["calibrate", *["calibrate" if learnt else "validate"] * (count - 2), "hold-out"]
 
 
 def _file(draft: Draft, i: int) -> str:

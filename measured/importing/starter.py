@@ -79,7 +79,8 @@ class FirstNetwork:
             role_of[whole[0]] = Role.WINDING
         for node, (C, sd) in self.capacities.items():
             role = [f'role = "{role_of[node]}"'] * bool(role_of[node])
-            lines += [f"[nodes.{toml_key(node)}]", f"C_J_K = {max(C, 1.0):.3g}", *role, f"prior_sd = {sd:.2g}", ""]
+            size = [f"C_J_K = {max(C, 1.0):.3g}", f"prior_sd = {sd:.2g}", "reading = true"]
+            lines += [f"[nodes.{toml_key(node)}]", *role, *size, ""]
         names: set[str] = set()
         links = [term for term in self.terms if len(term.ends) == 2]
         losses = [term for term in self.terms if len(term.ends) == 1]

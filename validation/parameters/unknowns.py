@@ -131,8 +131,9 @@ def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Par
     c, lags = same[0], [c.lag_s for c in same]
     sigma = min(max(c.sigma_K for c in same), doubt.get(f"bias:{c.name}", np.inf))
     bias = _offset(f"bias of {c.name}", f"bias:{c.name}", sigma, "calibration of the sensor")
-    stream = c.place in network.places and network.places[c.place].kind == "fluid"
-    sd = doubt["gain of stream" if stream else "gain"]
+    place = network.places.get(c.place)
+    of = " of stream" if place and place.kind == "fluid" else " of reading" if place and place.reading else ""
+    sd = doubt[f"gain{of}"]
     gain = _offset(f"slope of {c.name}", f"gain:{c.name}", sd, "placement of the sensor")
     lag = _offset(f"lag of {c.name}", f"lag:{c.name}", max(doubt["lag"], 0.3 * max(lags)), "mounting of the sensor")
     return [bias, replace(gain, unit="1"), replace(lag, unit="s", low=-min(lags))]

@@ -23,6 +23,7 @@ from validation.parameters.unknowns import to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
+SAME = 1.01  # times the error before: what two digits show as no change
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits
@@ -195,16 +196,23 @@ def _log_density(
 
 
 def prediction_checks(
-    before: Sequence[FoldPrediction], after: Sequence[FoldPrediction], telling: Sequence[str], lone: Sequence[str] = ()
+    before: Sequence[FoldPrediction],
+    after: Sequence[FoldPrediction],
+    telling: Sequence[str],
+    lone: Sequence[str] = (),
+    aside: bool = False,
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
     before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
     lone : tests of which the later part alone was left out
+    aside : a step that says of some readings, which are not predicted, that they mean something else: it gains nothing
+        for the others, and must not cost them anything
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
-    short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= GAIN else ""
+    gain, worst = (-GAIN, SAME * was) if aside else (GAIN, was)
+    short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= gain else ""
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all{short}"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
@@ -212,7 +220,7 @@ def prediction_checks(
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
     return (
-        Check("left out", sum(nats) > GAIN and now <= was, sum(nats), GAIN, words, part),
+        Check("left out", sum(nats) > gain and now <= worst, sum(nats), gain, words, part),
         Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
     )
 

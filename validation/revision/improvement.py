@@ -14,6 +14,7 @@ from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
+from validation.effects.during import During
 from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import standing, with_model
@@ -126,8 +127,9 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
-    sure = len(choice) == 1 and (diagnosis.verdict in ("named", "several") or choice[0].probability >= SURE)
-    return choice[0].effect if sure and not effect(choice[0].effect).fault else None
+    first = effect(choice[0].effect)
+    sure = choice[0].probability >= SURE or (len(choice) == 1 and diagnosis.verdict in ("named", "several"))
+    return first.name if sure and (not first.fault or isinstance(first, During)) else None
 
 
 def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:

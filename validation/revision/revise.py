@@ -8,6 +8,7 @@ from math import isfinite, sqrt
 
 import numpy as np
 
+from geom.arrays import Array
 from geom.errors import InputError
 from geom.one_thread import one_blas_thread
 from geom.table import Table, TableResult
@@ -15,7 +16,7 @@ from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
 from lumped.model.once import once
-from measured.case import AddedEffect, Case, Model, Test
+from measured.case import AddedEffect, Case, Channel, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit, no_progress, with_model_error
@@ -27,7 +28,7 @@ from validation.comparison.linearisation import segments
 from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.input_terms import law_words
-from validation.effects.time_window import checked, lasts
+from validation.effects.time_window import checked, holds, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
     Check,
@@ -251,18 +252,38 @@ def _revised(
 def _effect_checks(
     case: Case, fit: Fit, names: Sequence[str], new: Model, tests: Sequence[Test], changes: Sequence[Change]
 ) -> tuple[Check, ...]:
-    """Does the model with the effects predict what was left out better than the one before, fitted to the same?"""
-    telling = telling_tests(fit, names)
+    """Does the model with the effects predict what was left out better than the one before, fitted to the same?
+
+    Readings that a fault in one test explains are not predicted: what they should have been is not known. Of such a
+    fault alone, all others must be predicted as well as before.
+    """
+    every, new_ones = [effect(e.name) for e in new.effects], {effect(n).name for n in names}
+    faults = [e for e in every if isinstance(e, During) and e.base.temporary]
+    aside = all(name in {e.name for e in faults} for name in new_ones)
+    telling = [] if aside else telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)
     lone = lone_tests(bare, [e.name for e in case.model.effects])
-    every = folds(tests, telling, middle, lone)
-    if (at := (middle, *telling)) not in predictions:
-        predictions[at] = [fold_prediction(bare, fold, values) for fold in every]
+    parts = [
+        replace(f, predicted=tuple(_trusted(t, faults) for t in f.predicted))
+        for f in folds(tests, telling, middle, lone)
+    ]
+    if (at := (middle, *telling, *(e.name for e in faults))) not in predictions:
+        predictions[at] = [fold_prediction(bare, fold, values) for fold in parts]
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
-    after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in every]
-    checks = prediction_checks(predictions[at], after, telling, tuple(lone))
+    after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in parts]
+    checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside)
     return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
+
+
+def _trusted(test: Test, faults: Sequence[During]) -> Test:
+    """A test without the readings that faults in it explain."""
+    mine = [e for e in faults if test.name in e.tests]
+
+    def read(c: Channel) -> Array:
+        return np.where(sum(holds(e.condition, test) for e in mine if e.base.place == c.name) > 0.0, np.nan, c.y)
+
+    return replace(test, channels=tuple(replace(c, y=read(c)) for c in test.channels)) if mine else test
 
 
 @once

@@ -45,6 +45,9 @@ MANY = 0.9  # times the error of the simpler network: what a network of more ter
 MAIN = 0.3  # of what moves a node: such a term is tried last, whatever it follows
 TURNS, STILL = 12, 3e-3  # of capacities and coefficients, and the relative change that ends them
 SPREAD = (0.2, 1.0)  # prior of a number, in powers of e: the folds share most of their tests; a first network's own
+FEWEST_FOLDS, OUTLYING = 3, 3.0  # of two nobody knows which is right; three times the usual misfit counts in full
+ROUNDS = 3  # of such weights: a bad test is in the fits by which the good ones are judged
+LEAST_K = 0.01  # an error below it is as good as none: readings are rounded to more
 SLOW = 3.0  # records long is the time constant given to what the readings tie to nothing
 
 
@@ -61,10 +64,12 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     folds, columns = prepared
     form = best_free_network(folds, columns)
     places = {c.name: c.place for t in case.tests for c in t.channels}
-    table = _TermTable.of(folds, columns, form, places, case.model.network.measures)
+    every_test = _TermTable.of(folds, columns, form, places, case.model.network.measures)
     heat = np.mean([loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
     every = range(len(folds))
-    needed = _needed_terms(table, folds)
+    ways = [[(*way, table) for way in _needed_terms(table, folds)] for table in every_test.credible()]
+    few, many = (min(alike, key=lambda way: way[0]) for alike in zip(*ways, strict=True))
+    _, needed, table = many if many[0] < MANY * few[0] else few
     fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
     if not min(table.mean_heat(theta, heat) for theta, _ in fits) > 0.0:
         return first  # nothing heats it: there is no size to give to anything
@@ -87,19 +92,23 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     return replace(first, capacities=capacities, terms=terms, learnt=[t.name for t in case.usable])
 
 
-def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArray[np.bool_]:
-    """(n_term,): the few terms with which what was left out is predicted best.
+def _needed_terms(
+    table: _TermTable, folds: Sequence[Sequence[Record]]
+) -> tuple[tuple[float, NDArray[np.bool_]], tuple[float, NDArray[np.bool_]]]:
+    """The few terms (n_term,) with which what was left out is predicted best and their error (K), found in two ways.
 
     One way there begins with constant links between all nodes and takes in, one by one, the loss or the input that a
     link follows which helps most: the increments say which to try, what is left out decides. The other way begins with
-    all that the increments want. On both, each term that is not missed then goes. The first is simpler and is taken
-    unless the second predicts much better.
+    all that the increments want. On both, each term that is not missed then goes. The first is simpler. Tests count by
+    how many times better each is predicted: one in which something else held, such as half the air, is predicted badly
+    by every network and must not choose between them.
     """
     every = range(len(folds))
 
     def left_out(active: NDArray[np.bool_]) -> float:
         models = [table.free(*table.fit([j for j in every if j != i], active)) for i in every]
-        return rms([error_of(model, r) for model, fold in zip(models, folds, strict=True) for r in fold])
+        each = [rms([error_of(model, r)]) for model, fold in zip(models, folds, strict=True) for r in fold]
+        return float(np.exp(np.mean(np.log(np.maximum(each, LEAST_K)))))
 
     def grown() -> tuple[float, NDArray[np.bool_]]:
         needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
@@ -128,11 +137,8 @@ def _needed_terms(table: _TermTable, folds: Sequence[Sequence[Record]]) -> NDArr
         return last, needed
 
     whole = table.fit(every, np.ones(len(table.candidates), bool))[0] > 0.0
-    many, by_many = pruned(whole, left_out(whole))
-    if len(table.nodes) > FEW_NODES:
-        return by_many
-    few, by_few = grown()
-    return by_many if many < MANY * few else by_few
+    many = pruned(whole, left_out(whole))
+    return (many if len(table.nodes) > FEW_NODES else grown()), many
 
 
 def _with(selection: NDArray[np.bool_], k: int) -> NDArray[np.bool_]:
@@ -216,14 +222,29 @@ class _TermTable:
             rows.append((np.array([number.setdefault(keys[c], len(number)) for c in selection], int), selection))
         index = [columns.sensors.index(s) for s in nodes]
         normal = [[fold[i] for i in index] for fold in lessons.normal]
-        weight = np.array(
-            [1.0 / max(_residual(np.sum([fold[n] for fold in normal], axis=0)), 1e-12) for n in range(len(nodes))]
-        )
+        weight = _weights(normal)
         names = tuple(places[s] for s in nodes)
         where = np.append(np.flatnonzero(columns.steady), len(columns.sensors) + np.arange(len(columns.boundaries)))
         shape = (len(columns.sensors) + len(columns.boundaries), len(links), len(losses))
         owner = tuple(names.index(places[s]) for s in columns.sensors)
         return _TermTable(names, list(number), rows, normal, weight, owner, where, shape, form)
+
+    def credible(self) -> list[_TermTable]:
+        """This one; and one in which readings that the other tests' fit explains far worse than is usual count less,
+        where there are such: a sensor that slipped off in one test says nothing of the network."""
+        if len(self.normal) < FEWEST_FOLDS:
+            return [self]
+        out, constant = [list(fold) for fold in self.normal], -1 - self.shape[2]  # heat: it counts the windows
+        for n in range(len(self.nodes)):
+            each, weights = [fold[n] for fold in self.normal], np.ones(len(out))
+            for _ in range(ROUNDS):
+                some = [w * N for w, N in zip(weights, each, strict=True)]
+                left = np.array([_misfit(N, sum(some, -M)) / float(N[constant, constant]) for N, M in zip(each, some)])
+                weights = np.maximum(1.0, left / max(OUTLYING**2 * float(np.median(left)), 1e-300)) ** -2.0
+            for fold, w in zip(out, weights, strict=True):
+                fold[n] = fold[n] if w == 1.0 else fold[n] * w
+        alike = all(new is old for a, b in zip(out, self.normal, strict=True) for new, old in zip(a, b, strict=True))
+        return [self] if alike else [self, replace(self, normal=out, weight=_weights(out))]
 
     def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
         """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""
@@ -326,7 +347,13 @@ def _capacity(N: Array, b: Array, a: Array, before: float) -> float:
     return float(a @ N @ a) / explained if explained > 0.0 else before
 
 
-def _residual(N: Array) -> float:
-    """Sum of squares that a node's own free fit leaves (K2)."""
-    a = nonnegative(N[:-1, :-1], N[:-1, -1])
+def _weights(normal: Sequence[Sequence[Array]]) -> Array:
+    """(n_node,) 1/K2: one over what each node's own free fit leaves."""
+    whole = [np.sum(each, axis=0) for each in zip(*normal, strict=True)]
+    return np.array([1.0 / max(_misfit(N, N), 1e-12) for N in whole])
+
+
+def _misfit(N: Array, others: Array) -> float:
+    """Sum of squares (K2) that a free fit to some windows leaves of others, or of the same."""
+    a = nonnegative(others[:-1, :-1], others[:-1, -1])
     return float(N[-1, -1] - 2.0 * a @ N[:-1, -1] + a @ N[:-1, :-1] @ a)

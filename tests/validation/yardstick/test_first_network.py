@@ -80,3 +80,18 @@ def test_no_film_follows_a_current(case):
     network = replace(case.model.network, quantities={"load": "current"})
     learnt = learn_network(replace(case, model=replace(case.model, network=network)), first_of(case))
     assert not [t for t in learnt.terms if len(t.ends) == 2 and t.of]
+
+
+def test_a_sensor_that_slipped_off_in_one_test_does_not_choose_the_network():
+    """Of five tests four are sound."""
+    sound, more = bench(held=()), bench(held=(), seed=1).tests[:2]
+    sound = replace(sound, tests=(*(replace(t, name=f"next {t.name}") for t in more), *sound.tests))
+    last = sound.tests[-1]
+    room, late = last.boundaries["ambient"], last.time > np.median(last.time)
+    slipped = tuple(
+        replace(c, y=np.where(late, room + 0.5 * (c.y - room), c.y)) if c.place == "body" else c for c in last.channels
+    )
+    case = replace(sound, tests=(*sound.tests[:-1], replace(last, channels=slipped)))
+    found = terms(learn_network(case, first_of(case)))
+    assert found[frozenset({"body", "core"}), ""] == pytest.approx(4.0, rel=0.05)
+    assert found[frozenset({"body", "ambient"}), ""] == pytest.approx(2.0, rel=0.05)

@@ -264,7 +264,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         tell("writing the case")
         warnings = first_lines(drafts)
         doubts = sentences(short_lines(drafts, bool(model.first)))
-        write_case(partial, folder.name, model.put, drafts, " ".join(doubts))
+        write_case(partial, folder.name, model.put, drafts, " ".join(doubts), model.first is not None)
         settings = read_settings(partial)
         with _as_recorded(partial, drafts):
             patients = [patient_of(entry) for entry in settings.tests]
