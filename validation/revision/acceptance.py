@@ -24,6 +24,7 @@ from validation.parameters.unknowns import to_value
 NOTHING: Mapping[str, float] = MappingProxyType({})
 GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
 SAME = 1.01  # times the error before: what two digits show as no change
+VISIBLE = 3.0  # deviations: one of a thousand that are not there is so far off
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
 MOST_FOLDS = 8  # of many tests so many shares are left out in turn: each costs two fits
@@ -246,6 +247,15 @@ def bound_check(fit: Fit, name: str) -> Check:
         return Check("bounds", False, value, p.high, words)
     at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"
     return Check("bounds", True, value, p.high, at if fit.at_bound[k] else inside)
+
+
+def visible_check(fit: Fit, name: str) -> Check:
+    """Whether the readings show an amplitude that no prediction is judged by."""
+    k = fit.unknowns.names.index(name)
+    far = abs(float(fit.theta[k])) / float(np.sqrt(fit.covariance[k, k]))
+    return Check(
+        "shown", far > VISIBLE, far, VISIBLE, f"{name} is {far:.1f} deviations from none, {VISIBLE:g} would do"
+    )
 
 
 def fall(before: float, after: float) -> str:

@@ -44,6 +44,7 @@ from validation.revision.acceptance import (
     prediction_checks,
     squares,
     telling_tests,
+    visible_check,
 )
 from validation.revision.repeated_events import repeated_events
 from validation.tables import revision_tables
@@ -273,7 +274,8 @@ def _effect_checks(
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
     after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in parts]
     checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside)
-    return (*(bound_check(fit, n) for n in names), *checks, _lost(changes, tests))
+    seen = tuple(visible_check(fit, n) for n in names) if aside else ()
+    return (*(bound_check(fit, n) for n in names), *seen, *checks, _lost(changes, tests))
 
 
 def _trusted(test: Test, faults: Sequence[During]) -> Test:

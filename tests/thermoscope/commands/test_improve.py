@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import pytest
 from small_case import small_case
@@ -98,9 +99,13 @@ def test_what_cannot_be_told_is_never_offered(found, names):
         (answer("group", row("mass@yoke", "group"), row("iron@yoke", "group")), None),
         (answer("data", row("sensor.bias@T_yoke", "named")), None),
         (answer("several", row("sensor.bias@T_yoke", "named")), None),
+        (
+            answer("data", replace(row("sensor.loose@T_yoke in dusk", "named"), probability=0.99)),
+            "sensor.loose@T_yoke in dusk",
+        ),
     ],
 )
-def test_only_physics_that_stands_alone_is_added_without_asking(found, name):
+def test_what_is_sure_is_added_without_asking_but_no_lasting_fault(found, name):
     assert singletons(found, offered(found)) == name
 
 

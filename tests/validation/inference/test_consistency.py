@@ -14,6 +14,7 @@ from validation.consistency import doubts_check, free_network_check, persistence
 from validation.diagnosis import infer
 from validation.inference.decide import Decision, consistent_decision
 from validation.inference.result import Check, Remainder
+from validation.revision.revise import add
 from validation.scope import Scope
 
 
@@ -29,6 +30,19 @@ def moved_probe(share):
         return replace(test, channels=tuple(moved if c is probe else c for c in test.channels))
 
     return replace(case, tests=tuple(map(elsewhere, case.tests)))
+
+
+@pytest.mark.parametrize(("share", "accepted"), [(0.5, True), (0.0, False)])
+def test_a_probe_that_sat_elsewhere_in_one_test_is_set_aside_if_it_did(share, accepted):
+    done = add(moved_probe(share), "sensor.loose@core in dusk")
+    assert done.accepted is accepted, done.why
+
+
+def test_what_a_probe_read_elsewhere_costs_its_fault_nothing():
+    """Of the readings that the fault explains none is predicted: the others are as well as before."""
+    (left_out,) = [c for c in add(moved_probe(0.5), "sensor.loose@core in dusk").checks if c.check == "left out"]
+    assert not left_out.partial
+    assert left_out.limit < 0.0
 
 
 @pytest.fixture(scope="module")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 def improve(
     case: Case,
     yes: Annotated[
-        bool, typer.Option("--yes", help="Do not ask; add what stands alone, and what a free network needs.")
+        bool, typer.Option("--yes", help="Do not ask; add what is sure, and what a free network needs.")
     ] = False,
     most: Annotated[int, typer.Option(min=1, help="Effects to add at most.")] = 6,
     target: Json = None,
