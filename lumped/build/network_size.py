@@ -120,7 +120,8 @@ def smallest_network(
     progress("error against number of states")
     at_points = [reduction.random_point(k) for k in range(points_each)]
     at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
-    full = reduction.solved(at_points + [reduction.joined_point(factor) for factor in contact_factors])
+    at_points += [*map(reduction.joined_point, contact_factors), reduction.early_point(0)]
+    full = reduction.solved(at_points)
     guides, points = full[:points_each], full[points_each:]
     table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
