@@ -44,9 +44,9 @@ def linear(
     for place in network.places.values():
         if place.kind == "surface" and place.fluid:
             _add(P, network.surface_link("", "film", place.name, place.fluid, Fixed(1.0, CONSTANT)), films[place.name])
-    given = np.arange(network.size) >= len(network.states)
-    given[[p.states[0] for p in network.places.values() if p.kind == "fluid"]] = True
-    solid, fluid = np.flatnonzero(~given), np.flatnonzero(given)
+    fluids = np.arange(network.size) >= len(network.states)
+    fluids[[p.states[0] for p in network.places.values() if p.kind == "fluid"]] = True
+    solid, fluid = np.flatnonzero(~fluids), np.flatnonzero(fluids)
     return Linear(P[np.ix_(solid, solid)], -P[np.ix_(solid, fluid)], network.C[solid], solid, fluid)
 
 

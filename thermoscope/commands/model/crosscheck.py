@@ -89,7 +89,7 @@ def bearable(built: Built) -> tuple[dict[str, float], Array]:
     point = rated_inputs(built.machine)
     rated = point["current_A"]
     small = built.small or built.network
-    while (z := _settled(small, point)) is None or (z := _settled(built.network, point)) is None:
+    while (z := _rest(small, point)) is None or (z := _rest(built.network, point)) is None:
         point = {**point, "current_A": 0.8 * point["current_A"]}
         if point["current_A"] <= 0.01 * rated:
             never = f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current"
@@ -99,7 +99,7 @@ def bearable(built: Built) -> tuple[dict[str, float], Array]:
     return point, z
 
 
-def _settled(network: Network, point: Mapping[str, float]) -> Array | None:
+def _rest(network: Network, point: Mapping[str, float]) -> Array | None:
     """Where a network comes to rest (degC), None where that is too hot for insulation, or nowhere."""
     from lumped.build.crosscheck import steady_state
     from lumped.transfer.ranges import within_silence
