@@ -167,12 +167,14 @@ def crosscheck(
     solver: Solver | None = None,
     loads: Mapping[str, Array] | None = None,
     shares: Shares | None = None,
+    z: Array | None = None,
 ) -> CrossCheck:
     """Steady state of both at one operating point, with the coefficients the network settles at.
 
     loads : zone -> (n,) unit loss on the field;  shares : source -> zones, see `coefficients`
+    z : where the network settles, if that is known
     """
-    z = steady_state(network, inputs, ambient)
+    z = steady_state(network, inputs, ambient) if z is None else z
     c = coefficients(network, inputs, z, shares=shares)
     load = sum(
         (q * (loads or {}).get(place, _uniform(field, place)) for place, q in c.watts.items()), np.zeros(field.n)

@@ -94,7 +94,8 @@ def enrich(
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
     reduction : of reduction.py;  points : already solved, to be learned;  guides : random ones, solved too
-    fresh : random points per round; those that were missed guide the next, and are learned after it with an extreme one
+    fresh : random points per round, the first one soon after a step of loss, too; those that were missed guide the
+        next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
     learned, first = list(points) or reduction.solved([reduction.nominal_point()]), len(points) + len(guides)
@@ -103,7 +104,8 @@ def enrich(
     history: list[Round] = []
     for k in range(rounds):
         network = allotted_shapes(reduction, [*learned, *guides], cases, accuracy, weights)
-        new = reduction.solved([reduction.random_point(first + fresh * k + j) for j in range(fresh)])
+        seeds = range(first + fresh * k, first + fresh * (k + 1))
+        new = reduction.solved([*map(reduction.random_point, seeds), reduction.early_point(seeds[0])])
         errors = merged(errors_at(new, reduction, network, cases))
         history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
         tell(f"error with {len(network.states)} states: {errors}")
@@ -137,4 +139,4 @@ def allotted_shapes(
 
 def errors_at(points: Sequence[FullPoint], reduction: Reduction, network: Network, cases: LoadCases) -> list[Errors]:
     """Of the network at every point, in two processes where there is room."""
-    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.X, cases), points)
+    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.X, cases, p.shift), points)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geom.arrays import Ints
 from lumped.model.network import Array, Link, Network
 from lumped.transfer.laws import CONSTANT, Fixed
 
@@ -21,8 +22,8 @@ class Linear:
     A: Array
     B: Array
     C: Array
-    solid: Array
-    fluid: Array
+    solid: Ints
+    fluid: Ints
 
 
 def linear(
@@ -43,17 +44,17 @@ def linear(
     for place in network.places.values():
         if place.kind == "surface" and place.fluid:
             _add(P, network.surface_link("", "film", place.name, place.fluid, Fixed(1.0, CONSTANT)), films[place.name])
-    fluids = {p.states[0] for p in network.places.values() if p.kind == "fluid"}
-    solid = np.array([i for i in range(len(network.states)) if i not in fluids])
-    fluid = np.array([i for i in range(network.size) if i not in set(solid.tolist())])
+    fluids = np.arange(network.size) >= len(network.states)
+    fluids[[p.states[0] for p in network.places.values() if p.kind == "fluid"]] = True
+    solid, fluid = np.flatnonzero(~fluids), np.flatnonzero(fluids)
     return Linear(P[np.ix_(solid, solid)], -P[np.ix_(solid, fluid)], network.C[solid], solid, fluid)
 
 
 def _add(P: Array, link: Link, factor: float) -> None:
-    np.add.at(P, (link.rows, link.cols), factor * link.vals)
+    np.add.at(P.reshape(-1), link.rows * P.shape[1] + link.cols, factor * link.vals)  # a tenth of the time of pairs
 
 
-def unit_load(network: Network, place: str, solid: Array) -> Array:
+def unit_load(network: Network, place: str, solid: Ints) -> Array:
     """(n,) 1 W at a part or loss zone, on the solid states."""
     p = network.place(place)
     out = np.zeros(network.size)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -38,7 +39,16 @@ from lumped.model.network import Array, Network
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]
 
-Point = tuple[str, Mapping[str, float], Mapping[str, float]]  # name, films and contacts (W/m2/K)
+EARLY_S = 30.0  # after a step of loss: what comes before is less than a thermocouple's own delay
+
+
+class Point(NamedTuple):
+    """Films and contacts (W/m2/K), and what is asked there: rest, or one step of 1 / shift (s) from a cold machine."""
+
+    name: str
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    shift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -49,6 +59,7 @@ class FullPoint:
     films: Mapping[str, float]
     contacts: Mapping[str, float]
     X: NDArray[np.floating]
+    shift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -109,36 +120,41 @@ class Reduction:
         loads = np.column_stack([*self.loads.values()])
 
         def full(point: Point) -> FullPoint:
-            name, films, contacts = point
-            factor = self.solver.factor(self.field.stiffness(films, contacts))
+            name, films, contacts, shift = point
+            factor = self.solver.factor(self.field.stiffness(films, contacts), shift)
             heated = film_columns(self.field, films, self.washing)[0]
             X = factor(np.column_stack([loads, heated])).astype(np.float32)  # a ten-millionth: errors are a thousandth
-            return FullPoint(name, films, contacts, X)
+            return FullPoint(name, films, contacts, X, shift)
 
         return self.solver.each(full, points)
 
     def nominal_point(self) -> Point:
-        return "nominal", self.films, self.contacts
+        return Point("nominal", self.films, self.contacts)
 
     def random_point(self, seed: int) -> Point:
         """Every film and contact times spread ** U(-1, 1)."""
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
-        return (
+        return Point(
             f"random {seed}",
             random_coefficients(self.films, spread, rng),
             random_coefficients(self.contacts, spread, rng),
         )
 
+    def early_point(self, seed: int) -> Point:
+        """A random one after one step from a cold machine: what heats it has not gone far."""
+        there = self.random_point(seed)
+        return there._replace(name=f"{there.name}, {EARLY_S:g} s", shift=1.0 / EARLY_S)
+
     def joined_point(self, factor: float) -> Point:
         """All contacts times a factor."""
-        return f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()}
+        return Point(f"contacts x{factor:g}", self.films, {name: factor * g for name, g in self.contacts.items()})
 
     def extreme_point(self, seed: int) -> Point:
         """A third of the films x10, a third of the contacts x5 and a third x0.2: what one change alone can reach."""
         rng = np.random.default_rng([self.recipe.seed, seed, 1])
         films = {face: h * rng.choice([1.0, 1.0, 10.0]) for face, h in self.films.items()}
         contacts = {name: g * rng.choice([1.0, 5.0, 0.2]) for name, g in self.contacts.items()}
-        return f"extreme {seed}", films, contacts
+        return Point(f"extreme {seed}", films, contacts)
 
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""

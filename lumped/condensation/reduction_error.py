@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
 
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.recovery import PartShape, Shapes
@@ -90,15 +91,26 @@ def errors(network: Network, full: Array, x: Array, largest: float | None = None
     largest : the machine's largest rise (K) that the floor refers to; None: of this field
     floor : least rise, as a share of the largest, that a percentage refers to; 1: of the largest rise throughout
     """
+    return _between(_shapes(network), full, _shapes(network).field(x), largest, floor)
+
+
+def _shapes(network: Network) -> Shapes:
     shapes = network.recovery
     assert isinstance(shapes, Shapes)
+    return shapes
+
+
+def _between(
+    shapes: Shapes, full: Array, recovered: Array, largest: float | None = None, floor: float = FLOOR
+) -> Errors:
+    """The same of two fields (n,)."""
     rng, start = np.random.default_rng(0), 0
     least = floor * (float(np.abs(full).max()) if largest is None else largest)
     parts: dict[str, PartError] = {}
     for part, shape in shapes.parts.items():
-        T = full[start : start + len(shape.V)]
-        start += len(T)
-        parts[part] = _part(T, shape.V @ x[shape.states], shape, least, rng)
+        mine = slice(start, start + len(shape.V))
+        start = mine.stop
+        parts[part] = _part(full[mine], recovered[mine], shape, least, rng)
     return worst(parts)
 
 
@@ -146,15 +158,16 @@ def random_load_cases(
 
 
 def network_states(
-    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: LoadCases
+    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: LoadCases, shift: float = 0.0
 ) -> Array:
-    """(n_states, n_case) of the network at given coefficients, rises over the surroundings."""
+    """(n_states, n_case) of the network at given coefficients, rises over the surroundings; shift (1/s) as of Point."""
     system = linear(network, films, contacts)
     load = np.column_stack([unit_load(network, zone, system.solid) for zone in cases.zones]) @ cases.watts.T
     names = (*network.states, *network.boundaries)
     order = [[names[c] for c in system.fluid].index(fluid) for fluid in cases.fluids]
     out = np.zeros((len(network.states), len(cases.watts)))
-    out[system.solid] = np.linalg.solve(system.A, load + system.B[:, order] @ cases.kelvin.T)
+    heat = load + system.B[:, order] @ cases.kelvin.T
+    out[system.solid] = cho_solve(cho_factor(system.A + np.diag(shift * system.C)), heat)
     return out
 
 
@@ -164,7 +177,12 @@ def point_errors(
     contacts: Mapping[str, float],
     X: NDArray[np.floating],
     cases: LoadCases,
+    shift: float = 0.0,
 ) -> Errors:
-    """Worst over the load cases at one set of coefficients; X (n, n_load) as in reduction.FullPoint."""
-    x, full = network_states(network, films, contacts, cases), cases.of_field(X)
-    return merged([errors(network, T, states) for T, states in zip(full.T, x.T, strict=True)])
+    """Worst over the load cases at one set of coefficients; X (n, n_load) and shift as in reduction.FullPoint.
+
+    Early, in percent of the machine's largest rise: most parts have none of their own yet.
+    """
+    shapes, full, floor = _shapes(network), cases.of_field(X), 1.0 if shift else FLOOR
+    recovered = shapes.field(network_states(network, films, contacts, cases, shift))
+    return merged([_between(shapes, T, its, floor=floor) for T, its in zip(full.T, recovered.T, strict=True)])

@@ -85,6 +85,25 @@ def test_guard_learns_until_unseen_points_are_met(field):
     assert excess(own, wish) < 0.2 * excess(before, wish)
 
 
+def test_guard_looks_at_a_step_of_loss(field):
+    """Shapes of steady solutions hold at steady points they have not seen, and fail 30 s after a step."""
+    found, wish = reduction(field, random_points=4), Accuracy()
+    learned = enrich(found, cases(found), wish, rounds=4)
+    steady = found.solved([found.random_point(k) for k in range(3)])
+    of_steady = [point_errors(found.network(), p.films, p.contacts, p.X, cases(found)) for p in steady]
+    assert max(excess(e, wish) for e in of_steady) < 1.0
+    assert [r.met for r in learned.rounds] == [False, True]
+
+
+def test_early_heat_stays_where_nothing_takes_it(field):
+    """Without films every joule of 1 W over the 30 s is in the parts' heat capacity."""
+    found = reduction(field)
+    alone = found.early_point(1)._replace(films=dict.fromkeys(found.films, 0.0))
+    (full,) = found.solved([alone])
+    joules = (field.M @ np.asarray(full.X, float)[:, : len(found.zones)]).sum(axis=0)
+    np.testing.assert_allclose(joules, 30.0, rtol=1e-5)  # fields are in single precision
+
+
 def test_guard_says_what_it_missed(field):
     """With no round left to learn, the last look says so."""
     found = reduction(field, tolerance=0.3)

@@ -18,8 +18,9 @@ def test_a_rated_point_that_overheats_is_one_note(monkeypatch, capsys):
 
     monkeypatch.setattr("lumped.build.crosscheck.steady_state", steady_state)
     monkeypatch.setattr("lumped.machine.motor.rated_inputs", lambda machine: {"current_A": 10.0})
-    built = SimpleNamespace(machine=None, network=SimpleNamespace(states=("a",)))
+    built = SimpleNamespace(machine=None, network=SimpleNamespace(states=("a",)), small=None)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert bearable(built) == {"current_A": 8.0}
+        point, z = bearable(built)
+    assert (point, z.tolist()) == ({"current_A": 8.0}, [90.0])
     assert capsys.readouterr().err == "note: at 10 A it does not settle below 200 degC: checked at 8 A\n"

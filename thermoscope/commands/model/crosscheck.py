@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geom.arrays import Array
 from geom.errors import ThermoscopeError
 from geom.escapes import csv_lines
 from geom.storage import write_whole
@@ -20,6 +21,7 @@ from thermoscope.console.terminal import give, notes, plain, progress
 if TYPE_CHECKING:
     from lumped.build.network_size import NetworkSize
     from lumped.build.pipeline import Built
+    from lumped.model.network import Network
     from thermoscope.console.terminal import Progress
 
 HOT = 200.0  # degC, what insulation bears
@@ -48,11 +50,11 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
     from lumped.machine.loss_sources import loss_shares
 
     tell("field against network")
-    point = bearable(built)
+    point, z = bearable(built)
     field, solver = (built.field, None) if size is None else (size.reduction.field, size.reduction.solver)
     loads = None if size is None else size.reduction.loads
     shares = loss_shares(built.machine, built.network)
-    check = compare(field, built.network, point, solver=solver, loads=loads, shares=shares)
+    check = compare(field, built.network, point, solver=solver, loads=loads, shares=shares, z=z)
     tell("laws point by point")
     local = with_local_laws(field, built.network, point, check, shares, loads, solver).T
     tell("hand formulas")
@@ -74,34 +76,40 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
     }
 
 
-def bearable(built: Built) -> dict[str, float]:
-    """The rated point with its current lowered until the machine settles: a short-time rating has no steady state.
+def bearable(built: Built) -> tuple[dict[str, float], Array]:
+    """The rated point with its current lowered until the machine settles, and where its network does (degC): a
+    short-time rating has no steady state. The small network looks first, in a hundredth of the time.
 
     That it does not settle is one note; what its films leave on the way there says nothing more.
 
     Raises ThermoscopeError where it settles at no current: its other losses alone overheat it, or nothing cools it.
     """
-    from lumped.build.crosscheck import steady_state
     from lumped.machine.motor import rated_inputs
-    from lumped.transfer.ranges import within_silence
 
     point = rated_inputs(built.machine)
-    means = [i for i, state in enumerate(built.network.states) if "#" not in state]
     rated = point["current_A"]
-    while True:
-        with suppress(ThermoscopeError):  # thermal runaway: copper's losses grow faster than its cooling
-            with within_silence():
-                T = steady_state(built.network, point, 20.0)[means]
-            if T.min() > 0.0 and T.max() < HOT:
-                if point["current_A"] != rated:
-                    notes(
-                        [f"at {rated:g} A it does not settle below {HOT:g} degC: checked at {point['current_A']:.4g} A"]
-                    )
-                return point
+    small = built.small or built.network
+    while (z := _rest(small, point)) is None or (z := _rest(built.network, point)) is None:
         point = {**point, "current_A": 0.8 * point["current_A"]}
         if point["current_A"] <= 0.01 * rated:
-            break
-    raise ThermoscopeError(f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current")
+            never = f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current"
+            raise ThermoscopeError(never)
+    if point["current_A"] != rated:
+        notes([f"at {rated:g} A it does not settle below {HOT:g} degC: checked at {point['current_A']:.4g} A"])
+    return point, z
+
+
+def _rest(network: Network, point: Mapping[str, float]) -> Array | None:
+    """Where a network comes to rest (degC), None where that is too hot for insulation, or nowhere."""
+    from lumped.build.crosscheck import steady_state
+    from lumped.transfer.ranges import within_silence
+
+    means = [i for i, state in enumerate(network.states) if "#" not in state]
+    with suppress(ThermoscopeError), within_silence():  # thermal runaway: copper's losses grow faster than its cooling
+        z = steady_state(network, point, 20.0)
+        if z[means].min() > 0.0 and z[means].max() < HOT:
+            return z
+    return None
 
 
 def save(document: Mapping[str, Any], folder: Path) -> None:
