@@ -10,7 +10,7 @@ from typing import Any
 
 from geom.text import visible
 
-# A cell that begins so is computed when a spreadsheet opens the file; where it takes a semicolon for a comma, parts too.
+# A cell that begins so is computed when a spreadsheet opens the file; with semicolons as separators, parts too.
 FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+@\uff0b\uff0d\uff1d\uff20-])")
 IN_COMMENTS = set(" .,:;()'_+-=<>%@#[]{}|&/^~°·")  # of C; no * and no ?, which could end the comment or be a trigraph
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # XML 1.0, production 2
