@@ -147,10 +147,8 @@ def main() -> None:
             raise SystemExit(2) from None
         code = STOPPED  # what a package makes of Ctrl-C while it is loaded
     if code == STOPPED:
-        print(
-            f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",
-            file=sys.stderr,
-        )
+        there = f"; what later commands can go on with is kept in {kept}" if (kept := cache_folder()).is_dir() else ""
+        print(f"stopped: inputs are as they were{there}", file=sys.stderr)
     raise SystemExit(code if isinstance(code, int) else 0)
 
 
