@@ -147,10 +147,9 @@ def main() -> None:
             raise SystemExit(2) from None
         code = STOPPED  # what a package makes of Ctrl-C while it is loaded
     if code == STOPPED:
-        there = (
-            f"; what later commands can go on with is kept in {cached}" if (cached := cache_folder()).is_dir() else ""
-        )
-        print(f"stopped: inputs are as they were{there}", file=sys.stderr)
+        files = cache_folder()
+        rest = f"; what later commands can go on with is kept in {files}" if files.is_dir() else ""
+        print(f"stopped: inputs are as they were{rest}", file=sys.stderr)
     raise SystemExit(code if isinstance(code, int) else 0)
 
 

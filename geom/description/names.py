@@ -74,9 +74,9 @@ def file_stem(name: str) -> str:
     return f"_{safe}" if not safe or _is_device(safe) else safe
 
 
-def _is_device(name: str) -> bool:
-    """Does Windows open a device in place of a file that is called so, whatever its ending?"""
-    return name.partition(".")[0].rstrip().upper() in DEVICES
+def _is_device(file: str) -> bool:
+    """Does Windows open a device in place of this file, whatever its ending?"""
+    return file.partition(".")[0].rstrip().upper() in DEVICES
 
 
 def cut_short(text: str) -> str:
