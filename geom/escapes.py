@@ -10,7 +10,8 @@ from typing import Any
 
 from geom.text import visible
 
-FORMULA = tuple("=+-@")  # a cell that begins so is computed when a spreadsheet opens the file
+# A cell that begins so is computed when a spreadsheet opens the file; with semicolons as separators, parts too.
+FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+@\uff0b\uff0d\uff1d\uff20-])")
 IN_COMMENTS = set(" .,:;()'_+-=<>%@#[]{}|&/^~°·")  # of C; no * and no ?, which could end the comment or be a trigraph
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # XML 1.0, production 2
 
@@ -26,7 +27,7 @@ def _cell(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     text = visible(value)
-    return f"'{text}" if text.startswith(FORMULA) and not _is_number(text) else text
+    return text if _is_number(text) else FORMULA.sub(r"\1'", text)
 
 
 def _is_number(text: str) -> bool:
@@ -48,8 +49,8 @@ def xml_text(text: str) -> str:
     return NO_XML.sub("\ufffd", text)
 
 
-def toml_value(value: str | list[str]) -> str:
-    """A text or a list of them, as TOML writes it."""
+def toml_value(value: str | float | list[str]) -> str:
+    """A text, a number or a list of texts, as TOML writes it."""
     import tomlkit
 
     return tomlkit.item(value).as_string()

@@ -6,10 +6,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any, TypeVar
 
+from geom.errors import InputError
 from geom.limits import BYTES, CELLS, COLUMNS, ROWS, ReadingTime
 
 Piece = TypeVar("Piece")
 CHUNK = 2**24  # bytes
+SHEET_ROWS = 2**20  # of a worksheet: no program writes more
 DELIMITERS = (b",", b";", b"\t", b"|")
 
 
@@ -46,6 +48,8 @@ def counted_rows(rows: Iterable[tuple[Any, ...]], where: object) -> Iterator[tup
     cells, most_rows, most_columns, most_cells = 0, ROWS.most, COLUMNS.most, CELLS.most
     for number, row in enumerate(timed(rows, where), 1):
         cells += len(row)
+        if number > SHEET_ROWS:
+            raise InputError(f"holds more than {SHEET_ROWS:,} rows", str(where), "no more: larger tables as CSV")
         if number > most_rows or len(row) > most_columns or cells > most_cells:
             check_shape(number, len(row), where)
             CELLS.check(cells, where, "holds at least")

@@ -26,6 +26,7 @@ THERMOSCOPE_MOST_ROWS=20000000 thermoscope test compare CASE
 OTHERS = {  # that no variable raises: what -> where, unit
     "a name": ("geom.description.names:LETTERS", "letters"),
     "a name of a file": ("geom.description.names:LONGEST", "bytes"),
+    "a worksheet": ("geom.recording_bounds:SHEET_ROWS", "rows"),
     "a test": ("measured.recordings.grid:LONGEST_S", "s"),
     "tabs of a workbench": ("extras.workbench.tabs:MOST", "tabs"),
     "a heat capacity, at least": ("lumped.schemas.bounds:LEAST_J_K", "J/K"),

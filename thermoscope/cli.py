@@ -147,10 +147,9 @@ def main() -> None:
             raise SystemExit(2) from None
         code = STOPPED  # what a package makes of Ctrl-C while it is loaded
     if code == STOPPED:
-        print(
-            f"stopped: inputs are as they were; what later commands can go on with is kept in {cache_folder()}",
-            file=sys.stderr,
-        )
+        files = cache_folder()
+        rest = f"; what later commands can go on with is kept in {files}" if files.is_dir() else ""
+        print(f"stopped: inputs are as they were{rest}", file=sys.stderr)
     raise SystemExit(code if isinstance(code, int) else 0)
 
 

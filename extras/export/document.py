@@ -131,6 +131,8 @@ def _celled(value: Any, key: str = "") -> Any:
         for i, item in enumerate(value):
             cells[i, 0] = _celled(item)
         return cells
+    if isinstance(value, str):
+        return th.xml_text(value)  # halves of letters are in no file
     if value is None:
         return np.nan
     if key in ("row", "col"):

@@ -63,7 +63,7 @@ def checked_name(name: Any, where: str) -> str:
         f"up to {LONGEST} characters without / \\ : * ? \" < > |, no . or space at either end, none of Windows' devices"
     )
     fits = isinstance(name, str) and name.isprintable() and 0 < len(name.encode()) <= LONGEST
-    if not fits or FORBIDDEN & set(name) or name.strip(" .") != name or name.upper() in DEVICES:
+    if not fits or FORBIDDEN & set(name) or name.strip(" .") != name or _is_device(name):
         raise InputError(f"{_short(str(name))} cannot be the name of a file", where, right)
     return plain_name(str(name), where)
 
@@ -71,7 +71,12 @@ def checked_name(name: Any, where: str) -> str:
 def file_stem(name: str) -> str:
     """A name as part of a file's name: what could lead elsewhere, or no file may have, is an underscore."""
     safe = "".join("_" if c in FORBIDDEN or not c.isprintable() else c for c in name).strip(" .")
-    return safe or "_"
+    return f"_{safe}" if not safe or _is_device(safe) else safe
+
+
+def _is_device(file: str) -> bool:
+    """Does Windows open a device in place of this file, whatever its ending?"""
+    return file.partition(".")[0].rstrip().upper() in DEVICES
 
 
 def cut_short(text: str) -> str:

@@ -20,7 +20,7 @@ def read_toml(path: Path, right: str) -> dict[str, Any]:
     TOML_BYTES.check(path.stat().st_size, path, "holds")
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        checked_document(document, str(path))
+        return document
     except (OSError, ValueError, RecursionError) as fault:
         raise InputError(f"not readable as TOML: {fault or type(fault).__name__}", str(path), right) from None
-    checked_document(document, str(path))
-    return document

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from typing import Any
 from geom.description.names import checked_name, file_stem
 from geom.description.profile import Loop
 from geom.errors import InputError
+from geom.escapes import toml_key, toml_value
 from geom.limits import MACHINE_BYTES
 from geom.table import Table
 
@@ -101,9 +101,8 @@ class Draft:
         for section, entries in self._by_section():
             lines += ["", f"[{section}]"]
             for e in entries:
-                key = e.key if e.key.replace("_", "a").isalnum() and e.key.isascii() else json.dumps(e.key)
                 mark = "assumed: " if e.kind == ASSUMED else ""
-                lines.append(f"{key} = {_toml(e.value)}  # {mark}{e.source}")
+                lines.append(f"{toml_key(e.key)} = {_toml(e.value)}  # {mark}{e.source}")
         left = [f"{e.key} = {_display(e.value)}: {e.source}" for e in self.entries if e.kind == UNUSED]
         lines += ["", "# Not understood, or of no use here:", *(f"# {one_line(line)}" for line in left)]
         return "\n".join([*lines, ""])
@@ -165,7 +164,7 @@ def _display(value: Any) -> Any:
 
 def _toml(value: Any) -> str:
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{json.dumps(k)} = {_toml(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{toml_key(k)} = {_toml(v)}" for k, v in value.items()) + " }"
     if isinstance(value, list):
         return f"[{', '.join(map(_toml, value))}]"
-    return json.dumps(value, ensure_ascii=False)
+    return toml_value(value)

@@ -64,6 +64,7 @@ class Signals(dict[str, Array]):
         self.nt = nt
         self._around: tuple[Signals, Array] | None = None
         self.source: Source | None = None
+        self._is_stretch = False
         self._are_cut = False  # what lies between two of them need not be cut again
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
         self._readings: dict[tuple[str, ...], Reading] = {}
@@ -82,7 +83,7 @@ class Signals(dict[str, Array]):
         if (some.start, some.stop) == (0, self.nt):
             return self
         out = Signals({name: value[some] for name, value in self.items()}, some.stop - some.start)
-        out._around = self, np.arange(some.start, some.stop, dtype=float)
+        out._around, out._is_stretch = (self, np.arange(some.start, some.stop, dtype=float)), True
         out.source = self.source and self.source.part(self.source.at[some])
         return out
 
@@ -125,7 +126,7 @@ class Signals(dict[str, Array]):
         if curve is not None and curve[0]() is law:
             return curve[1]
         new = self._curve_of(name, law)
-        if self.nt <= LONG or law.looks_at_all:
+        if self.nt <= LONG or (law.looks_at_all and not law.by_instant):
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
         return new
 
@@ -158,7 +159,7 @@ class Signals(dict[str, Array]):
 
             near = curve(every, factor, read.moves, read.turns, full, self.missed)
             return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
-        if self._around:
+        if self._around and not (law.by_instant and self._is_stretch):
             whole, at = self._around
             value = whole.factor(name, law)
             return straight(value if value.ndim == 0 else between(value, at))

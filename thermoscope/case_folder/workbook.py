@@ -61,7 +61,7 @@ def write_xlsx(path: Path, content: Iterable[Table]) -> Path:
 
     book, memory = Workbook(write_only=True), io.BytesIO()
     for table in content:
-        sheet = book.create_sheet(visible(table.title).translate(UNREADABLE)[:31])
+        sheet = book.create_sheet(visible(table.title).translate(UNREADABLE)[:28])  # of 31, with room for a number
         sheet.freeze_panes = "A2"
         for row in (table.columns, *table.rows):
             sheet.append([_typed(sheet, value) for value in row])

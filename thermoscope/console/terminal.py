@@ -82,7 +82,7 @@ def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Sum
     text = json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n"
     if target == STDOUT:
         with to_stdout():
-            sys.stdout.write(text)
+            sys.stdout.write(text.encode(errors="backslashreplace").decode())  # halves of letters as JSON's escapes
         return
     if target is not None:
         write_whole(Path(target), text)

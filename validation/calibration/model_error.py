@@ -239,7 +239,7 @@ def with_cores(network: Network, test: Test, values: Mapping[str, float], doubt:
         C = float(network.C[place.states[0]])
         q = doubt["core"] * C * np.gradient(T[:, i] - core[:, i], test.time)
         name = f"core:{place.name}"
-        law = Shaped(Fixed(1.0), Series(test.time, q), also_reads=("time_s",))
+        law = Shaped(Fixed(1.0), Series(test.time, q), also_reads=("time_s",), by_instant=True)
         sources.append(heat(network, name, "core", place.name, law))
         parameters.append(_amplitude(f"doubt:{name}", name, 1.0, "1"))
     network = network.extended(sources=sources)

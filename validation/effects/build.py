@@ -21,6 +21,7 @@ class Shaped(Wrapped):
     shape: Callable[[Inputs], Array | float]
     temperature: TemperatureLaw = CONSTANT
     also_reads: tuple[str, ...] = ()
+    by_instant: bool = False
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]

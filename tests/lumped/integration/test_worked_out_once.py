@@ -6,7 +6,7 @@ import numpy as np
 
 from lumped.integration.signals import Signals
 from lumped.model.once import once
-from lumped.transfer.laws import InputPower
+from lumped.transfer.laws import InputPower, Law
 
 
 class Thing:
@@ -48,3 +48,21 @@ def test_laws_of_the_same_input_share_how_it_runs_between_the_samples(monkeypatc
     assert looked == [50, 50]
     np.testing.assert_allclose(first.bulge[1:], -0.25 * (9.0 / 49.0) ** 2, rtol=1e-9)  # of a square
     np.testing.assert_allclose(second.bulge[1:], 3.0 * first.bulge[1:], rtol=1e-9)
+
+
+class Wave(Law):
+    """A law of the clock that asks for no other instant."""
+
+    reads, by_instant = ("time_s",), True
+
+    def factor(self, inputs):
+        return np.sin(inputs["time_s"])
+
+
+def test_a_law_of_the_instant_alone_is_made_stretch_by_stretch():
+    """The whole of a long record is not made for it: it would stay in memory, once for each such law."""
+    time, law = np.arange(1000.0), Wave()
+    whole = Signals({"time_s": time}, time.size)
+    part = whole.part(slice(300, 400))
+    assert np.array_equal(part.factor("x", law), np.sin(time[300:400]))
+    assert not whole._known

@@ -95,8 +95,8 @@ def test_a_stopped_improvement_shows_the_steps_that_stay(tmp_path, monkeypatch):
     monkeypatch.setattr("validation.revision.improvement.diagnose", interrupted)
     done = answered("explain", "improve", case, "--yes", "--json", tmp_path / "a.json")
     assert done.code == 130
-    assert "Stopped after 1 steps" in done.out
-    assert "1 revisions were written to" in " ".join(done.err.split())
+    assert "Stopped after 1 step;" in done.out
+    assert "1 revision written to" in " ".join(done.err.split())
     assert (case / "model.toml").exists()
     assert not (tmp_path / "a.json").exists()
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from geom.table import Table, percent, with_interval
-from geom.text import visible
+from geom.text import counted, visible
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
@@ -78,9 +78,9 @@ class Ledger:
         rows = [[r.number, r.effect or r.action, name, *pair] for r in steps for name, pair in r.rmse_K.items()]
         grid = Table("As far as it came (rms)", ["revision", "step", "test", "before (K)", "after (K)"], rows)
         more = f"thermoscope explain improve {quote(called)} goes on from there"
-        sentence = f"Stopped after {len(steps)} steps; what the next one would be is not known yet."
+        sentence = f"Stopped after {counted(len(steps), 'step')}; what the next one would be is not known yet."
         give({}, None, lambda: Summary(sentence, [grid] if rows else [], more))
-        notes([f"stopped: {self.written} revisions were written to {self.file} and stay"])
+        notes([f"stopped: {counted(self.written, 'revision')} written to {self.file} and kept"])
 
 
 def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
@@ -115,7 +115,7 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         probability=lambda s: s["evidence"].get("probability", ""),
     )
     number, file = document["written"], folder.settings.model_file
-    outcome = f"{number} revision{'s' * (number > 1)} written to {file}" if number else "nothing written"
+    outcome = f"{counted(number, 'revision')} written to {file}" if number else "nothing written"
     further = [] if document["adequate"] else next_tests(document["diagnosis"])
     more = f"thermoscope model undo {quote(called)} takes a step back; thermoscope show report {quote(called)}"
     added = [s["effect"] for s in steps if s["effect"]]
