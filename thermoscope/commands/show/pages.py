@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +25,7 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagno
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
-from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.console.terminal import Progress, give, notes, progress, versions
 from viz.machine.missing import placed
 
 if TYPE_CHECKING:
@@ -223,5 +221,4 @@ def commands(folder: Folder, case: str) -> list[str]:
 def provenance() -> str:
     """Date, versions, computer."""
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
-    parts = [f"thermoscope {version('thermoscope')}", f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
-    return f"{now}; {', '.join(parts)}; {platform.system()} {platform.machine()}"
+    return f"{now}; {versions()}, NumPy {np.__version__}"
