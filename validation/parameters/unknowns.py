@@ -16,7 +16,7 @@ from measured.case import Case, Channel, Model, Reference, Test
 from measured.doubt import USUAL, Doubt, boundary_doubt
 from measured.sensors.operators import of_measurement, start_target
 from validation.effects.base import Effect, Scene
-from validation.effects.registry import effect, with_effects
+from validation.effects.registry import READ, effect, kinds, with_effects
 from validation.effects.sensors.input_offset import Shift
 from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
@@ -327,6 +327,14 @@ def parameter_words(name: str) -> tuple[str, str]:
     if dot and kind in KINDS:
         law = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
     return law, POWERS.get(exponent, f"exponent of {exponent}".replace("_", " ")) if powered else ""
+
+
+def value_words(name: str) -> str:
+    """A value of the model as an engineer says it: "heat capacity of rotor"; of an effect its statement."""
+    law, power = parameter_words(name)
+    kind, at, _ = law.partition("@")
+    words = effect(law).statement if at and kind in {**kinds(), **READ} else law
+    return f"{words}, {power}" if power else words
 
 
 def with_model(case: Case, model: Model) -> Case:
