@@ -21,7 +21,7 @@ from thermoscope.commands.model.build import build_machine
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import rendered, write_page
+from thermoscope.commands.show.pages import field_pictures, rendered, write_page
 from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.test.compare import compared, comparison_summary
 from thermoscope.console.options import Json
@@ -86,8 +86,9 @@ def demo(
     headline("7  What is left, and where to look")
     say(remaining_error(diagnosis, stages[-1].errors))
     with progress() as tell:
-        rendered(folder, out, tell)
-        write_page(folder, str(case), out, tell)
+        pictures = field_pictures(folder, out)
+        rendered(folder, out, tell, pictures)
+        write_page(folder, str(case), out, tell, pictures)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, success, out, target, time.monotonic() - start)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from geom.table import Table
 from validation import tables
 from validation.comparison.uncertainty import RULE
 from viz.data import Comparison
-from viz.figures import bands, candidates, curves, errors
+from viz.figures import bands, candidates, curves, errors, paper
 from viz.figures.intervals import intervals
 from viz.machine.missing import placed
 from viz.pages import html, words
@@ -126,14 +127,15 @@ _VIEWER = "The machine in the browser's own GL: every test, turned, cut and play
 
 
 def _curves(r: Report) -> str:
-    parts = []
-    for i, c in enumerate(r.curves):
+    def of_test(i: int, c: Comparison) -> str:
         name = f"{c.test.name} ({c.test.role})"
         both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
         both += html.plot(
             curves.measured_and_model(c), f"curves{i}", f"{name}: readings, what counts as within, and the model."
         )
-        parts.append(html.more(name, both, expanded=i == 0))
+        return html.more(name, both, expanded=i == 0)
+
+    parts = paper.drawn([partial(of_test, i, c) for i, c in enumerate(r.curves)])
     return html.section("Measured and modelled", *parts)
 
 
