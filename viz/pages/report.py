@@ -18,6 +18,7 @@ from geom.storage import write_whole
 from geom.table import Table
 from validation import tables
 from validation.comparison.uncertainty import RULE
+from validation.parameters.unknowns import value_words
 from viz.data import Comparison
 from viz.figures import bands, candidates, curves, errors, paper
 from viz.figures.intervals import intervals
@@ -161,7 +162,7 @@ def _missing(r: Report) -> str:
     errors_words = "Errors: without the effect → with it, all else fitted anew each time."
     parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
     alike = [
-        {**c, "confused_with": "; ".join(texts.get(name, name) for name in c["confused_with"])}
+        {**c, "confused_with": "; ".join(texts.get(name) or value_words(name) for name in c["confused_with"])}
         for c in by_odds
         if c["confused_with"]
     ]

@@ -83,6 +83,11 @@ def test_a_measured_loss_asks_which_input_is_the_speed():
         ("loss.iron^speed_rpm", "loss of iron, exponent of speed rpm"),
         ("fan.flow", "fan.flow"),
         ("shaft@left", "shaft@left"),
+        ("loss.constant@air.left", "constant heat input at air.left"),
+        (
+            "convection@flange.right^speed_rpm",
+            "forced convection by vehicle wind at flange.right, exponent of speed rpm",
+        ),
         ("convection@flange.right", "forced convection by vehicle wind at flange.right"),
     ],
 )
