@@ -46,8 +46,8 @@ def demo_table(stages: Sequence[Mapping[str, Any]]) -> str:
 
 def demo_time(demo: Mapping[str, Any]) -> str:
     """How long it took, on what."""
-    on = f"a computer with {os.cpu_count()} cores ({datetime.date.today().isoformat()})"
-    return f"That run took {demo['seconds']} s, and {demo['core_s']} s of one core in all, on {on}."
+    on = f"{os.cpu_count()} cores, which may have had other work ({datetime.date.today().isoformat()})"
+    return f"That run took {demo['core_s']} s of one core in all; {demo['seconds']} s on {on}."
 
 
 def machine_arguments(description: str | None) -> argparse.Namespace:
