@@ -87,8 +87,8 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
     return app
 
 
-def _say_version(wanted: bool) -> None:
-    if wanted:
+def _say_version(value: bool) -> None:
+    if value:
         print(versions())
         raise typer.Exit
 

@@ -86,7 +86,7 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     return inner
 
 
-def drawn(draws: Sequence[Callable[[], R]]) -> list[R]:
+def draw_all(draws: Sequence[Callable[[], R]]) -> list[R]:
     """What each of them returns, in two processes where there is room: Matplotlib holds Python's lock as it draws.
 
     Beside other threads of a server nothing is forked.

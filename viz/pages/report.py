@@ -136,7 +136,7 @@ def _curves(r: Report) -> str:
         )
         return html.more(name, both, expanded=i == 0)
 
-    parts = paper.drawn([partial(of_test, i, c) for i, c in enumerate(r.curves)])
+    parts = paper.draw_all([partial(of_test, i, c) for i, c in enumerate(r.curves)])
     return html.section("Measured and modelled", *parts)
 
 

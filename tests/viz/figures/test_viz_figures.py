@@ -269,6 +269,6 @@ def test_curves_of_a_page_are_the_same_from_two_processes_and_beside_other_threa
         return [lambda i=i: (paper.svg(curves.residuals(comparison()), f"r{i}"), os.getpid()) for i in range(count)]
 
     with ThreadPoolExecutor(1) as pool:
-        alone = pool.submit(paper.drawn, draws(4)).result()
+        alone = pool.submit(paper.draw_all, draws(4)).result()
     assert {pid for _, pid in alone} == {os.getpid()}
-    assert [text for text, _ in paper.drawn(draws(4))] == [text for text, _ in alone]
+    assert [text for text, _ in paper.draw_all(draws(4))] == [text for text, _ in alone]

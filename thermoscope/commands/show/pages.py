@@ -116,7 +116,7 @@ def rendered(folder: Folder, into: Path, tell: Progress, pictures: Mapping[str, 
     curves = [marked(runs.comparison_of(folder, test), current_diagnosis(folder)) for test in runs.by_interest(folder)]
     kinds = (("curves", viz.measured_and_model), ("residuals", viz.residuals))
     every = [(draw, c, into / f"{name}-{file_stem(c.test.name)}.png") for c in curves for name, draw in kinds]
-    paper.drawn([partial(_write_figure, *one) for one in every])
+    paper.draw_all([partial(_write_figure, *one) for one in every])
     paths = [png for *_, png in every]
     if folder.history.revisions:
         paths.append(into / "error.png")
