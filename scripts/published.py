@@ -44,6 +44,12 @@ def demo_table(stages: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def demo_time(demo: Mapping[str, Any]) -> str:
+    """How long it took, on what."""
+    on = f"{os.cpu_count()} cores, which may have had other work ({datetime.date.today().isoformat()})"
+    return f"That run took {demo['core_s']} s of one core in all; {demo['seconds']} s on {on}."
+
+
 def machine_arguments(description: str | None) -> argparse.Namespace:
     """MACHINE ... --json FILE --page, of a benchmark that keeps rows by machine and publishes them on a page."""
     parser = argparse.ArgumentParser(description=description)
@@ -75,7 +81,9 @@ def main() -> None:
     parser.add_argument("--hust", type=Path, help="folder that examples/hust.py wrote to")
     options = parser.parse_args()
     if options.demo:
-        publish(FRONT, "demo-rows", demo_table(json.loads(options.demo.read_text(encoding="utf-8"))["stages"]))
+        demo = json.loads(options.demo.read_text(encoding="utf-8"))
+        publish(FRONT, "demo-rows", demo_table(demo["stages"]))
+        publish(FRONT, "demo-time", demo_time(demo))
     if options.hust:
         publish(FRONT, "hust-rows", (options.hust / "front-page.md").read_text(encoding="utf-8"))
         publish(HUST, "hust-tables", (options.hust / "table.md").read_text(encoding="utf-8"))

@@ -76,7 +76,7 @@ def main() -> None:
     parser.add_argument("page", type=Path, nargs="?", default=PAGE, help="else the tutorial, its outputs whole")
     parser.add_argument("--keep", type=Path, help="folder to run in; else one that is thrown away")
     chosen = parser.parse_args()
-    folder, file = chosen.keep or Path(tempfile.mkdtemp()), chosen.page
+    folder, file = chosen.keep or Path(tempfile.mkdtemp()), chosen.page.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     page = file.read_text(encoding="utf-8")
     page = with_outputs(page, run(commands(page), folder), 10**6 if file == PAGE else FEW)

@@ -14,7 +14,7 @@ from inspect import cleandoc
 from keyword import iskeyword
 from pathlib import Path
 from types import CodeType
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -22,7 +22,7 @@ from geom.errors import ThermoscopeError
 from geom.plugins import plugins
 from geom.storage import cache_folder
 from thermoscope.console.summary import LINES, limited_lines
-from thermoscope.console.terminal import ranges_as_notes
+from thermoscope.console.terminal import ranges_as_notes, versions
 from thermoscope.files import STOPPED, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
 
@@ -68,6 +68,7 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
     extras : apps of further commands; the name of each is its group, a new one brings its help
     """
     app = typer.Typer(help=ABOUT, epilog=CODES, add_completion=False, pretty_exceptions_enable=False, **PLAIN)
+    app.callback(help=ABOUT)(_of_every_command)
     parts = {"": app}
     groups = [(group, words) for group, (words, _) in GROUPS.items()]
     for group, words in [*groups, *((str(e.info.name), str(e.info.help)) for e in extras)]:
@@ -84,6 +85,20 @@ def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.T
             name, words = str(one.name or one.callback.__name__), str(one.callback.__doc__)
             parts[str(extra.info.name)].command(name, short_help=words)(one.callback)
     return app
+
+
+def _say_version(value: bool) -> None:
+    if value:
+        print(versions())
+        raise typer.Exit
+
+
+def _of_every_command(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_say_version, help="The version, Python and system.")
+    ] = False,
+) -> None:
+    """Options before the command."""
 
 
 def _help_alone(module: str, name: str) -> Callable[[], None]:

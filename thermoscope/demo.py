@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -21,7 +22,7 @@ from thermoscope.commands.model.build import build_machine
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.model.revise import add
 from thermoscope.commands.open_case import open_case
-from thermoscope.commands.show.pages import rendered, write_page
+from thermoscope.commands.show.pages import field_pictures, rendered, write_page
 from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.test.compare import compared, comparison_summary
 from thermoscope.console.options import Json
@@ -86,8 +87,9 @@ def demo(
     headline("7  What is left, and where to look")
     say(remaining_error(diagnosis, stages[-1].errors))
     with progress() as tell:
-        rendered(folder, out, tell)
-        write_page(folder, str(case), out, tell)
+        pictures = field_pictures(folder, out)
+        rendered(folder, out, tell, pictures)
+        write_page(folder, str(case), out, tell, pictures)
     picture(out / "error.png", "the error, step by step")
     picture(out / "field-before-after.png", "the field before and after")
     return closing(stages, success, out, target, time.monotonic() - start)
@@ -202,7 +204,8 @@ def closing(stages: Sequence[Stage], success: bool, out: Path, target: str | Non
     first, last = stages[0].errors["tests"], stages[-1].errors["tests"]
     hold_out = [(a, b) for a, b in zip(first, last, strict=True) if a["role"] == "hold-out"]
     fell = success and all(b["rmse_K"] < a["rmse_K"] for a, b in hold_out)
-    document = {"case": CASE, "stages": [{"stage": s.name, **s.errors} for s in stages], "fell": fell}
+    took = {"seconds": round(seconds), "core_s": round(sum(os.times()[:4]))}  # other programs may run beside
+    document = {"case": CASE, "stages": [{"stage": s.name, **s.errors} for s in stages], "fell": fell, **took}
     give(document, target, lambda: demo_summary(stages, out, seconds))
     return 0 if fell else 1
 

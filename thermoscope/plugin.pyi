@@ -241,6 +241,7 @@ from validation.parameters.unknowns import (
     standing_reference as standing_reference,
     to_coordinate as to_coordinate,
     to_value as to_value,
+    value_words as value_words,
     with_model as with_model,
     working as working,
 )

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from geom.table import Table, cell, percent, with_interval
+from validation.parameters.unknowns import value_words
 
 Document = Mapping[str, Any]
 LEAST_PROBABILITY = 0.005  # probabilities below half a per cent are in the document alone
@@ -162,6 +163,7 @@ def contradiction_table(contradiction: Document) -> Table:
         contradiction.get("differences", [])[:MOST_DIFFERENCES],
         "test | *parameter | other tests=others | *this test=here | unit | *deviations=sd | *can it differ?=possible",
         ["no"],
+        parameter=lambda d: value_words(d["parameter"]),
         unit=unit_of,
         sd=lambda d: abs(d["sd"]),
     )

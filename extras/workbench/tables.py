@@ -83,7 +83,7 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
             "amplitude": th.amplitude(c),
             "error": th.fall(c["rmse_K"]),
             "held": th.fall(c["holdout_rmse_K"]),
-            "alike": ", ".join(words.get(name, name) for name in c["confused_with"][:3]),
+            "alike": ", ".join(words.get(name) or th.value_words(name) for name in c["confused_with"][:3]),
             "decision": c["decision"],
             "test": c.get("isolating_test", ""),
             "inside": c["effect"] in effects,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -77,11 +77,11 @@ class Run(TableResult):
     path: Array | None = None
     finer: Callable[[], Run] = None  # type: ignore[assignment]
 
-    @cached_property
+    @property  # one that is cached has, before Python 3.12, one lock for all runs: threads would wait for each other
     def time_error_K(self) -> Array:
         """(n_rows,) the largest error of every output that steps and parabolas through inputs leave (K), from that run.
 
-        It takes some three times as long as the run itself, and only when asked for.
+        It takes some three times as long as the run itself, whenever it is asked for.
         """
         return np.asarray(np.abs(self.y - self.finer().y).max(axis=0, initial=0.0))
 

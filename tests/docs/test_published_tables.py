@@ -22,7 +22,7 @@ from lumped.build.mesh_choice import (
 )
 from lumped.build.network_size import CONDENSED, FIRST_AXIAL, accurate_network
 from lumped.build.pipeline import CASE, FEW, LITTLE
-from scripts.published import FRONT, HUST, ROOT, between, demo_table
+from scripts.published import FRONT, HUST, ROOT, between, demo_table, demo_time
 from thermoscope.console.options import ACCURACY
 
 CONDENSATION = (ROOT / "docs" / "condensation.md").read_text(encoding="utf-8")
@@ -82,6 +82,11 @@ def test_a_table_goes_between_its_markers():
 def test_the_demo_table_is_bold_where_it_was_never_used():
     tests = [{"name": "a", "role": "calibrate", "rmse_K": 0.256}, {"name": "b", "role": "hold-out", "rmse_K": 1.0}]
     assert demo_table([{"stage": "start", "tests": tests}]).splitlines()[-1] == "| start | 0.26 | **1.00** |"
+
+
+def test_the_front_page_says_how_long_the_demo_took():
+    words = demo_time({"seconds": 171, "core_s": 262})
+    assert re.sub(r"\d+", "9", words) in re.sub(r"\d+", "9", FRONT.read_text(encoding="utf-8"))
 
 
 def table_of(marker: str) -> list[list[str]]:

@@ -29,7 +29,7 @@ from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
 from validation.effects.during import During
-from validation.parameters.unknowns import effects_of, parameter_words, scene_of, standing, to_value, working
+from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, value_words, working
 from validation.threads import side_by_side
 
 if TYPE_CHECKING:
@@ -276,7 +276,7 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
         out.append(
             {
                 "name": p.name,
-                "words": value_words(folder.case, p.name),
+                "words": value_words(p.name),
                 "value": last.values[p.name],
                 "unit": p.unit,
                 "ci95": [a, b],
@@ -286,14 +286,6 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             }
         )
     return out
-
-
-def value_words(case: Case, name: str) -> str:
-    """A value of the model as an engineer says it: "heat capacity of rotor"."""
-    words, power = parameter_words(name)
-    if words in [e.name for e in case.model.effects]:
-        words = added_words(case, [words])
-    return f"{words}, {power}" if power else words
 
 
 def sensors(folder: Folder) -> dict[str, Channel]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import platform
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -18,7 +19,7 @@ from thermoscope.console.progress_bar import Progress, progress
 from thermoscope.console.summary import Summary, printed, to_stdout
 
 STDOUT = "-"
-__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "ranges_as_notes", "say"]
+__all__ = ["Progress", "give", "notes", "notes_once", "plain", "progress", "ranges_as_notes", "say", "versions"]
 
 
 NOTES_SO_FAR: ContextVar[set[str] | None] = ContextVar("said", default=None)  # where each is said once
@@ -93,3 +94,11 @@ def give(document: Mapping[str, Any], target: str | None, show: Callable[[], Sum
 def say(message: str) -> None:
     """A sentence on stdout."""
     printed(Summary(message))
+
+
+def versions() -> str:
+    """What runs here, on what: in a report of a fault, and below a page."""
+    from importlib.metadata import version
+
+    python, system = platform.python_version(), f"{platform.system()} {platform.machine()}"
+    return f"thermoscope {version('thermoscope')}, Python {python}, {system}"

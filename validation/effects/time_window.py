@@ -55,7 +55,8 @@ class Event:
             (begin, end), (test,) = self.every[0], self.tests
             return f"from {begin / 60:.3g} to {end / 60:.3g} min of {test}"
         length = float(np.median([end - begin for begin, end in self.every])) / 60.0
-        return f"{len(self.every)} times in {', '.join(self.tests)}, about {length:.2g} min each"
+        often = "twice" if len(self.every) == 2 else f"{len(self.every)} times"
+        return f"{often} in {', '.join(self.tests)}, about {length:.2g} min each"
 
     def overlap(self, other: Event) -> float:
         """Time in both over time in either."""

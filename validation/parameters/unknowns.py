@@ -16,7 +16,7 @@ from measured.case import Case, Channel, Model, Reference, Test
 from measured.doubt import USUAL, Doubt, boundary_doubt
 from measured.sensors.operators import of_measurement, start_target
 from validation.effects.base import Effect, Scene
-from validation.effects.registry import effect, with_effects
+from validation.effects.registry import READ, effect, kinds, with_effects
 from validation.effects.sensors.input_offset import Shift
 from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
@@ -322,12 +322,26 @@ def _value_words(name: str, value: float, unit: str) -> str:
 
 def parameter_words(name: str) -> tuple[str, str]:
     """What a value scales and what of it, if it is a power: ("loss of iron", "exponent of speed rpm"), ("film of gap",
-    ""); a name that was chosen freely as it is."""
-    law, powered, exponent = name.partition("^")
+    ""); an effect's statement; a name that was chosen freely as it is."""
+    kind, at, _ = name.partition("@")
+    law, powered, exponent = (name, "", "") if kind in READ else name.partition("^")  # their places hold powers
+    if at and kind in {**kinds(), **READ}:
+        law = effect(law).statement
+        return law, _power_words(exponent) if powered else ""
     kind, dot, place = law.partition(".")
     if dot and kind in KINDS:
         law = f"{KINDS[kind]} {place}".replace("|", " - ").replace(":", ", share of ")
-    return law, POWERS.get(exponent, f"exponent of {exponent}".replace("_", " ")) if powered else ""
+    return law, _power_words(exponent) if powered else ""
+
+
+def _power_words(exponent: str) -> str:
+    return POWERS.get(exponent, f"exponent of {exponent}".replace("_", " "))
+
+
+def value_words(name: str) -> str:
+    """A value of the model as an engineer says it: "heat capacity of rotor"; of an effect its statement."""
+    law, power = parameter_words(name)
+    return f"{law}, {power}" if power else law
 
 
 def with_model(case: Case, model: Model) -> Case:

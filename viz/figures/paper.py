@@ -5,10 +5,11 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ParamSpec
+from threading import current_thread, main_thread
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from viz.colours import BLUE, LIGHT, VERDICT, VERMILION
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 P = ParamSpec("P")
+R = TypeVar("R")
 DPI = 150  # sharp on a page
 _STYLE: dict[Any, Any] = {
     "font.size": 9.5,
@@ -82,6 +84,17 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
             return draw(*args, **options)
 
     return inner
+
+
+def draw_all(draws: Sequence[Callable[[], R]]) -> list[R]:
+    """What each of them returns, in two processes where there is room: Matplotlib holds Python's lock as it draws.
+
+    Beside other threads of a server nothing is forked.
+    """
+    from fem.solvers.two_processes import LEAST, in_two_processes
+
+    alone = current_thread() is main_thread()
+    return in_two_processes(lambda draw: draw(), draws, LEAST) if alone else [draw() for draw in draws]
 
 
 def save(figure: Figure, path: str | Path | None) -> Figure:

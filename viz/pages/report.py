@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,9 @@ from geom.storage import write_whole
 from geom.table import Table
 from validation import tables
 from validation.comparison.uncertainty import RULE
+from validation.parameters.unknowns import value_words
 from viz.data import Comparison
-from viz.figures import bands, candidates, curves, errors
+from viz.figures import bands, candidates, curves, errors, paper
 from viz.figures.intervals import intervals
 from viz.machine.missing import placed
 from viz.pages import html, words
@@ -126,14 +128,15 @@ _VIEWER = "The machine in the browser's own GL: every test, turned, cut and play
 
 
 def _curves(r: Report) -> str:
-    parts = []
-    for i, c in enumerate(r.curves):
+    def of_test(i: int, c: Comparison) -> str:
         name = f"{c.test.name} ({c.test.role})"
         both = html.plot(curves.residuals(c), f"residual{i}", f"{name}: measured − model per sensor.")
         both += html.plot(
             curves.measured_and_model(c), f"curves{i}", f"{name}: readings, what counts as within, and the model."
         )
-        parts.append(html.more(name, both, expanded=i == 0))
+        return html.more(name, both, expanded=i == 0)
+
+    parts = paper.draw_all([partial(of_test, i, c) for i, c in enumerate(r.curves)])
     return html.section("Measured and modelled", *parts)
 
 
@@ -159,7 +162,7 @@ def _missing(r: Report) -> str:
     errors_words = "Errors: without the effect → with it, all else fitted anew each time."
     parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
     alike = [
-        {**c, "confused_with": "; ".join(texts.get(name, name) for name in c["confused_with"])}
+        {**c, "confused_with": "; ".join(texts.get(name) or value_words(name) for name in c["confused_with"])}
         for c in by_odds
         if c["confused_with"]
     ]

@@ -103,7 +103,7 @@ def unequal_words(document: Mapping[str, Any]) -> str:
     usual = float(np.median([u["rmse_K"] for u in document["units"]]))
     other = [u["unit"] for u in document["units"] if u["rmse_K"] > FAR * max(usual, LEAST_K)]
     wide = [p for p in document["parameters"] if p["differs"] and p["spread_percent"] > WIDE]
-    why = [f"{p['name']} differs by {p['spread_percent']:.0f} %" for p in wide[:2]]
+    why = [f"{th.value_words(p['name'])} differs by {p['spread_percent']:.0f} %" for p in wide[:2]]
     why += (
         [f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one"]
         if other
@@ -115,13 +115,22 @@ def unequal_words(document: Mapping[str, Any]) -> str:
 def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
     """The outliers, what differs, what drifts."""
     outliers, count = document["outliers"], len(document["units"])
-    worst = "; ".join(f"{o['unit']} ({o['parameter']} x {o['factor']:.2f})" for o in outliers[:3])
+    worst = "; ".join(f"{o['unit']} ({th.value_words(o['parameter'])} x {o['factor']:.2f})" for o in outliers[:3])
     names = dict.fromkeys(o["unit"] for o in outliers)
     sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
-    rows = [[o["unit"], o["parameter"], o["factor"], *o["factor_ci95"], o["instead"]] for o in outliers]
+    rows = [
+        [
+            o["unit"],
+            th.value_words(o["parameter"]),
+            o["factor"],
+            *o["factor_ci95"],
+            [th.value_words(n) for n in o["instead"]],
+        ]
+        for o in outliers
+    ]
     differ = [
         [
-            p["name"],
+            th.value_words(p["name"]),
             p["mean"],
             p["spread_percent"],
             p["differs"],

@@ -2,7 +2,10 @@
 
 import re
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -126,6 +129,20 @@ def test_the_time_error_is_the_error():
     exact = np.array([rest + expm(t * A) @ (20.0 - rest) for t in time])
     error = np.abs(run.y - exact).max(axis=0)
     assert_allclose(run.time_error_K, error, rtol=0.1)
+
+
+def test_time_errors_of_two_runs_are_worked_out_at_once():
+    """Each waits for the other: one lock for both would keep them waiting."""
+    run = simulate(two_masses(), Record(np.arange(9.0), {}, {"ambient": 20.0}))
+    both = Barrier(2)
+
+    def finer():
+        both.wait(timeout=10)
+        return run
+
+    with ThreadPoolExecutor(2) as pool:
+        errors = list(pool.map(lambda one: one.time_error_K, [replace(run, finer=finer) for _ in range(2)]))
+    assert [e.size for e in errors] == [0, 0]
 
 
 def test_samples_do_not_set_the_steps_where_inputs_are_smooth():

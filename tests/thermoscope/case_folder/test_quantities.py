@@ -1,7 +1,5 @@
 """Which of several currents and speeds is the machine's: those that losses follow, the largest of them."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from lumped.declarations.network import read_network
 from measured.case import Test
 from measured.recordings.sheet import read_sheet
 from thermoscope.case_folder.quantities import with_quantities
-from thermoscope.case_folder.runs import value_words
+from validation.parameters.unknowns import value_words
 
 NETWORK = {
     "network": {"name": "n", "boundaries": ["room"]},
@@ -84,7 +82,14 @@ def test_a_measured_loss_asks_which_input_is_the_speed():
         ("h.gap:rotor", "film of gap, share of rotor"),
         ("loss.iron^speed_rpm", "loss of iron, exponent of speed rpm"),
         ("fan.flow", "fan.flow"),
+        ("shaft@left", "shaft@left"),
+        ("loss.constant@air.left", "constant heat input at air.left"),
+        (
+            "convection@flange.right^speed_rpm",
+            "forced convection by vehicle wind at flange.right, exponent of speed rpm",
+        ),
+        ("convection@flange.right", "forced convection by vehicle wind at flange.right"),
     ],
 )
 def test_a_value_of_the_model_has_words(name, words):
-    assert value_words(SimpleNamespace(model=SimpleNamespace(effects=())), name) == words
+    assert value_words(name) == words

@@ -61,3 +61,9 @@ def test_a_command_without_its_group_is_told_where_it_is(thermoscope, monkeypatc
             main()
         assert end.value.code == 2
         assert f"No such command '{word}'; {homes}\n" in capsys.readouterr().err
+
+
+def test_the_version_is_one_line_with_python_and_system_on_it():
+    code, text = said(narrowed_app(["--version"]), ["--version"])
+    assert code == 0
+    assert re.fullmatch(r"thermoscope \d\S*, Python 3\.\d+\.\d+\S*, \w+ \w+\n", text)

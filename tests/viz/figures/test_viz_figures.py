@@ -1,6 +1,8 @@
 """Figures: written, not blank, and carrying the numbers they were given."""
 
+import os
 import re
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -258,3 +260,15 @@ def test_readings_without_neighbours_are_dots():
 def test_a_printed_sign_is_the_one_of_mathematics():
     assert [signed(-1.94), signed(0.04), signed(-0.04), signed(12.0, 0)] == ["−1.9", "+0.0", "+0.0", "+12"]
     assert minus("-0.5") == "−0.5"
+
+
+def test_curves_of_a_page_are_the_same_from_two_processes_and_beside_other_threads():
+    """A thread beside others forks nothing: what they hold locked would stay so in the other process."""
+
+    def draws(count):
+        return [lambda i=i: (paper.svg(curves.residuals(comparison()), f"r{i}"), os.getpid()) for i in range(count)]
+
+    with ThreadPoolExecutor(1) as pool:
+        alone = pool.submit(paper.draw_all, draws(4)).result()
+    assert {pid for _, pid in alone} == {os.getpid()}
+    assert [text for text, _ in paper.draw_all(draws(4))] == [text for text, _ in alone]

@@ -17,6 +17,7 @@ from thermoscope.console.options import Case, Json, Only, Quick, Without
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation import tables
+from validation.parameters.unknowns import value_words
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -169,7 +170,7 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     lines += [tables.gain_words(first)] if first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
-        alike = ", ".join(words.get(name, name) for name in first["confused_with"])
+        alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])
         lines.append(f"To these tests and sensors it looks like {alike}.")
     return lines
 

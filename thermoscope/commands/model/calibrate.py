@@ -83,14 +83,14 @@ class Unfinished:
 
     def show(self, folder: Folder, called: str) -> None:
         """What is known of a fit that the user stopped, and where it is kept; no document, which is of a whole fit."""
-        from validation.parameters.unknowns import working
+        from validation.parameters.unknowns import value_words, working
 
         parameters = [p for p in working(folder.case)[1].parameters if p.name in self.reached and not of_measurement(p)]
         values = {p: (folder.case.model.values.get(p.name, p.value), self.reached[p.name]) for p in parameters}
         farthest_first = sorted(
             parameters, key=lambda p: -abs(values[p][1] - values[p][0]) / max(abs(values[p][0]), 1e-300)
         )
-        rows = [[p.name, *values[p], "" if p.unit == "1" else p.unit] for p in farthest_first]
+        rows = [[value_words(p.name), *values[p], "" if p.unit == "1" else p.unit] for p in farthest_first]
         if not rows:
             return
         grid = Table(

@@ -23,7 +23,7 @@ from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
-from validation.parameters.unknowns import strain_words
+from validation.parameters.unknowns import strain_words, value_words
 from validation.tables import parameters_table, revision_tables
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     keep, finding = result.worth_keeping or anyway, ""
     if keep:
         longer = folder.history.and_then(recorded(result, evidence(folder, result)))
-        save_history(folder.settings.model_file, longer, folder.history)
+        longer = save_history(folder.settings.model_file, longer, folder.history)
         write_columns(folder, longer.last.effects)
         if result.action == "add":
             after = replace(folder, case=at_revision(folder, longer.last), history=longer)
@@ -165,6 +165,11 @@ def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
     return "@" not in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
 
 
+def in_words(p: Mapping[str, Any]) -> dict[str, Any]:
+    """A parameter as an engineer says it, and the one that it trades with."""
+    return {**p, "name": value_words(p["name"]), "partner": p["partner"] and value_words(p["partner"])}
+
+
 def named(p: Mapping[str, Any]) -> str:
     """A parameter the data cannot fix, with the one it trades with."""
     return f"{p['name']} (trades with {p['partner']})" if p["partner"] else str(p["name"])
@@ -178,7 +183,7 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
     failed = [f"FAILED  {c['check']}: {c['words']}" for c in document["checks"] if not c["passed"]]
     passed = [f"passed  {c['check']}: {c['words']}" for c in document["checks"] if c["passed"]]
     step = "explain diagnose" if document["action"] == "calibrate" else "test compare"
-    blind = [named(p) for p in document["parameters"] if not p["identified"] and not p["of_measurement"]]
+    blind = [named(in_words(p)) for p in document["parameters"] if not p["identified"] and not p["of_measurement"]]
     few = f"{', '.join(blind[:FEW])}{', ...' if len(blind) > FEW else ''}"
     parts: list[Table | str] = [
         errors,
@@ -210,7 +215,7 @@ def _outcome_words(document: Mapping[str, Any]) -> list[str]:
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
     identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
-    return parameters_table("What the data fixed (95 %)", identifiable)
+    return parameters_table("What the data fixed (95 %)", map(in_words, identifiable))
 
 
 def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import platform
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import datetime
-from importlib.metadata import version
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +26,8 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagno
 from thermoscope.console.options import Case as CaseName
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
-from thermoscope.console.terminal import Progress, give, notes, progress
+from thermoscope.console.terminal import Progress, give, notes, progress, versions
+from viz.figures import paper
 from viz.machine.missing import placed
 
 if TYPE_CHECKING:
@@ -53,8 +53,10 @@ def report(case: CaseName, out: Out = None, target: Json = None) -> int:
     return 0
 
 
-def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
-    """Write into/report.html with its pictures; `case` is what the commands on it call the case."""
+def write_page(
+    folder: Folder, case: str, into: Path, tell: Progress, pictures: Mapping[str, Path] | None = None
+) -> Path:
+    """Write into/report.html with its pictures, drawn anew or those given; `case` is what commands call the case."""
     from thermoscope.case_folder.stored_yardstick import yardstick_document
     from validation.comparison.error_budget import documents
     from viz.pages.report import Report, write_report
@@ -73,7 +75,7 @@ def write_page(folder: Folder, case: str, into: Path, tell: Progress) -> Path:
         runs.steps(folder),
         runs.parameters(folder),
         curves,
-        _pictures(folder, into, None if earlier else diagnosis),
+        field_pictures(folder, into) if pictures is None else pictures,
         assumptions(folder),
         commands(folder, case),
         provenance(),
@@ -105,26 +107,29 @@ def render(case: CaseName, out: Out = None, target: Json = None) -> int:
     return 0
 
 
-def rendered(folder: Folder, into: Path, tell: Progress) -> list[Path]:
-    """The pictures of an open case, and its recording."""
+def rendered(folder: Folder, into: Path, tell: Progress, pictures: Mapping[str, Path] | None = None) -> list[Path]:
+    """The pictures of an open case, drawn anew or those given of its field, and its recording."""
     into.mkdir(parents=True, exist_ok=True)
     tell("running the model and its error budget")
     _ = folder.compared
     tell("drawing curves")
-    paths = []
-    for test in runs.by_interest(folder):
-        comparison = marked(runs.comparison_of(folder, test), current_diagnosis(folder))
-        for name, draw in (("curves", viz.measured_and_model), ("residuals", viz.residuals)):
-            paths.append(into / f"{name}-{file_stem(test.name)}.png")
-            draw(comparison, png=paths[-1])
+    curves = [marked(runs.comparison_of(folder, test), current_diagnosis(folder)) for test in runs.by_interest(folder)]
+    kinds = (("curves", viz.measured_and_model), ("residuals", viz.residuals))
+    every = [(draw, c, into / f"{name}-{file_stem(c.test.name)}.png") for c in curves for name, draw in kinds]
+    paper.draw_all([partial(_write_figure, *one) for one in every])
+    paths = [png for *_, png in every]
     if folder.history.revisions:
         paths.append(into / "error.png")
         viz.staircase(runs.steps(folder), png=paths[-1])
-    files = [*paths, *_pictures(folder, into, current_diagnosis(folder)).values()]
+    files = [*paths, *(field_pictures(folder, into) if pictures is None else pictures).values()]
     if folder.built is not None:
         tell("writing the recording")
         files.append(_recording(folder, into))
     return files
+
+
+def _write_figure(draw: Callable[..., Any], comparison: Comparison, png: Path) -> None:
+    draw(comparison, png=png)
 
 
 def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
@@ -136,13 +141,12 @@ def _diagnosis(folder: Folder) -> tuple[Mapping[str, Any] | None, bool]:
     return last, last is not None
 
 
-def _pictures(folder: Folder, into: Path, diagnosis: Mapping[str, Any] | None) -> dict[str, Path]:
-    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before.
-
-    diagnosis : of this model; it says where heat is missing
-    """
+def field_pictures(folder: Folder, into: Path) -> dict[str, Path]:
+    """Caption -> picture of the field at the end of the most telling test, alone or beside the model before; and where
+    heat is missing, if this model was diagnosed."""
     if folder.built is None:
         return {}
+    diagnosis = current_diagnosis(folder)
     try:
         viz.require_gl()
     except MissingDependency as fault:
@@ -223,5 +227,4 @@ def commands(folder: Folder, case: str) -> list[str]:
 def provenance() -> str:
     """Date, versions, computer."""
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
-    parts = [f"thermoscope {version('thermoscope')}", f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
-    return f"{now}; {', '.join(parts)}; {platform.system()} {platform.machine()}"
+    return f"{now}; {versions()}, NumPy {np.__version__}"

@@ -15,7 +15,8 @@ def document(spread: float, rmse: float = 0.4) -> dict:
 def test_what_differs_by_more_than_half_is_another_motor():
     assert unequal_words(document(5.0)) == ""
     says = fleet_summary(document(70.0)).sentence
-    assert says.startswith("Are these equal motors? capacity.a differs by 70 %. Give each type a folder of its own.")
+    asks = "Are these equal motors? heat capacity of a differs by 70 %. Give each type a folder of its own."
+    assert says.startswith(asks)
 
 
 def test_a_recording_that_no_parameter_explains_is_named():
