@@ -274,8 +274,8 @@ def _effect_checks(
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
     after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in parts]
     checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside)
-    seen = tuple(visible_check(fit, n) for n in names) if aside else ()
-    return (*(bound_check(fit, n) for n in names), *seen, *checks, _lost(changes, tests))
+    shows = tuple(visible_check(fit, n) for n in names) if aside else ()
+    return (*(bound_check(fit, n) for n in names), *shows, *checks, _lost(changes, tests))
 
 
 def _trusted(test: Test, faults: Sequence[During]) -> Test:
