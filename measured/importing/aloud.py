@@ -32,6 +32,7 @@ from measured.importing.guess import (
     Guess,
     in_memory,
     is_whole,
+    of_edge,
 )
 from measured.importing.relations import COARSE, NOISE_K, misfit
 from measured.importing.source import Source
@@ -56,7 +57,6 @@ WEAK = (
 )
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
-ROOMS = ([Role.AMBIENT], [Role.COOLANT])
 
 
 def first_lines(drafts: Sequence[Draft]) -> list[str]:
@@ -161,7 +161,7 @@ def _may_heat(g: Guess) -> bool:
 
 def _best(draft: Draft, columns: Columns, of: Columns) -> tuple[str, float]:
     """The column that explains the hottest part best, and what it leaves of the rise; "" where none can be told."""
-    hot = [(r, g) for r, g in columns if g.place and roles_of(r.source.labels[g.column])[:1] not in ROOMS]
+    hot = [(r, g) for r, g in columns if g.place and not of_edge(roles_of(r.source.labels[g.column]))]
     if not hot or not of:
         return "", np.inf
     record, hottest = max(hot, key=lambda one: rise(one[0].source, one[1]))

@@ -91,7 +91,6 @@ SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"
 RELATIVE = "relative to a nominal"
 BY_READINGS = "a temperature, by its readings alone"
-EDGES = {Role.AMBIENT, Role.COOLANT}
 FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
 NO_UNIT = "no unit"
@@ -204,7 +203,7 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
         return [replace(g, doubt=doubts[g.column]) if g.column in stators else g for g in every]
     if not heats or any(is_whole(source.labels[c]) for c in hot):
         return every
-    parts = [g for g in every if g.column in hot and not EDGES & {*hot[g.column][:1]}]
+    parts = [g for g in every if g.column in hot and not of_edge(hot[g.column])]
     parts = [g for g in parts if not g.doubt.startswith((*CERTAIN, OF_INSTRUMENT))]
     scores = {g.column: quickness(in_memory(source, g), heats[0]) for g in parts}
     most = max(scores.values(), default=0.0)
@@ -256,7 +255,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         for g in every
     ]
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
-    parts = [c for c in hot if not EDGES & {*roles_of(hot[c])[:1]}]
+    parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
     if still != {*parts}:
         every = [g.without("never changes: a limit, or a dead sensor") if g.column in still else g for g in every]
@@ -269,8 +268,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
-    rest = [g for g in every if g.column in hot and g.quantity and g.column not in instruments]
-    rest = [g for g in rest if not EDGES & {*roles_of(hot[g.column])[:1]}]
+    rest = [g for g in every if g.column in parts and g.quantity and g.column not in instruments]
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
     if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
         warmest = np.inf
@@ -283,6 +281,11 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
             stays = (len(instruments) == len(hot) and not g.place) or is_spoken(g.place, INSTRUMENT)
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
+
+
+def of_edge(roles: Sequence[Role]) -> bool:
+    """Is a column of such roles of the room or the coolant, not of a part?"""
+    return tuple(roles[:1]) in ((Role.AMBIENT,), (Role.COOLANT,))
 
 
 def guess(source: Source, column: str, target: Target) -> Guess:

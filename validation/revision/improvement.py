@@ -123,7 +123,7 @@ class Supervisor:
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
-    """What may be added without asking: physics that stands alone, no fault of the measurement.
+    """What may be added without asking: physics that stands alone or is sure; of faults those that held in one test.
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """

@@ -258,9 +258,8 @@ def _effect_checks(
     Readings that a fault in one test explains are not predicted: what they should have been is not known. Of such a
     fault alone, all others must be predicted as well as before.
     """
-    every, new_ones = [effect(e.name) for e in new.effects], {effect(n).name for n in names}
-    faults = [e for e in every if isinstance(e, During) and e.base.temporary]
-    aside = all(name in {e.name for e in faults} for name in new_ones)
+    faults = [e for e in (effect(e.name) for e in new.effects) if isinstance(e, During) and e.base.temporary]
+    aside = {*names} <= {e.name for e in faults}
     telling = [] if aside else telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)

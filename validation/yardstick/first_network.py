@@ -234,17 +234,13 @@ class _TermTable:
         where there are such: a sensor that slipped off in one test says nothing of the network."""
         if len(self.normal) < FEWEST_FOLDS:
             return [self]
-        out, constant = [list(fold) for fold in self.normal], -1 - self.shape[2]  # heat: it counts the windows
-        for n in range(len(self.nodes)):
-            each, weights = [fold[n] for fold in self.normal], np.ones(len(out))
-            for _ in range(ROUNDS):
-                some = [w * N for w, N in zip(weights, each, strict=True)]
-                left = np.array([_misfit(N, sum(some, -M)) / float(N[constant, constant]) for N, M in zip(each, some)])
-                weights = np.maximum(1.0, left / max(OUTLYING**2 * float(np.median(left)), 1e-300)) ** -2.0
-            for fold, w in zip(out, weights, strict=True):
-                fold[n] = fold[n] if w == 1.0 else fold[n] * w
-        alike = all(new is old for a, b in zip(out, self.normal, strict=True) for new, old in zip(a, b, strict=True))
-        return [self] if alike else [self, replace(self, normal=out, weight=_weights(out))]
+        weights = np.array([_weights_of_folds(each, -1 - self.shape[2]) for each in zip(*self.normal, strict=True)])
+        if (weights == 1.0).all():
+            return [self]
+        normal = [
+            [w * N for w, N in zip(ws, fold, strict=True)] for ws, fold in zip(weights.T, self.normal, strict=True)
+        ]
+        return [self, replace(self, normal=normal, weight=_weights(normal))]
 
     def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
         """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""
@@ -345,6 +341,19 @@ def _capacity(N: Array, b: Array, a: Array, before: float) -> float:
     """The capacity with which a node's heat explains most of its rises."""
     explained = float(a @ b)
     return float(a @ N @ a) / explained if explained > 0.0 else before
+
+
+def _weights_of_folds(each: Sequence[Array], constant: int) -> Array:
+    """(n_fold,) of one node's tables: below 1 where the others' fit explains them far worse than is usual.
+
+    constant : column of constant heat, which counts the windows
+    """
+    weights = np.ones(len(each))
+    for _ in range(ROUNDS):
+        some = [w * N for w, N in zip(weights, each, strict=True)]
+        left = np.array([_misfit(N, sum(some, -M)) / float(N[constant, constant]) for N, M in zip(each, some)])
+        weights = np.maximum(1.0, left / max(OUTLYING**2 * float(np.median(left)), 1e-300)) ** -2.0
+    return weights
 
 
 def _weights(normal: Sequence[Sequence[Array]]) -> Array:
