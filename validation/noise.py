@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 TAU, ELL = FORM["fast time"], FORM["slow time"]
 FLOOR_K = FORM["resolved"]
+MEDIAN = 0.6745  # deviations that half of normal readings are within
+TINY = 1e-9  # deviations, so that a fit without any residual has a scale
 OUTLYING = 3.0  # deviations: of a thousand readings three are further off by chance
 
 
@@ -181,11 +183,12 @@ class Noise:
     def robust(self, parts: Sequence[Segment]) -> Noise:
         """The same, under which readings that surprise a fit by more than OUTLYING deviations pull it no further.
 
-        Nothing in the noise is as fast as heat that comes or goes between two readings: a single one would outweigh
-        hours. Source: Huber 1964.
+        A deviation is what half of all readings are within, as a normal one has it: a single sensor that came loose, or
+        heat that comes and goes between two readings, would outweigh hours. Source: Huber 1964.
         """
         each = {(s.test, s.channel): np.abs(self.whiten(s, s.r[:, None])[:, 0]) for s in parts}
-        return replace(self, trust={at: np.sqrt(OUTLYING / np.maximum(e, OUTLYING)) for at, e in each.items()})
+        far = OUTLYING * max(float(np.median(np.concatenate([*each.values()]))) / MEDIAN, TINY)
+        return replace(self, trust={at: np.sqrt(far / np.maximum(e, far)) for at, e in each.items()})
 
     def logdet(self, segment: Segment) -> float:
         """log|Sigma| of a segment."""
@@ -202,6 +205,10 @@ class Noise:
             over[s.channel] = max(over.get(s.channel, 1.0), ratio)
         times = sum(self.levels.get(c, self.reserve).shape().log_prior() for c in over)
         return times - 0.5 * float(sum((np.log(x) / np.log(USUAL["misfit"])) ** 2 for x in over.values()))
+
+
+# Every reading for itself, by the error that is usual for its record: whatever is slow is to be followed too
+FOLLOWED = Noise({}, Level(1.0, 0.0, TAU, 0.0, ELL), allow=0.0)
 
 
 def first_noise(parts: Sequence[Segment]) -> Noise:

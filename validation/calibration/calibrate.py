@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,8 +18,8 @@ from measured.case import Test
 from measured.doubt import USUAL, Doubt
 from validation.calibration.model_error import ModelError, model_error
 from validation.comparison.linearisation import Segment, segments
-from validation.noise import Noise, first_noise, fit_noise
-from validation.parameters.unknowns import Unknowns
+from validation.noise import FOLLOWED, Noise, first_noise, fit_noise
+from validation.parameters.unknowns import Unknowns, measured, of_hidden_start
 
 Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
@@ -27,6 +27,7 @@ STATIONARY = 0.1  # of a posterior standard deviation
 WORTH = 0.1  # nats: the error of time steps moves an objective by about as much, so that no fit can settle closer
 DRAFT_STEPS, LAST_STEPS = 10, 40  # of a fit that another follows, and of one that is kept: few need more than ten
 ROUGH = 1.0  # nats: a fit under a noise that is only guessed
+ROBUST = 2  # times that single readings are weighed anew: a third moves nothing that two digits show
 SHORTER, MORE, LESS = 0.01, 30.0, 10.0  # damping of the first shorter step; growth where that fails, fall where not
 SHORTEST, STALE = 1e6, 1e3  # damping beyond which no step gains; a stale Jacobian is given up before
 GAIN_RATIO = 0.5  # of the predicted gain: a Jacobian that delivers less is made anew
@@ -391,44 +392,72 @@ def calibrated(
     rounds: int = 2,
     progress: Progress = no_progress,
     noise: Noise | None = None,
-    keep: Keep = no_memory,
     rough: bool = False,
     robust: bool = False,
 ) -> Fit:
-    """Calibrate, estimate the noise from the residual, calibrate again under it; `rounds` times.
+    """The most probable parameters under the noise of what they leave, estimated `rounds` times: what a residual can
+    tell is asked of them. What predicts best is `reading_fit`.
 
     robust : single readings that nothing explains pull no further, see `Noise.robust`; not where they are looked for
 
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
-    fixed = parameter_values(network, values)
-    fit = minimise(
-        network,
-        tests,
-        unknowns,
-        unknowns.coordinates(values),
-        noise,
-        fixed,
-        progress=progress,
-        keep=keep,
-        draft=rough or rounds > 0,
-        worth=ROUGH if rounds else WORTH,
-    )
+    fixed, theta = parameter_values(network, values), unknowns.coordinates(values)
+    worth, draft = ROUGH if rounds else WORTH, rough or rounds > 0
+    fit = minimise(network, tests, unknowns, theta, noise, fixed, progress=progress, draft=draft, worth=worth)
     for i in range(rounds):
-        fit = minimise(
-            network,
-            tests,
-            unknowns,
-            fit.theta,
-            fit_noise(fit.parts).robust(fit.parts) if robust else fit_noise(fit.parts),
-            fixed,
-            DRAFT_STEPS if rough or i + 1 < rounds else LAST_STEPS,
-            CachedSegments(fit.parts, nearby=False, stale=True),
-            draft=rough or i + 1 < rounds,
-            progress=progress,
-            keep=keep,
-        )
+        draft = rough or i + 1 < rounds
+        steps, cache = DRAFT_STEPS if draft else LAST_STEPS, CachedSegments(fit.parts, nearby=False, stale=True)
+        noise = fit_noise(fit.parts).robust(fit.parts) if robust else fit_noise(fit.parts)
+        fit = minimise(network, tests, unknowns, fit.theta, noise, fixed, steps, cache, draft, progress=progress)
     return fit
+
+
+def reading_fit(
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    values: Mapping[str, float],
+    effects: Collection[str] = (),
+    progress: Progress = no_progress,
+    keep: Keep = no_memory,
+) -> Fit:
+    """The parameters by which the model follows the readings as they are: what predicts best if it is not quite true.
+
+    A slow error that a model of this kind is allowed, or that a sensor may have by its place, does not come again as
+    it was: parameters that leave it to them predict worse. So every reading counts alike by the error usual for its
+    record, those that nothing explains no further than others, and sensors, boundaries and clocks have what is left.
+    effects : names of what has the most probable size and is not moved: it stands for one cause, and must not take on
+        what others leave
+    """
+    causes, machine, others = sorted_unknowns(unknowns, effects)
+    fixed = parameter_values(network, {n: x for n, x in values.items() if not measured(n) or n in machine.names})
+    if causes.names:
+        sizes = calibrated(network, tests, unknowns, values, progress=progress, rough=True, robust=True).values
+        fixed |= {name: sizes[name] for name in causes.names}
+    start = machine.coordinates(values)
+    fit = minimise(network, tests, machine, start, FOLLOWED, fixed, progress=progress, draft=True, worth=ROUGH)
+    for i in range(ROBUST):
+        noise, cache = FOLLOWED.robust(fit.parts), CachedSegments(fit.parts, nearby=False, stale=True)
+        draft = i + 1 < ROBUST
+        steps = DRAFT_STEPS if draft else LAST_STEPS
+        fit = minimise(
+            network, tests, machine, fit.theta, noise, fixed, steps, cache, draft, progress=progress, keep=keep
+        )
+    now = {**fixed, **fit.values}
+    left = minimise(network, tests, others, np.zeros(len(others.names)), fit_noise(fit.parts), now)
+    theta = unknowns.coordinates({**now, **left.values})
+    whole = minimise(network, tests, unknowns, theta, fit_noise(left.parts), fixed, 0)
+    return replace(whole, converged=fit.converged, gradient=fit.gradient)
+
+
+def sorted_unknowns(unknowns: Unknowns, effects: Collection[str]) -> tuple[Unknowns, Unknowns, Unknowns]:
+    """Sizes and exponents of effects; the machine's own, with where began what no sensor sees; and what belongs to its
+    sensors, boundaries and clocks."""
+    causes = [p for p in unknowns.parameters if p.name.split("^")[0] in effects]
+    others = [p for p in unknowns.parameters if measured(p.name) and not of_hidden_start(p)]
+    machine = [p for p in unknowns.parameters if p not in causes and p not in others]
+    return Unknowns(tuple(causes)), Unknowns(tuple(machine)), Unknowns(tuple(others))
 
 
 def with_model_error(

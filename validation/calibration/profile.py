@@ -14,7 +14,7 @@ import numpy as np
 
 from geom.constants import NORMAL_95
 from measured.case import Test
-from validation.calibration.calibrate import CachedSegments, Fit, Progress, minimise, no_progress
+from validation.calibration.calibrate import LAST_STEPS, CachedSegments, Fit, Progress, minimise, no_progress
 from validation.calibration.intervals import Profile
 from validation.parameters.unknowns import Unknowns, to_value
 
@@ -26,7 +26,22 @@ def profiles(
     fit: Fit, tests: Sequence[Test], fixed: Mapping[str, float], names: Sequence[str], progress: Progress = no_progress
 ) -> dict[str, Profile]:
     """Name -> profile interval at 95 %; `fixed` are the values of what is not free."""
-    out = {}
+    if not names:
+        return {}
+    values, here = {**fixed, **fit.values}, CachedSegments(fit.parts, nearby=False)
+    best = minimise(
+        fit.network,
+        tests,
+        fit.unknowns,
+        fit.theta,
+        fit.noise,
+        values,
+        LAST_STEPS,
+        here,
+        progress=progress,
+        error=fit.error,
+    )
+    fit, out = replace(best, error=fit.error), {}
     for name in names:
         progress(f"profile of {name}")
         i = fit.unknowns.names.index(name)

@@ -13,7 +13,17 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
 from measured.sensors.operators import of_measurement, starts
-from validation.calibration.calibrate import Fit, Keep, Progress, calibrated, minimise, no_memory, no_progress
+from validation.calibration.calibrate import (
+    Fit,
+    Keep,
+    Progress,
+    minimise,
+    no_memory,
+    no_progress,
+    reading_fit,
+    sorted_unknowns,
+)
+from validation.noise import FOLLOWED
 from validation.parameters.unknowns import Unknowns, measured, working
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum
@@ -76,12 +86,12 @@ def staged_fit(
     """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
     network, unknowns = working(case)
     search = search or Search()
-    values, fits = {**start, **search.begin}, []
+    values, fits, effects = {**start, **search.begin}, [], {e.name for e in case.model.effects}
     for stage in fit_stages(case, tests, unknowns):
         names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         best = best_start(network, stage.tests, free, values, search, progress) if search.starts > 1 else values
-        fits.append(calibrated(network, stage.tests, free, best, progress=progress, keep=search.keep, robust=True))
+        fits.append(reading_fit(network, stage.tests, free, best, effects, progress, search.keep))
         values |= fits[-1].values
     return fits
 
@@ -108,9 +118,10 @@ def best_start(
 ) -> dict[str, float]:
     """Rough fits from several points of the prior; the values of the best."""
     rng, fixed = np.random.default_rng(search.seed), parameter_values(network, values)
-    first = unknowns.coordinates(values)
-    points = [first, *(unknowns.sd * rng.standard_normal(first.size) for _ in range(search.starts - 1))]
-    fits = [minimise(network, tests, unknowns, x, fixed=fixed, draft=True, progress=progress) for x in points]
+    _, free, _ = sorted_unknowns(unknowns, ())
+    first = free.coordinates(values)
+    points = [first, *(free.sd * rng.standard_normal(first.size) for _ in range(search.starts - 1))]
+    fits = [minimise(network, tests, free, x, FOLLOWED, fixed, draft=True, progress=progress) for x in points]
     alike = sum(f.objective < min(g.objective for g in fits) + SAME for f in fits)
     progress(f"{alike} of {len(fits)} starts end at the same optimum")
     return {**values, **min(fits, key=lambda f: f.objective).values}

@@ -112,6 +112,11 @@ def start_name(state: str, test: str) -> str:
     return f"start of {state} in {test}"
 
 
+def of_hidden_start(p: Parameter) -> bool:
+    """Does it say where a state without a sensor began a test? No reading does."""
+    return p.targets[0][0].startswith("initial:") and p.targets[0][0].count(":") > 1
+
+
 OF_MEASUREMENT = ("bias", "slope", "lag", "start", "clock")  # first words of the names that `nuisances` gives
 
 

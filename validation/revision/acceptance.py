@@ -7,7 +7,7 @@ times under the noise of the model without the step, and error have to agree. He
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from geom.arrays import Array
 from measured.case import Test
 from measured.sensors.blocks import groups
-from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
+from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise, sorted_unknowns
 from validation.comparison.linearisation import Segment, segments
-from validation.parameters.unknowns import to_value
+from validation.noise import FOLLOWED
+from validation.parameters.unknowns import Unknowns, to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
@@ -136,19 +137,26 @@ def middle_instant(fit: Fit, names: Sequence[str], test: str) -> float:
     return float(time[order][np.searchsorted(total, 0.5 * total[-1])])
 
 
-def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float]) -> FoldPrediction:
+def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: Collection[str] = ()) -> FoldPrediction:
     """A fold as a fit's model, fitted to the rest of it, predicts it.
 
-    fit : to all tests, model error in account;  fixed : values of what is not free
+    fit : to all tests, model error in account;  fixed : values of what is not free;  effects : as of `reading_fit`
     """
     learnt, unseen = _rows(fit, fold.fitted), _rows(fit, fold.predicted)
-    start = CachedSegments([s for s, _ in learnt], nearby=True)
+    causes, machine, others = sorted_unknowns(fit.unknowns, effects)
+    rows, at, seen = _places(fit, machine), _places(fit, causes), [s for s, _ in learnt]
+    if at:
+        theta = fit.theta[at] + np.linalg.solve(*_curvature(fit, learnt, fit.theta))[at]
+        low, high = causes.bounds
+        fixed = {**fixed, **causes.values(np.clip(theta, low, high))}
+    cache = CachedSegments([replace(s, J=s.J[:, rows]) for s in seen], nearby=True)
+    fixed, noise = {**fixed, **dict.fromkeys(others.names, 0.0)}, FOLLOWED.robust(seen)
     alone = minimise(
-        fit.network, fold.fitted, fit.unknowns, fit.theta, fit.noise, fixed, REFITS, start, draft=True, worth=ROUGH
+        fit.network, fold.fitted, machine, fit.theta[rows], noise, fixed, REFITS, cache, draft=True, worth=ROUGH
     )
-    values = {**fixed, **alone.values}
-    parts = segments(fit.network, fold.predicted, values)
-    return FoldPrediction(_log_density(fit, learnt, unseen, parts), *squares(parts, fold))
+    parts = segments(fit.network, fold.predicted, {**fixed, **alone.values})
+    read = [(replace(s, r=now.r), D) for (s, D), now in zip(learnt, alone.parts, strict=True)]
+    return FoldPrediction(_log_density(fit, read, unseen, parts, [*rows, *at]), *squares(parts, fold))
 
 
 def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
@@ -172,22 +180,44 @@ def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
     return out
 
 
+def _places(fit: Fit, some: Unknowns) -> list[int]:
+    """Where some of a fit's unknowns stand among all."""
+    return [fit.unknowns.names.index(name) for name in some.names]
+
+
+def _curvature(fit: Fit, learnt: Sequence[tuple[Segment, Array]], theta: Array) -> tuple[Array, Array]:
+    """Curvature and steepest descent of the objective at theta, of parameters and doubts, on what was learnt."""
+    doubts = fit.error.size if fit.error else 0
+    weight = np.concatenate([fit.unknowns.sd**-2.0, np.ones(doubts)])
+    H, slope = np.diag(weight), -weight * np.concatenate([theta, np.zeros(doubts)])
+    for s, D in learnt:
+        X = fit.noise.whiten(s, np.column_stack([s.J, D, s.r]))
+        H += X[:, :-1].T @ X[:, :-1]
+        slope += X[:, :-1].T @ X[:, -1]
+    return H, slope
+
+
 def _log_density(
-    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], parts: Sequence[Segment]
+    fit: Fit,
+    learnt: Sequence[tuple[Segment, Array]],
+    unseen: Sequence[tuple[Segment, Array]],
+    parts: Sequence[Segment],
+    machine: Sequence[int],
 ) -> float:
     """Log density of unseen readings: noise, model error, and what the learnt ones leave open of the parameters.
 
+    Sensors, boundaries, clocks and doubts of the model are expected as they are in what is learnt.
+    machine : the columns of the other parameters, which stand as they were fitted
     By the determinant lemma and Woodbury: with X the whitened columns of parameters and doubts and H their curvature,
     r'S^-1 r = r'r - r'X (H + X'X)^-1 X'r and log|S| = log|noise| + log|H + X'X| - log|H|.
     """
-    doubts = fit.error.size if fit.error else 0
-    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(doubts)]))
-    for s, D in learnt:
-        X = fit.noise.whiten(s, np.column_stack([s.J, D]))
-        H += X.T @ X
+    H, slope = _curvature(fit, learnt, np.zeros(fit.theta.size))
+    free = np.setdiff1d(np.arange(len(H)), machine)
+    expected = np.linalg.solve(H[np.ix_(free, free)], slope[free])
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
     for (s, D), now in zip(unseen, parts, strict=True):
-        X = fit.noise.whiten(s, np.column_stack([s.J, D, now.r]))
+        columns = np.column_stack([s.J, D])
+        X = fit.noise.whiten(s, np.column_stack([columns, now.r - columns[:, free] @ expected]))
         more += X[:, :-1].T @ X[:, :-1]
         pull += X[:, :-1].T @ X[:, -1]
         square += float(X[:, -1] @ X[:, -1])

@@ -263,15 +263,17 @@ def _effect_checks(
     telling = [] if aside else telling_tests(fit, names)
     middle = middle_instant(fit, names, telling[0]) if len(telling) == 1 else None
     bare, values, predictions = _fit_before(case)
-    lone = lone_tests(bare, [e.name for e in case.model.effects])
+    present = [e.name for e in case.model.effects]
+    lone = lone_tests(bare, present)
     parts = [
         replace(f, predicted=tuple(_trusted(t, faults) for t in f.predicted))
         for f in folds(tests, telling, middle, lone)
     ]
     if (at := (middle, *telling, *(e.name for e in faults))) not in predictions:
-        predictions[at] = [fold_prediction(bare, fold, values) for fold in parts]
+        predictions[at] = [fold_prediction(bare, fold, values, present) for fold in parts]
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
-    after = [fold_prediction(alike, fold, parameter_values(fit.network, new.values)) for fold in parts]
+    added = parameter_values(fit.network, new.values)
+    after = [fold_prediction(alike, fold, added, (*present, *names)) for fold in parts]
     checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside)
     shows = tuple(visible_check(fit, n) for n in names) if aside else ()
     return (*(bound_check(fit, n) for n in names), *shows, *checks, _lost(changes, tests))
@@ -335,8 +337,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
-    lone = lone_tests(fit, [e.name for e in case.model.effects if e.name in fit.unknowns.names])
-    blind = [(fold, fold_prediction(fit, fold, values)) for fold in folds(fitted, (), lone=lone)]
+    effects = [e.name for e in case.model.effects if e.name in fit.unknowns.names]
+    blind = [(f, fold_prediction(fit, f, values, effects)) for f in folds(fitted, (), lone=lone_tests(fit, effects))]
     for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
             was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)
