@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from measured.case import Case, Test
-from validation.calibration.calibrate import Fit, calibrated
+from validation.calibration.calibrate import Fit, reading_fit, sorted_unknowns
 from validation.calibration.model_error import machine_rise
 from validation.comparison.compare import ChannelError, physical, pooled, test_error
 from validation.comparison.linearisation import allowed, rmse
@@ -22,7 +22,7 @@ from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
 from validation.inference.result import Check, Remainder
-from validation.parameters.unknowns import standing, working
+from validation.parameters.unknowns import Unknowns, standing, working
 from validation.yardstick.words import WORTH
 from validation.yardstick.yardstick import free_network_error, persistence_error
 
@@ -53,11 +53,11 @@ def checks(
 
     budget : channel -> error (K) of the model's own numbers there;  left : what stays off
     """
-    e = posterior.evidence
+    e, tests = posterior.evidence, posterior.evidence.tests
     if choice.verdict in ("named", "several"):
         lead = [g[0] for g in choice.groups]
         fits = [h.fit for h in posterior.hypotheses if h.fit and h.members and set(h.members) == set(lead)]
-        return tuple(refit_check(e.fit, fit, " + ".join(e.names[k] for k in lead)) for fit in fits[:1])
+        return tuple(named_check(case, tests, e.fit, fit, [e.names[k] for k in lead]) for fit in fits[:1])
     if choice.verdict != "adequate":
         return ()
     records = least_errors(case, posterior, budget)
@@ -77,7 +77,7 @@ def least_errors(case: Case, posterior: Posterior, budget: Mapping[str, float]) 
     each = [record_errors(case, tests, values, budget) for values in models]
     if all(rows and rows[0].share > MOST_UNCERTAINTIES for rows in each):
         network, unknowns = working(replace(case, tests=tests))
-        plain = calibrated(network, tests, unknowns, case.model.values, 1, rough=True)
+        plain = reading_fit(network, tests, unknowns, case.model.values, [one.name for one in case.model.effects])
         rows = record_errors(case, tests, {**case.model.values, **plain.values}, budget)
         each = [rows] if rows and rows[0].share <= MOST_UNCERTAINTIES else each  # else it spreads what one record has
     return min(each, key=lambda rows: rows[0].share if rows else 0.0)
@@ -179,6 +179,22 @@ def free_network_check(case: Case, records: Sequence[RecordError], fit: Fit) -> 
         f"it was fitted to, most at {where}: what the readings tell of the heat there is not in it"
     )
     return Check("free network", where, error, WORTH * free[0], "K", words)
+
+
+def named_check(case: Case, tests: Sequence[Test], before: Fit, after: Fit, names: Sequence[str]) -> Check:
+    """Whether what is named makes tests worse: by the fits that told it, or else by those that follow the readings.
+
+    The former leave slow errors to what a model of this kind is allowed, which may lie in any test.
+    """
+    check = refit_check(before, after, " + ".join(names))
+    if not check.contradicts:
+        return check
+    effects, fits = {*names, *(e.name for e in case.model.effects)}, []
+    for fit in (before, after):
+        _, machine, others = sorted_unknowns(fit.unknowns, effects)
+        free = Unknowns((*machine.parameters, *others.parameters))
+        fits.append(reading_fit(fit.network, tests, free, fit.values))
+    return refit_check(fits[0], fits[1], " + ".join(names))
 
 
 def refit_check(before: Fit, after: Fit, name: str) -> Check:

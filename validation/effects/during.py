@@ -12,7 +12,7 @@ from measured.doubt import USUAL
 from measured.sensors.operators import of_measurement
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
-from validation.effects.time_window import IN, Event, TimeWindow, event
+from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event
 
 SAME = (
     "kind",
@@ -73,6 +73,12 @@ class During(Effect):
     @property
     def statement(self) -> str:
         return f"{self.base.statement} {self.when}"
+
+    def repeats(self, other: Effect) -> bool:
+        """Is another the same cause in nearly the same while, its ends found anew?"""
+        if not (isinstance(other, During) and self.event and other.event and self.base.name == other.base.name):
+            return False
+        return self.event.overlap(other.event) >= ALIKE
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> Iterable[str]:

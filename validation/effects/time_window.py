@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Span = tuple[float, float]
 NUMBER = r"\d+(?:\.\d+)?"
 PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")
+ALIKE = 0.5  # of the time in either of two events is in both: such are one, its ends read otherwise
 AND = " & "
 IN = " in "  # between an effect or a boundary and the condition it holds in
 

@@ -27,14 +27,14 @@ from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import During
 from validation.effects.registry import catalogue, effect, kinds
-from validation.effects.time_window import Event, event
+from validation.effects.time_window import ALIKE, Event, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, time_around, timed_event
 from validation.inference.evidence import Evidence, Progress
 from validation.inference.hypotheses import NOTHING, condition_prior, is_rare, law_prior, repeats_price
 from validation.inference.missing_heat import MissingHeat, Scan
 from validation.inference.score import Score, fit_score
-from validation.inference.stretches import ALIKE, Interval, distinct, hat_scores, stretches, worth
+from validation.inference.stretches import Interval, distinct, hat_scores, stretches, worth
 from validation.parameters.model_form import EXACT_LOSSES, is_film
 from validation.parameters.unknowns import scene_of
 from validation.scope import SENSORS

@@ -21,7 +21,7 @@ from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect
 from validation.effects.during import During
-from validation.effects.time_window import Event
+from validation.effects.time_window import ALIKE, Event
 from validation.inference.decide import Decision, Group, Posterior, precedence
 from validation.inference.evidence import Evidence, smallest_visible, thresholds
 from validation.inference.hypotheses import (
@@ -44,7 +44,6 @@ from validation.inference.result import (
     Remainder,
     Verdict,
 )
-from validation.inference.stretches import ALIKE
 
 Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]

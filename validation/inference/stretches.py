@@ -21,7 +21,7 @@ from measured.doubt import FORM, USUAL
 from validation.calibration.calibrate import Fit
 from validation.calibration.model_error import nodes
 from validation.effects.build import conductance_scale, power_scale
-from validation.effects.time_window import Event, Span
+from validation.effects.time_window import ALIKE, Event, Span
 from validation.inference.evidence import Evidence
 from validation.inference.hypotheses import stretch_count
 from validation.inference.missing_heat import MissingHeat, Scan
@@ -33,7 +33,6 @@ PENALTY = 3.0  # times log(n) for a change point: BIC counts its time and its le
 CLEAR = 2.0  # standard deviations from which a level is a pulse
 WHOLE = 0.9  # of a test: what lasts longer is a condition of that test, and no event
 REPEATS = 20  # of one event
-ALIKE = 0.5  # of the time in either of two events is in both: such are one
 
 
 @dataclass(frozen=True)

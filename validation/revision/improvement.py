@@ -193,7 +193,7 @@ def _added(
     why, present = [], {e.name for e in case.model.effects}
     for i in range(max(len(diagnosis.groups), 1)):
         choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
-        choice = tuple(c for c in choice if c.effect not in present)  # larger than it is: nothing to add
+        choice = tuple(c for c in choice if not _stands(case, c.effect))  # larger than it is: nothing to add
         if not choice:
             break
         name = supervisor.choose(diagnosis, choice)
@@ -208,6 +208,12 @@ def _added(
                 why.append(refusal(names, step))
     further, document, refusals = further_step(case, supervisor, diagnosis, left_out, progress)
     return further, document, "; ".join([*(why or [diagnosis.words]), *refusals])
+
+
+def _stands(case: Case, name: str) -> bool:
+    """Is an effect in the model, an event perhaps with its ends told otherwise?"""
+    new, present = effect(name), [effect(e.name) for e in case.model.effects]
+    return any(new.name == e.name or (isinstance(new, During) and new.repeats(e)) for e in present)
 
 
 def further_step(

@@ -140,7 +140,8 @@ def test_a_frozen_channel_does_not_bend_the_calibration(monkeypatch):
     def values(late):
         read = replace(first.channels[0], y=np.where(np.arange(y.size) < half, y, late))
         test = replace(first, channels=(read, *first.channels[1:]))
-        return calibrate(replace(case, tests=(test, *others))).model.values
+        found = calibrate(replace(case, tests=(test, *others))).model.values
+        return {name: value for name, value in found.items() if not name.startswith(("lag of ", "clock of "))}  # s
 
     gone, frozen = values(np.nan), values(y[half])
     assert frozen == pytest.approx(gone, abs=0.02)
