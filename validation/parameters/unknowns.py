@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
@@ -25,6 +26,7 @@ from validation.parameters.reference import effect_sizes, reference_of, value_co
 LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
 LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 3  # in a sentence
+POWER_AT = re.compile(r"[-+.\de]+ at ")
 POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
 KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conduction of"}
@@ -329,7 +331,9 @@ def parameter_words(name: str) -> tuple[str, str]:
     """What a value scales and what of it, if it is a power: ("loss of iron", "exponent of speed rpm"), ("film of gap",
     ""); an effect's statement; a name that was chosen freely as it is."""
     kind, at, _ = name.partition("@")
-    law, powered, exponent = (name, "", "") if kind in READ else name.partition("^")  # their places hold powers
+    law, powered, exponent = name.partition("^") if kind not in READ else name.rpartition("^")
+    if kind in READ and (not powered or POWER_AT.match(exponent)):  # a power that belongs to its place
+        law, powered = name, ""
     if at and kind in {**kinds(), **READ}:
         law = effect(law).statement
         return law, _power_words(exponent) if powered else ""

@@ -348,11 +348,12 @@ def _weights_of_folds(each: Sequence[Array], constant: int) -> Array:
 
     constant : column of constant heat, which counts the windows
     """
-    weights = np.ones(len(each))
-    for _ in range(ROUNDS):
+    weights, windows = np.ones(len(each)), np.array([N[constant, constant] for N in each])
+    for _ in range(ROUNDS if windows.any() else 0):
         some = [w * N for w, N in zip(weights, each, strict=True)]
-        left = np.array([_misfit(N, sum(some, -M)) / float(N[constant, constant]) for N, M in zip(each, some)])
-        weights = np.maximum(1.0, left / max(OUTLYING**2 * float(np.median(left)), 1e-300)) ** -2.0
+        left = np.array([_misfit(N, sum(some, -M)) for N, M in zip(each, some)]) / np.where(windows > 0.0, windows, 1.0)
+        usual = float(np.median(left[windows > 0.0]))  # not of tests in which the node was not read
+        weights = np.maximum(1.0, left / max(OUTLYING**2 * usual, 1e-300)) ** -2.0
     return weights
 
 
