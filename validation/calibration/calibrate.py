@@ -433,7 +433,7 @@ def reading_fit(
     causes, machine, others = sorted_unknowns(unknowns, effects)
     fixed = parameter_values(network, {n: x for n, x in values.items() if not measured(n) or n in machine.names})
     if causes.names:
-        sizes = calibrated(network, tests, unknowns, values, progress=progress, rough=True, robust=True).values
+        sizes = calibrated(network, tests, unknowns, values, progress=progress, robust=True).values
         fixed |= {name: sizes[name] for name in causes.names}
     start = machine.coordinates(values)
     fit = minimise(network, tests, machine, start, FOLLOWED, fixed, progress=progress, draft=True, worth=ROUGH)

@@ -146,9 +146,10 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     causes, machine, others = sorted_unknowns(fit.unknowns, effects)
     rows, at, seen = _places(fit, machine), _places(fit, causes), [s for s, _ in learnt]
     if at:
-        theta = fit.theta[at] + np.linalg.solve(*_curvature(fit, learnt, fit.theta))[at]
-        low, high = causes.bounds
-        fixed = {**fixed, **causes.values(np.clip(theta, low, high))}
+        cache = CachedSegments(seen, nearby=True)
+        every = (fit.unknowns, fit.theta, fit.noise, fixed)
+        sizes = minimise(fit.network, fold.fitted, *every, REFITS, cache, draft=True, worth=ROUGH).values
+        fixed = {**fixed, **{name: sizes[name] for name in causes.names}}
     cache = CachedSegments([replace(s, J=s.J[:, rows]) for s in seen], nearby=True)
     fixed, noise = {**fixed, **dict.fromkeys(others.names, 0.0)}, FOLLOWED.robust(seen)
     alone = minimise(
@@ -185,11 +186,10 @@ def _places(fit: Fit, some: Unknowns) -> list[int]:
     return [fit.unknowns.names.index(name) for name in some.names]
 
 
-def _curvature(fit: Fit, learnt: Sequence[tuple[Segment, Array]], theta: Array) -> tuple[Array, Array]:
-    """Curvature and steepest descent of the objective at theta, of parameters and doubts, on what was learnt."""
-    doubts = fit.error.size if fit.error else 0
-    weight = np.concatenate([fit.unknowns.sd**-2.0, np.ones(doubts)])
-    H, slope = np.diag(weight), -weight * np.concatenate([theta, np.zeros(doubts)])
+def _curvature(fit: Fit, learnt: Sequence[tuple[Segment, Array]]) -> tuple[Array, Array]:
+    """Curvature of the objective, of parameters and doubts, on what was learnt, and the pull of its residuals."""
+    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(fit.error.size if fit.error else 0)]))
+    slope = np.zeros(len(H))
     for s, D in learnt:
         X = fit.noise.whiten(s, np.column_stack([s.J, D, s.r]))
         H += X[:, :-1].T @ X[:, :-1]
@@ -211,7 +211,7 @@ def _log_density(
     By the determinant lemma and Woodbury: with X the whitened columns of parameters and doubts and H their curvature,
     r'S^-1 r = r'r - r'X (H + X'X)^-1 X'r and log|S| = log|noise| + log|H + X'X| - log|H|.
     """
-    H, slope = _curvature(fit, learnt, np.zeros(fit.theta.size))
+    H, slope = _curvature(fit, learnt)
     free = np.setdiff1d(np.arange(len(H)), machine)
     expected = np.linalg.solve(H[np.ix_(free, free)], slope[free])
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
