@@ -348,10 +348,10 @@ def _weights_of_folds(each: Sequence[Array], constant: int) -> Array:
 
     constant : column of constant heat, which counts the windows
     """
-    weights = np.ones(len(each))
-    for _ in range(ROUNDS):
+    weights, count = np.ones(len(each)), np.array([float(N[constant, constant]) for N in each])
+    for _ in range(ROUNDS if count.all() else 0):  # a sensor that is not read in one part of them is told by the others
         some = [w * N for w, N in zip(weights, each, strict=True)]
-        left = np.array([_misfit(N, sum(some, -M)) / float(N[constant, constant]) for N, M in zip(each, some)])
+        left = np.array([_misfit(N, sum(some, -M)) for N, M in zip(each, some)]) / count
         weights = np.maximum(1.0, left / max(OUTLYING**2 * float(np.median(left)), 1e-300)) ** -2.0
     return weights
 
