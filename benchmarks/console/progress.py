@@ -125,12 +125,14 @@ def stages_of(name: str, cache: Path) -> dict[str, float]:
 def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
     """The median of each stage over the cases that have it (s), in the order in which the longest list has them.
 
-    What fewer than half of the cases come to, such as a fourth step, is not foretold.
+    Of a further step, "1 looking", as much of it as the share of the cases that come to it.
     """
     longest = sorted(stages, key=len, reverse=True)
-    names = dict.fromkeys(word for took in longest for word in took)
-    having = {word: [took[word] for took in stages if word in took] for word in names}
-    return {word: round(median(some), 1) for word, some in having.items() if 2 * len(some) >= len(stages)}
+    having = {
+        word: [took[word] for took in stages if word in took] for word in dict.fromkeys(w for t in longest for w in t)
+    }
+    share = {word: len(some) / len(stages) if word[0].isdigit() else 1.0 for word, some in having.items()}
+    return {word: round(share[word] * median(some), 1) for word, some in having.items()}
 
 
 def alone(row: dict[str, float]) -> float:

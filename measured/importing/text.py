@@ -32,7 +32,7 @@ LETTERS = re.compile(
 )
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|hresolution|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall"
-    r"|scan interval)"
+    r"|scan interval|messtakt|(?:\w+ )?rate(?=[^\d\n]*[\d.,]+[\s\",;]*(?:ms|sec|s|min|h)\b))"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}

@@ -12,7 +12,9 @@ from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
+from measured.importing.clock import clock_of
 from measured.importing.guess import guesses, in_memory
+from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model
 from thermoscope.commands.test.new import new_case as new
 
@@ -149,6 +151,17 @@ def test_a_home_writes_its_room_seldom_and_a_control_system_its_own_end(tmp_path
     document = written(tmp_path, tmp_path / "a.csv")
     assert document["tests"][0]["duration_s"] == pytest.approx(5 * (N - 1))
     assert "'sensor.cellar_temperature': hardly warms: taken as the room" in document["warnings"]
+
+
+@pytest.mark.parametrize(
+    ("line", "step_s"),
+    [("Rate,10 s", 10.0), ("Scan rate = 500 ms", 0.5), ("Messtakt:;10 s;;", 10.0), ("Sampling rate: 10 Hz", 1.0)],
+)
+def test_how_often_a_logger_reads(tmp_path, line, step_s):
+    """By a line before the names; a frequency is none, nor a flow."""
+    rows = "".join(f"{w:.2f},{i:.1f}\n" for w, i in zip(WARM["W"], WARM["I"]))
+    (tmp_path / "a.csv").write_text(f"{line}\nflow rate,3 l/min\nT_winding [°C],I [A]\n{rows}")
+    assert clock_of(read_source(tmp_path / "a.csv")).seconds == pytest.approx(step_s * np.arange(N))
 
 
 def test_series_of_instants_and_readings(tmp_path):
