@@ -324,7 +324,9 @@ def parameter_words(name: str) -> tuple[str, str]:
     """What a value scales and what of it, if it is a power: ("loss of iron", "exponent of speed rpm"), ("film of gap",
     ""); an effect's statement; a name that was chosen freely as it is."""
     kind, at, _ = name.partition("@")
-    law, powered, exponent = (name, "", "") if kind in READ else name.partition("^")  # their places hold powers
+    law, powered, exponent = name.rpartition("^") if kind in READ else name.partition("^")
+    if kind in READ and (not powered or " at " in exponent):  # a power of the place itself: LOSS@PLACE|INPUT^2 at 4000
+        law, powered, exponent = name, "", ""
     if at and kind in {**kinds(), **READ}:
         law = effect(law).statement
         return law, _power_words(exponent) if powered else ""
