@@ -40,6 +40,7 @@ DEGREE = 5  # letters: every second header has one, and no page but the right on
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
 SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
+TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
@@ -134,7 +135,7 @@ def _pairs(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """A row for every reading, of objects that hold a name and a list of an instant with each reading; else none."""
     out = []
     for row in rows:
-        name = next((v for n, v in row.items() if n.rpartition(".")[2].strip("_") in SERIES[0]), "")
+        name = next((v for path, v in row.items() if TITLE.fullmatch(path)), "")
         pairs = next((v for v in row.values() if isinstance(v, list)), [])
         if not isinstance(name, str) or not name or any(not isinstance(p, list) or len(p) != 2 for p in pairs):
             return []

@@ -425,15 +425,15 @@ def _mf4(file: Path) -> Contents:
 def check_chains(file: Path) -> None:
     """InputError where blocks of an MF4 file follow each other in a circle: its reader would never come to an end."""
     with file.open("rb") as source:
-        seen, rest = set[int](), [HEAD_BLOCK] if source.read(12)[:10] == b"MDF     4." else []
+        visits, rest = set[int](), [HEAD_BLOCK] if source.read(12)[:10] == b"MDF     4." else []
         while rest:
             source.seek(address := rest.pop())
             block = source.read(24)[:4]
             if followed := CHAINS.get(block, 0):
-                if address in seen:
+                if address in visits:
                     what = f"block {block.decode()} at byte {address} comes twice: the file has no end"
                     raise InputError(what, str(file), "a file that was closed by its recorder: save it again")
-                seen.add(address)
+                visits.add(address)
                 rest += filter(
                     None, struct.unpack(f"<{followed}Q", source.read(8 * followed).ljust(8 * followed, b"\0"))
                 )

@@ -112,8 +112,8 @@ class ProgressBar:
     def _next_block(self) -> None:
         """The same stages once more. Beyond what came the last time, and in a first run, one more is always to come."""
         self.block += 1
-        ahead = int(self.block > self.blocks or not self.same_case)
-        for number in range(self.blocks + 1, self.block + ahead + 1):
+        more = int(self.block > self.blocks or not self.same_case)
+        for number in range(self.blocks + 1, self.block + more + 1):
             before = str(number - 1 or "")
             again = [s for s in self.last if _block(s) == before and _word(s) not in PREPARING]
             self.last = {f"{number} {_word(s)}": self.last[s] for s in again} | self.last
@@ -150,8 +150,8 @@ class ProgressBar:
             rest = max(rest, (self.clock() - begin) * (1.0 - fraction) / fraction)
         if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
-        known = [s for s in (*self.took, self.now) if s in self.last]
-        after = order.index(known[-1]) + 1 if known else 0
+        stages = [s for s in (*self.took, self.now) if s in self.last]
+        after = order.index(stages[-1]) + 1 if stages else 0
         coming = [s for s in order[after:] if s not in self.took and s != self.now]
         building = [s for s in order if _word(s) in BUILDING]
         if {*building} & {*order[:after]} and not {*building} & {*self.took, self.now}:
