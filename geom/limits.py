@@ -54,6 +54,7 @@ SECONDS = Limit("seconds", 300, "seconds", "to read one recording or STEP file: 
 INSTANTS = Limit("instants", 2_000_000, "instants", "at which a test is compared: more would not fit with tangents")
 DROP_BYTES = Limit("drop_bytes", 2**30, "bytes", "of one drop on the workbench: an hour at 1 kHz in text, twice over")
 TOML_BYTES = Limit("toml_bytes", 2**24, "bytes", "of a file in TOML: written by hand, or by us, it is far smaller")
+PART_BYTES = Limit("part_bytes", 2**24, "bytes", "of the styles of a workbook, which are kept whole: most have 0.1 MB")
 MACHINE_BYTES = Limit("machine_bytes", 2**24, "bytes", "of a machine file of another program: most have half a MB")
 STEP_BYTES = Limit("step_bytes", 2**27, "bytes", "of a STEP file: a machine with all its screws is a third of that")
 MESH_POINTS = Limit("mesh_points", 400_000, "points", "of a mesh: to condense a machine of 338,000 takes 12 GB")

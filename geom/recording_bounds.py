@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any, TypeVar
@@ -12,6 +13,8 @@ from geom.limits import BYTES, CELLS, COLUMNS, ROWS, ReadingTime
 Piece = TypeVar("Piece")
 CHUNK = 2**24  # bytes
 SHEET_ROWS = 2**20  # of a worksheet: no program writes more
+OF_CELLS = re.compile(rb"<(?:\w+:)?(?:c|v|f|is|t)\b")  # elements of a worksheet that are bounded as its cells are
+DEEPEST = 1000  # elements in each other: a workbook has ten
 DELIMITERS = (b",", b";", b"\t", b"|")
 
 
@@ -26,6 +29,20 @@ def check_text(source: IO[bytes], file: Path) -> None:
         ROWS.check(max(lines), file, "holds at least")
         CELLS.check(max(delimiters), file, "holds at least")
         clock.check()
+
+
+def check_elements(parts: Iterable[bytes], where: object) -> None:
+    """InputError where a part of a workbook has more rows, texts and the like than a recording may have rows."""
+    count, depth, end = 0, 0, b""
+    for part in timed(parts, where):
+        pairs, marks = end + part, part.count(b"<")
+        closed = pairs.count(b"</")
+        count += marks - closed - len(OF_CELLS.findall(part))
+        depth += marks - 2 * closed - sum(map(pairs.count, (b"/>", b"<?", b"<!")))
+        end = part[-1:]
+        ROWS.check(count, where, "holds elements of")
+        if depth > DEEPEST:
+            raise InputError("holds elements in elements without end", str(where), "a workbook of plain tables")
 
 
 def check_shape(rows: int, columns: int, where: object) -> None:

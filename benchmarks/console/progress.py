@@ -36,10 +36,11 @@ ROOT = Path(__file__).resolve().parents[2]
 USUAL = ROOT / "thermoscope" / "console" / "usual_stages.json"
 CASES = tuple(sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml")))
 OF_CASES = {"compare": "test", "calibrate": "model", "diagnose": "explain", "improve": "explain"}
+ALONE = {"improve": ["--yes"]}  # without which a command asks
 COMMANDS = {**OF_CASES, "build": "model"}  # build: --only names machines
 COLUMNS, SHORT_S, FIFTH, STOOD_S = 80, 10.0, 0.2, 20.0
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
-LINE = re.compile(r"(\d+) %, about (\d+) (s|min) left")
+LINE = re.compile(r"([\d.]+) %, about (\d+) (s|min) left")
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def measured(name: str, case: str, run: str, cache: str) -> Row:
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(ROOT / "cases" / case, copy, ignore=shutil.ignore_patterns("out"))
     subject = [str(copy)] if name in OF_CASES else [case, "--out", str(copy)]
-    command = [sys.executable, "-m", "thermoscope", COMMANDS[name], name, *subject]
+    command = [sys.executable, "-m", "thermoscope", COMMANDS[name], name, *subject, *ALONE.get(name, [])]
     lines = list(shown(command, {**os.environ, "THERMOSCOPE_CACHE": cache, "TERM": "xterm"}))
     took, widest = lines[-1][0], max(len(line) for _, line in lines)
     found = [(t, m) for t, line in lines if (m := LINE.search(line))]
@@ -122,10 +123,16 @@ def stages_of(name: str, cache: Path) -> dict[str, float]:
 
 
 def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
-    """The median of each stage over the cases that have it (s), in the order in which the longest list has them."""
+    """The median of each stage over the cases that have it (s), in the order in which the longest list has them.
+
+    Of a further step, "1 looking", as much of it as the share of the cases that come to it.
+    """
     longest = sorted(stages, key=len, reverse=True)
-    names = dict.fromkeys(word for took in longest for word in took)
-    return {word: round(median(took[word] for took in stages if word in took), 1) for word in names}
+    having = {
+        word: [took[word] for took in stages if word in took] for word in dict.fromkeys(w for t in longest for w in t)
+    }
+    share = {word: len(some) / len(stages) if word[0].isdigit() else 1.0 for word, some in having.items()}
+    return {word: round(share[word] * median(some), 1) for word, some in having.items()}
 
 
 def alone(row: dict[str, float]) -> float:

@@ -49,7 +49,10 @@ def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) 
     """Watts per part, zone or fluid at constant inputs, resistances at their reference temperature."""
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     out: dict[str, float] = {}
-    for _, _, parts, law, _ in _declared(machine):
+    for name, _, parts, law, _ in _declared(machine):
+        for unknown in {*law.reads} - signals.keys():
+            where, right = f"{machine.name} [losses.{declared_name(name)}]", suggestion(unknown, signals)
+            raise InputError(f"the rated point has no input '{unknown}'", where, right)
         watts = float(np.mean(law.size(signals)))
         for place, share in _spread(network, parts).items():
             out[place] = out.get(place, 0.0) + share * watts

@@ -44,9 +44,13 @@ class Recording:
 
     @property
     def gap_s(self) -> float:
-        """The longest step between rows that is no gap: any, of a log of what changes."""
-        logs = any(HOLD in note for note in self.source.notes)
-        return max(MAX_GAP_S, float(np.nanmax(np.diff(self.clock.seconds)))) if logs else MAX_GAP_S
+        """The longest step between readings that is no gap: any, of a log of what changes."""
+        if not any(HOLD in note for note in self.source.notes):
+            return MAX_GAP_S
+        t, columns = self.clock.seconds, [self.source.numbers(g.column) for g in self.guesses if g.used]
+        rows = [np.append(np.isfinite(t[:-1] + readings[:-1]), True) for readings in columns]
+        longest = max((float(np.nanmax(np.diff(t[some]), initial=0.0)) for some in rows), default=0.0)
+        return max(MAX_GAP_S, longest + 2.0 * self.step_s)  # the test is compared at instants of its own
 
 
 def shift(first: Recording, other: Recording) -> tuple[float, str]:

@@ -17,6 +17,7 @@ from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, rol
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
+RARE = 10  # readings of the other signals, beside which one alone is none
 LEAST = 3  # readings of a signal, on average
 HOLD = "hold until the next reading"
 BOUNDARIES = ([Role.AMBIENT], [Role.COOLANT])
@@ -51,6 +52,13 @@ def side_by_side(
     series: dict[str, dict[Any, Any]] = {}
     clocks = list(zip(*(columns[j] for j in times), strict=True))
     signals = columns[key]
+    once = {
+        signal for signal, count in Counter(signals).items() if count == 1 and len(signals) > RARE * len({*signals})
+    }
+    if once:  # remarks of the logger, such as its end
+        lines = [i for i, signal in enumerate(signals) if signal not in once]
+        columns, clocks = [[cells[i] for i in lines] for cells in columns], [clocks[i] for i in lines]
+        signals = columns[key]
     for j in (j for j in rest if j != value and _is_key(columns[j])):  # what tells signals apart besides: a place
         if len(set(zip(clocks, signals))) < 0.9 * len(clocks):
             signals = [f"{signal} {word}" for signal, word in zip(signals, columns[j], strict=True)]

@@ -300,7 +300,8 @@ def _in_cells(cells: Sequence[Any]) -> dict[str, list[str]]:
     """The units behind the numbers of a column of cells such as "23.5 C", each with its cells."""
     if isinstance(cells, np.ndarray):
         return {}
-    valued = ((c, m[2]) for c in dict.fromkeys(cells) if isinstance(c, str) and (m := WITH_UNIT.fullmatch(c.strip())))
+    words = dict.fromkeys(c for c in cells if isinstance(c, str))
+    valued = ((c, m[2]) for c in words if (m := WITH_UNIT.fullmatch(c.strip())))
     out: dict[str, list[str]] = {}
     for cell, unit in itertools.takewhile(lambda one: is_unit(one[1]), valued):
         out.setdefault(unit_of(unit) or unit, []).append(cell)

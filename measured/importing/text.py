@@ -32,14 +32,15 @@ LETTERS = re.compile(
 )
 INTERVAL = re.compile(
     r"(?im)^\W*(?:delta_x|hresolution|sampl\w*[ _]?(?:interval|period|time)|interval|abtast\w*|messintervall"
-    r"|scan interval)"
+    r"|scan interval|messtakt|(?:\w+ )?rate(?=[^\d\n]*[\d.,]+[\s\",;]*(?:ms|sec|s|min|h)\b))"
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
-SERIES = (("name", "label", "channel", "signal", "title"), ("unit", "units"))  # of readings, in JSON
+SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
+TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
@@ -119,13 +120,28 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
         table = zip(*columns.values(), strict=True)
         every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
     rows = [_flat(one) for one in every]
-    if series := _series(rows):
+    if pairs := _pairs(rows):
+        rows = pairs
+    elif series := _series(rows):
         rows = [dict(zip(series, row, strict=False)) for row in zip(*series.values(), strict=False)]
     names = tuple(dict.fromkeys(name for row in rows for name in row))
     titles = {path.rpartition(".")[2]: title for path, title in outer.items() if path[-1:].isdigit() and title}
     return Layout(tuple(str(titles.get(name, name)) for name in names), ("",) * len(names), 0, len(names)), [
         [row.get(name) for row in rows] for name in names
     ]
+
+
+def _pairs(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """A row for every reading, of objects that hold a name and a list of an instant with each reading; else none."""
+    out = []
+    for row in rows:
+        name = next((v for path, v in row.items() if TITLE.fullmatch(path)), "")
+        pairs = next((v for v in row.values() if isinstance(v, list)), [])
+        if not isinstance(name, str) or not name or any(not isinstance(p, list) or len(p) != 2 for p in pairs):
+            return []
+        last = bool(pairs) and number(pairs[0][1]) > number(pairs[0][0])  # instants since 1970 are the larger numbers
+        out += [{"time": p[last], "signal": name, "value": p[not last]} for p in pairs]
+    return out
 
 
 def _series(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:

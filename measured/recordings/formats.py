@@ -22,9 +22,9 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.errors import InputError, MissingDependency
-from geom.limits import BYTES, CELLS
+from geom.limits import BYTES, CELLS, PART_BYTES
 from geom.plugins import plugins
-from geom.recording_bounds import CHUNK, check_shape, counted_rows, timed
+from geom.recording_bounds import CHUNK, check_elements, check_shape, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.headers.rows import first_row_layout
 from measured.recordings.csv_file import HEAD, csv_pieces, in_rows, joined_parts
@@ -39,6 +39,9 @@ SUFFIXES = (*PLAIN, ".xlsx", ".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" f
 TIME = "time_s"  # of formats that carry their own time
 SHEETS = (".xlsx", ".tdms")  # formats of several tables
 UNNAMED = re.compile(r"__index_level_\d+__")  # row numbers that pandas adds to a Parquet file
+HEAD_BLOCK = 64  # byte at which the blocks of an MF4 file begin
+CHAINS = {b"##HD": 5, b"##DG": 3, b"##CG": 2, b"##CN": 2, b"##DL": 1, b"##HL": 1, b"##LD": 1, b"##FH": 1, b"##AT": 1}
+CHAINS |= {b"##EV": 1}  # kind of block -> of its links those that lead on: the first of others, or the next of its kind
 GRAIN = 1e-6  # s, below which two instants are one
 ABOUT = (("label", "name", "signal"), ("unit", "units"))  # of a signal, in structs of MATLAB
 Signal = tuple[str, Array, Array]
@@ -204,25 +207,50 @@ def workbook_rows(file: Path, worksheet: str) -> list[list[Any]]:
         return _rows(sheets[worksheet or next(iter(sheets))], file)
 
 
+class Archive(zipfile.ZipFile):
+    """A workbook, packed: every part is counted before a reader keeps what grows with it."""
+
+    def __init__(self, file: Path) -> None:
+        super().__init__(file)
+        # InputError where a workbook, unpacked, has more bytes than a recording may have
+        BYTES.check(sum(entry.file_size for entry in self.infolist()), file, "holds")
+
+    def read(self, name: Any, pwd: bytes | None = None) -> bytes:
+        """A part that is kept whole, such as the styles of cells."""
+        PART_BYTES.check(self.getinfo(name).file_size, f"{self.filename} part '{name}'", "holds")
+        return super().read(name, pwd)
+
+    def open(self, *words: Any, **more: Any) -> Any:
+        """A part that was counted."""
+        with super().open(*words, **more) as part:
+            check_elements(iter(partial(part.read, PIECE), b""), f"{self.filename} part '{part.name}'")
+        return super().open(*words, **more)
+
+
 @contextmanager
 def _workbook(file: Path) -> Iterator[Any]:
     """A workbook's values, not its formulas."""
     from openpyxl.reader.excel import ExcelReader
     from openpyxl.worksheet._read_only import ReadOnlyWorksheet
 
-    # A file's claims would be filled up with rows and columns without a cell; one without claims is parsed to its end.
-    ReadOnlyWorksheet._get_size = ReadOnlyWorksheet.reset_dimensions
+    class Cells(ReadOnlyWorksheet):
+        """Rows as they come: a file's claims would be filled up with cells, and without claims it is parsed twice."""
+
+        _get_size = ReadOnlyWorksheet.reset_dimensions
 
     class Reader(ExcelReader):
         """Sheets of cells alone: openpyxl trips over a chart sheet that draws nothing."""
 
-        def read_chartsheet(self, sheet: Any, rel: Any) -> None:
-            pass
+        read_properties = read_custom = read_theme = lambda self: None
 
-    # InputError where a workbook, unpacked, has more bytes than a recording may have
-    with zipfile.ZipFile(file) as archive:
-        BYTES.check(sum(entry.file_size for entry in archive.infolist()), file, "holds")
+        def read_worksheets(self) -> None:
+            parts = {rel.target: sheet for sheet, rel in self.parser.find_sheets() if "chartsheet" not in rel.Type}
+            sheets = {part: sheet.name for part, sheet in parts.items() if part in self.valid_files}
+            self.wb._sheets += [Cells(self.wb, name, part, self.shared_strings) for part, name in sheets.items()]
+
     reader = Reader(file, read_only=True, data_only=True, keep_links=False)
+    reader.archive.close()
+    reader.archive = Archive(file)
     reader.read()
     book = reader.wb
     try:
@@ -373,6 +401,7 @@ def _mf4(file: Path) -> Contents:
     """A group whose rows are not all there is refused: they would be read as zeros."""
     from asammdf import MDF
 
+    check_chains(file)
     with MDF(file) as mdf:
         for group in mdf.groups:
             about = group.channel_group
@@ -391,6 +420,23 @@ def _mf4(file: Path) -> Contents:
         units = {c.name: c.unit or "" for g in mdf.groups for c in g.channels}
         remarks = {c.name: c.comment or "" for g in mdf.groups for c in g.channels}
         return joined(signals), {"units": units, "remarks": remarks, "start": _since_1970(mdf.start_time)}
+
+
+def check_chains(file: Path) -> None:
+    """InputError where blocks of an MF4 file follow each other in a circle: its reader would never come to an end."""
+    with file.open("rb") as source:
+        visits, rest = set[int](), [HEAD_BLOCK] if source.read(12)[:10] == b"MDF     4." else []
+        while rest:
+            source.seek(address := rest.pop())
+            block = source.read(24)[:4]
+            if followed := CHAINS.get(block, 0):
+                if address in visits:
+                    what = f"block {block.decode()} at byte {address} comes twice: the file has no end"
+                    raise InputError(what, str(file), "a file that was closed by its recorder: save it again")
+                visits.add(address)
+                rest += filter(
+                    None, struct.unpack(f"<{followed}Q", source.read(8 * followed).ljust(8 * followed, b"\0"))
+                )
 
 
 def _since_1970(instant: Any) -> float | None:

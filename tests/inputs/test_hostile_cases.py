@@ -52,6 +52,7 @@ WRITES = (
     ("improve", "--yes"),
     ("add", "mass@{hot}"),
     ("render", "--out", "out/q"),
+    ("watch", "--follow", "three/tests/stand.csv", "--out", "out/w"),
     ("undo",),
 )
 

@@ -3,10 +3,12 @@
 import gzip
 import os
 import re
+import struct
 import subprocess
 import sys
 import time
 import zipfile
+from pathlib import Path
 
 import pytest
 
@@ -130,23 +132,6 @@ def test_a_cell_far_away_takes_no_memory(tmp_path, cell, word):
     assert memory_MB < MEMORY_MB
 
 
-@pytest.mark.nightly
-@pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
-def test_millions_of_empty_rows_are_counted_as_they_come(tmp_path):
-    """A sheet of 8 million rows that say nothing, packed into 30 kB, without a claim of its size."""
-    file = book(tmp_path / "a.xlsx")
-    with zipfile.ZipFile(file) as packed:
-        entries = {name: packed.read(name) for name in packed.namelist()}
-    sheet = re.sub(rb"<dimension[^>]*>", b"", entries["xl/worksheets/sheet1.xml"])
-    entries["xl/worksheets/sheet1.xml"] = sheet.replace(b"</sheetData>", b"<row/>" * 8_000_000 + b"</sheetData>")
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as packed:
-        for name, content in entries.items():
-            packed.writestr(name, content)
-    said, memory_MB = measured_MB(file)
-    assert "more than 1,048,576 rows" in said
-    assert memory_MB < MEMORY_MB
-
-
 def test_long_words_are_not_read_letter_by_letter(tmp_path):
     """A thousand cells of one long text, in a file of some kB: its letters are looked at a few times in all."""
     pyarrow = pytest.importorskip("pyarrow")
@@ -159,6 +144,71 @@ def test_long_words_are_not_read_letter_by_letter(tmp_path):
     begin = time.process_time()
     assert not source.is_numeric("note")
     assert time.process_time() - begin < 1.0  # s; 4 where each letter is looked at
+
+
+def spoilt(path, part, change):
+    """A workbook of which one part is another."""
+    with zipfile.ZipFile(book(path.with_name("plain.xlsx"))) as plain, zipfile.ZipFile(path, "w", 8) as out:
+        for name in plain.namelist():
+            out.writestr(name, change(plain.read(name)) if name == part else plain.read(name))
+    return path
+
+
+SHEET, DEEP, MANY = "xl/worksheets/sheet1.xml", 200_000, 5_100_000
+LAUGH = b"".join(b'<!ENTITY a%d "%s">' % (i + 1, b"&a%d;" % i * 10) for i in range(9))
+LAUGH = b'<!DOCTYPE x [<!ENTITY a0 "hahahahahaha">' + LAUGH + b"]>"
+SPOILT = {
+    "entities": (SHEET, lambda d: LAUGH + d.replace(b"<v>20</v>", b"<v>&a9;</v>", 1), "amplification"),
+    "rows in rows": (
+        SHEET,
+        lambda d: d.replace(b"</sheetData>", b"<row>" * DEEP + b"</row>" * DEEP + b"</sheetData>"),
+        "without end",
+    ),
+    "millions of empty rows": (  # of a sheet that claims no size
+        SHEET,
+        lambda d: re.sub(rb"<dimension[^>]*>", b"", d).replace(
+            b"</sheetData>", b"<row/>" * 4_000_000 + b"</sheetData>"
+        ),
+        "more than 1,048,576 rows",
+    ),
+    "elements that nobody knows": (
+        SHEET,
+        lambda d: d.replace(b"</sheetData>", b"<a/>" * MANY + b"</sheetData>"),
+        "limit 'rows'",
+    ),
+    "styles": ("xl/styles.xml", lambda d: d.replace(b"<xf ", b"<xf /><xf ", 1) + b" " * 2**24, "limit 'part_bytes'"),
+}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory of a process is counted differently elsewhere")
+@pytest.mark.parametrize("kind", SPOILT)
+def test_parts_of_a_workbook_that_grow_take_no_memory(tmp_path, kind):
+    part, change, words = SPOILT[kind]
+    said, memory_MB = measured_MB(spoilt(tmp_path / "a.xlsx", part, change))
+    assert words in said
+    assert memory_MB < MEMORY_MB
+
+
+def test_sheets_of_one_part_are_read_once(tmp_path):
+    def many(content):
+        sheet = re.search(rb"<sheet [^>]*/>", content)[0]
+        return content.replace(sheet, b"".join(sheet.replace(b'"Sheet"', b'"s%d"' % k) for k in range(2000)))
+
+    assert read_source(spoilt(tmp_path / "a.xlsx", "xl/workbook.xml", many)).rows == len(ROWS)
+
+
+def test_blocks_of_an_mf4_that_follow_each_other_in_a_circle(tmp_path):
+    asammdf = pytest.importorskip("asammdf")
+    with asammdf.MDF() as mdf:
+        mdf.append([asammdf.Signal([20.0, 21.0, 22.0], [0.0, 1.0, 2.0], name="T_winding", unit="degC")])
+        file = Path(mdf.save(tmp_path / "a.mf4"))
+    content = bytearray(file.read_bytes())
+    for kind in (b"##DG", b"##CN"):
+        at, spoilt_content = content.find(kind), content.copy()
+        struct.pack_into("<Q", spoilt_content, at + 24, at)
+        file.write_bytes(spoilt_content)
+        with pytest.raises(InputError, match=f"{kind.decode()} at byte {at} comes twice"):
+            read_recording(file)
 
 
 def test_limits_of_meshes_and_step_files(tmp_path, monkeypatch):

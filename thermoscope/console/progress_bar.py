@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from itertools import count
-from math import exp
+from math import ceil, exp, floor, log10
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING
@@ -34,6 +34,9 @@ FILE = "stages.json"
 MOST = 200  # pieces of work that are remembered
 COUNT = re.compile(r"\((\d+) of (\d+)\)$")  # at the end of a message
 ALONE = re.compile(COUNT.pattern)
+AGAIN = re.compile(r"step \d+: ")  # before a message: the same stages come once more
+SLOW_S = 10.0  # a percent that takes longer is shown in parts, so that the share does not seem to stand
+SPARE = 0.05  # of the time so far: what the share keeps for steps that nobody can foretell
 QUIET_S = 15.0  # a pipe that says nothing for longer looks as if it hung
 PACED_S = 0.5  # stages that took less the last time say nothing of the pace
 # Stages whose cost is that of files and meshes: they say little of how long fits take, which say much of each other.
@@ -77,6 +80,9 @@ class ProgressBar:
     cpu: Callable[[], float] = time.process_time
     start: tuple[float, float] = (0.0, 0.0)
 
+    def __post_init__(self) -> None:
+        self.blocks = max((int(_block(stage) or 0) for stage in self.last), default=0)
+
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage.
 
@@ -89,6 +95,9 @@ class ProgressBar:
         if not (self.now or self.took):
             self.share_s = self.clock()
             self.start = (self.share_s, self.cpu())
+        if AGAIN.match(message):
+            self.leave()
+            self._next_block()
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -99,6 +108,16 @@ class ProgressBar:
         self.leave()
         self.now, self.part = stage, part
         return True
+
+    def _next_block(self) -> None:
+        """The same stages once more. Beyond what came the last time, and in a first run, one more is always to come."""
+        self.block += 1
+        more = int(self.block > self.blocks or not self.same_case)
+        for number in range(self.blocks + 1, self.block + more + 1):
+            before = str(number - 1 or "")
+            again = [s for s in self.last if _block(s) == before and _word(s) not in PREPARING]
+            self.last = {f"{number} {_word(s)}": self.last[s] for s in again} | self.last
+            self.last = {s: self.last[s] for s in sorted(self.last, key=lambda s: int(_block(s) or 0))}
 
     def _here(self) -> float:
         """Time in the stage that runs (s)."""
@@ -131,7 +150,8 @@ class ProgressBar:
             rest = max(rest, (self.clock() - begin) * (1.0 - fraction) / fraction)
         if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
-        after = order.index(self.now) + 1 if self.now in self.last else 0
+        stages = [s for s in (*self.took, self.now) if s in self.last]
+        after = order.index(stages[-1]) + 1 if stages else 0
         coming = [s for s in order[after:] if s not in self.took and s != self.now]
         building = [s for s in order if _word(s) in BUILDING]
         if {*building} & {*order[:after]} and not {*building} & {*self.took, self.now}:
@@ -143,7 +163,8 @@ class ProgressBar:
         if not (worth and (self.now or self.took)) or self._unknown():  # a bar is drawn before its first stage
             return None
         passed, self.share_s = instant - self.share_s, instant
-        self.share = min(self.share + (1.0 - self.share) * passed / max(passed + rest, 1e-9), 0.99)
+        slow = passed + rest + SPARE * spent * bool(self.block)
+        self.share = min(self.share + (1.0 - self.share) * passed / max(slow, 1e-9), 0.99999)
         return self.share, rest
 
     def _unknown(self) -> bool:
@@ -191,6 +212,11 @@ def _word(stage: str) -> str:
     return stage.rpartition(" ")[2]
 
 
+def _block(stage: str) -> str:
+    """The number of its block; "" of the first."""
+    return stage.rpartition(" ")[0]
+
+
 def _line(message: str, remaining: tuple[float, float] | None) -> str:
     """The message with share and time left."""
     return f"{message} ({_remaining(remaining)})" if remaining else message
@@ -198,7 +224,10 @@ def _line(message: str, remaining: tuple[float, float] | None) -> str:
 
 def _remaining(remaining: tuple[float, float]) -> str:
     """Share done and time left."""
-    return f"{100 * remaining[0]:.0f} %, about {_span(remaining[1])} left"
+    share, rest = remaining
+    slow = rest / (100.0 * (1.0 - share) * SLOW_S)  # time of a percent
+    fine = 10 ** min(max(ceil(log10(max(slow, 1e-9))), 0), 2)
+    return f"{floor(100 * fine * share) / fine:.{len(str(fine)) - 1}f} %, about {_span(rest)} left"
 
 
 def _span(seconds: float) -> str:
@@ -336,7 +365,7 @@ def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
             return Text(_remaining(remaining) if remaining else "", no_wrap=True)
 
     message_column = Column(ratio=1, no_wrap=True, overflow="ellipsis")
-    times = Column(no_wrap=True, min_width=len(_remaining((0.99, 3600.0))))
+    times = Column(no_wrap=True, min_width=len(_remaining((0.9999, 3600.0))))
     with Bar(
         TextColumn("{task.description}", table_column=message_column, markup=False),
         BarColumn(10),

@@ -156,7 +156,7 @@ def improve(
         case = _with_step(case, first, supervisor, {}, stairs) if first.worth_keeping else case
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
-        progress(shorten(diagnosis.words, LINE, placeholder=" ..."))
+        progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
         if supervisor.offer(diagnosis) and len(stairs) > most:
             return ended(case, stairs, diagnosis, f"{most} steps are enough for one run")
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, progress)

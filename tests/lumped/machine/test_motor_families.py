@@ -255,6 +255,14 @@ def test_a_loss_at_an_unknown_place_is_refused(ready):
         means_only(ready["pmsm-m1"], wrong)
 
 
+def test_a_loss_by_an_input_that_no_rating_gives_is_refused(ready):
+    machine = load_machine("pmsm-m1")
+    copper = {**machine.sections["losses"]["copper"], "currents": ["i_rms"]}
+    wrong = replace(machine, sections={**machine.sections, "losses": {**machine.sections["losses"], "copper": copper}})
+    with pytest.raises(InputError, match=r"\[losses.copper\]: the rated point has no input 'i_rms'; known: current_A"):
+        loss_watts(wrong, means_only(ready["pmsm-m1"], machine), {"current_A": 16.0, "speed_rpm": 383.0})
+
+
 def test_a_machine_without_losses_can_be_looked_at(ready):
     machine = load_machine("pmsm-m1")
     bare = replace(machine, sections={k: v for k, v in machine.sections.items() if k != "losses"})

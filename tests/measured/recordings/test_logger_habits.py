@@ -1,6 +1,7 @@
 """Habits of other people's loggers, each in a file that its test makes."""
 
 import json
+import re
 import tomllib
 
 import numpy as np
@@ -11,7 +12,9 @@ from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
+from measured.importing.clock import clock_of
 from measured.importing.guess import guesses, in_memory
+from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model
 from thermoscope.commands.test.new import new_case as new
 
@@ -65,7 +68,14 @@ def test_registers_in_tenths_are_read_by_their_names(tmp_path):
 
 @pytest.mark.parametrize(
     ("header", "name", "unit"),
-    [("Wicklung US", "Wicklung US", ""), ("I_sek", "I_sek", ""), ("T_wdg_min", "T_wdg_min", ""), ("t_min", "t", "min")],
+    [
+        ("Wicklung US", "Wicklung US", ""),
+        ("I_sek", "I_sek", ""),
+        ("T_wdg_min", "T_wdg_min", ""),
+        ("t_min", "t", "min"),
+        ("Частота вращения, об/мин", "Частота вращения", "rpm"),
+        ("Мощность, кВт", "Мощность", "kW"),
+    ],
 )
 def test_the_end_of_a_name_is_no_unit_of_time(header, name, unit):
     assert split_unit(header) == (name, unit)
@@ -126,7 +136,63 @@ def test_logs_of_what_changes_have_no_gaps(tmp_path):
     (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
     document = written(tmp_path, tmp_path / "a.csv")
     assert document["tests"][0]["duration_s"] == pytest.approx(1800.0)
-    assert "max_gap_s = 600" in (tmp_path / "made/tests/a.toml").read_text()
+    limit = re.search(r"max_gap_s = (\d+)", (tmp_path / "made/tests/a.toml").read_text())
+    assert 600 <= int(limit[1]) < 1000
+
+
+def test_a_home_writes_its_room_seldom_and_a_control_system_its_own_end(tmp_path):
+    """A room that changes every ten minutes among rows of seconds; a tag that is read once, after the last reading."""
+    lines = ["entity_id,state,last_changed"]
+    for name, key, step, late in (("sensor.motor_winding", "W", 1, 0), ("sensor.cellar_temperature", "A", 60, 2)):
+        values = WARM[key] + (np.arange(N) // 60 % 2) * 0.1
+        stamps = [(k, 5 * k + late) for k in range(0, N, step)]
+        lines += [f"{name},{values[k]:.2f},2026-05-07T09:{s // 60:02d}:{s % 60:02d}Z" for k, s in stamps]
+    (tmp_path / "a.csv").write_text("\n".join([*lines, "$RT_OFF$,0,2026-05-07T09:40:00Z"]) + "\n")
+    document = written(tmp_path, tmp_path / "a.csv")
+    assert document["tests"][0]["duration_s"] == pytest.approx(5 * (N - 1))
+    assert "'sensor.cellar_temperature': hardly warms: taken as the room" in document["warnings"]
+
+
+@pytest.mark.parametrize(
+    ("line", "step_s"),
+    [("Rate,10 s", 10.0), ("Scan rate = 500 ms", 0.5), ("Messtakt:;10 s;;", 10.0), ("Sampling rate: 10 Hz", 1.0)],
+)
+def test_how_often_a_logger_reads(tmp_path, line, step_s):
+    """By a line before the names; a frequency is none, nor a flow."""
+    rows = "".join(f"{w:.2f},{i:.1f}\n" for w, i in zip(WARM["W"], WARM["I"]))
+    (tmp_path / "a.csv").write_text(f"{line}\nflow rate,3 l/min\nT_winding [°C],I [A]\n{rows}")
+    assert clock_of(read_source(tmp_path / "a.csv")).seconds == pytest.approx(step_s * np.arange(N))
+
+
+def test_series_of_instants_and_readings(tmp_path):
+    """As data bases of measurements answer: a name and pairs, the instant first or last."""
+    for pair in (lambda t, v: [1778138070 + t, f"{v:.3f}"], lambda t, v: [v, 1000 * (1778138070 + t)]):
+        series = [
+            {"metric": {"__name__": name}, "values": [pair(int(t), v) for t, v in zip(T, WARM[key])]}
+            for name, key in (("motor_winding_celsius", "W"), ("room_celsius", "A"), ("motor_current_amperes", "I"))
+        ]
+        (tmp_path / "a.json").write_text(json.dumps({"status": "success", "data": {"result": series}}))
+        found, ((source, clock),) = read(tmp_path / "a.json")
+        assert clock.seconds == pytest.approx(T)
+        assert goes(found)["room_celsius"] == "ambient"
+        assert source.numbers("motor_winding_celsius") == pytest.approx(WARM["W"], abs=1e-3)
+
+
+def test_channels_of_two_rates_in_an_mf4(tmp_path):
+    """Temperatures every 5 s beside a current ten times a second: each at its own instants, in one case."""
+    asammdf = pytest.importorskip("asammdf")
+    fast = np.arange(0.0, T[-1] + 0.05, 0.1)
+    with asammdf.MDF() as mdf:
+        slow = [("T_winding", "W"), ("T_housing", "H"), ("T_ambient", "A")]
+        mdf.append([asammdf.Signal(WARM[key], T.astype(float), name=name, unit="degC") for name, key in slow])
+        mdf.append([asammdf.Signal(np.interp(fast, T, WARM["I"]), fast, name="current", unit="A")])
+        mdf.save(tmp_path / "a.mf4")
+    _, ((source, clock),) = read(tmp_path / "a.mf4")
+    at = np.isfinite(source.numbers("T_winding"))
+    assert clock.seconds[at] == pytest.approx(T)
+    assert source.numbers("T_winding")[at] == pytest.approx(WARM["W"])
+    assert source.numbers("current") == pytest.approx(np.interp(fast, T, WARM["I"]))
+    assert written(tmp_path, tmp_path / "a.mf4")["tests"][0]["duration_s"] == pytest.approx(T[-1])
 
 
 def test_an_outlet_beside_an_inlet_is_a_check_and_the_first_line_says_so(tmp_path):

@@ -89,6 +89,11 @@ def test_a_measured_loss_asks_which_input_is_the_speed():
             "forced convection by vehicle wind at flange.right, exponent of speed rpm",
         ),
         ("convection@flange.right", "forced convection by vehicle wind at flange.right"),
+        ("loss.input@winding|speed_rpm^2 at 4000", "a loss at winding that follows speed_rpm"),
+        (
+            "loss.input@winding|speed_rpm at 4000^speed_rpm",
+            "a loss at winding that follows speed_rpm, exponent of speed rpm",
+        ),
     ],
 )
 def test_a_value_of_the_model_has_words(name, words):

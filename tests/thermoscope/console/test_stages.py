@@ -151,6 +151,36 @@ def test_the_share_moves_between_two_counts():
     assert seen[-1] < 1.0
 
 
+def test_the_same_stages_once_more_are_waited_for():
+    """Ten steps of 40 s, where the last time there was one: in every 20 s the share moves, and something is left."""
+    clock = Clock()
+    last = {"reading": 1.0, "fitting": 24.0, "looking": 16.0, "1 step": 0.0, "1 fitting": 24.0, "1 looking": 16.0}
+    stages, seen = ProgressBar(last, clock), []
+    worked(stages, clock, [("reading", 1.0), ("fitting", 24.0), ("looking", 16.0), ("step 1: wind", 0.0)])
+    assert stages.left()[1] == pytest.approx(40.0)
+    for number in range(2, 10):
+        for message, seconds in [("fitting", 24.0), ("looking", 16.0)]:
+            stages.enter(message)
+            for _ in range(int(seconds)):
+                clock.now += 1.0
+                seen.append(progress_bar._remaining(stages.left()).partition(" ")[0])
+        stages.enter(f"step {number}: more")
+        assert stages.left()[1] == pytest.approx(80.0), "this one, and one more"
+    assert all(a != b for a, b in zip(seen, seen[20:]))
+
+
+@pytest.mark.parametrize(
+    ("share", "rest", "words"),
+    [
+        (0.97, 200.0, "97.0 %, about 3 min left"),
+        (0.5, 100.0, "50 %, about 2 min left"),
+        (0.99999, 0.0, "99 %, about 0 s left"),
+    ],
+)
+def test_a_slow_percent_is_shown_in_parts(share, rest, words):
+    assert progress_bar._remaining((share, rest)) == words
+
+
 def test_a_line_of_80_columns_keeps_its_times():
     from io import StringIO
 
@@ -166,7 +196,7 @@ def test_a_line_of_80_columns_keeps_its_times():
     lines = [line for line in re.split(r"[\r\n]", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "\r", screen.getvalue())) if line]
     text = re.sub(r"\s+", " ", re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", screen.getvalue()))
     assert max(len(line) for line in lines) <= 80
-    assert re.search(r"\d+ %, about \d+ min left 0:00:0\d", text)
+    assert re.search(r"[\d.]+ %, about \d+ min left 0:00:0\d", text)
     assert "…" in text
 
 
