@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.loss_sources import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
 from measured.case import Case, LowFidelity, Reference, Test
@@ -196,6 +195,10 @@ def _stamp(file: Path) -> tuple[str, int, int, int]:
 
 def _assumed(network: Network, settings: Settings) -> list[str]:
     """A note on losses that nobody declared; InputError where measurements are to be held against them."""
+    if settings.network is not None:
+        return []
+    from lumped.machine.loss_sources import ASSUMED, ASSUMED_W
+
     if all(source.name != ASSUMED for source in network.sources):
         return []
     what, right = "the machine declares no losses", "[losses.NAME] with kind, at and its numbers"
@@ -270,6 +273,7 @@ def network_of(settings: Settings, progress: Progress) -> tuple[Network, Built |
 def load_machine_file(path: Path) -> Machine:
     """A machine by its file, or by the name of a machine that comes with the tool."""
     from geom import library, load_machine
+    from lumped.machine.loss_sources import checked_losses
 
     if path.exists():
         machine = load_machine(path)
