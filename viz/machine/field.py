@@ -15,7 +15,7 @@ import numpy as np
 from geom.arrays import Array
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import LATE, Sensor
-from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
+from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked, worst_first
 from viz.rendering import scene
 from viz.rendering.callouts import draw_on_top, label_room
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -91,7 +91,7 @@ def cut_open(
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
     p, surface = scene.plotter(theme), cut_away(nodes, wedge)
     scene.look(p, frame_points(surface, sensors), view, room)
-    return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
+    return p, surface, marked(surface, worst_first(sensors), labels, np.array(p.camera.position))
 
 
 def difference(
@@ -127,7 +127,7 @@ def pair(
 ) -> pyvista.Plotter:
     """Two fields side by side on one colour scale, and after minus before (K) on its own.
 
-    sensors : of either, with what the model misses, which stands beside the dots of the worst
+    sensors : the same of either, with what the model misses, which stands beside the dots of the worst
     limits : of the scale (degC), those of both if not given
     """
     first, last = on_nodes(nodes, before), on_nodes(nodes, after)
@@ -135,7 +135,8 @@ def pair(
     most = float(np.abs(last - first).max())
     p, view, surface = scene.plotter(theme, PANELS, (1, 3)), view or View(), cut_away(nodes, wedge)
     room = Room(0.13, 0.26, TITLE, NOTE) if any(sensors) else Room(0.02, 0.16, TITLE)
-    numbers = [tuple(replace(s, name="") for s in row) for row in sensors]
+    order = sorted(range(len(sensors[0])), key=lambda k: -max(row[k].weight for row in sensors))  # the same in both
+    numbers = [[replace(row[k], name="") for k in order] for row in sensors]
     for i, (field, T_limits, colours, row, words) in enumerate(
         [
             (first, ends, heat(), numbers[0], titles[0]),

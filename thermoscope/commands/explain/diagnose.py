@@ -126,7 +126,10 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
-    hidden = [f"{h['words']} below {limit(h)}" for h in document["cannot_see"]]
+    hidden = [
+        f"{h['words']} {f'below {limit(h)}' if h['smallest_detectable'] else 'at any size'}"
+        for h in document["cannot_see"]
+    ]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     events, explained = document.get("events", []), document.get("explanations", [])
     explanations = tables.explanations_table(explained, partners=False)
@@ -162,12 +165,11 @@ def _words(candidates: Iterable[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
-    """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
+    """From which size the leader shows, what it looks like, and the experiment that proves it."""
     if not candidates or candidates[0]["probability"] <= tables.LEAST_PROBABILITY:
         return []
     first, words = candidates[0], _words(candidates)
     lines = [f"Detection limit: these tests show it from {limit(first)} on."]
-    lines += [tables.gain_words(first)] if first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])
