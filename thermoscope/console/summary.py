@@ -140,7 +140,7 @@ def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[
         widths[j] -= min(widths[j] - LEAST, _total(widths, columns) - width)
 
     def lines(cells: Sequence[str]) -> list[str]:
-        parts = [wrap(cells[j], widths[j], break_on_hyphens=False) if j in words else [cells[j]] for j in columns]
+        parts = [wrap(cells[j], widths[j]) if j in words else [cells[j]] for j in columns]
         sides = [str.rjust if right[j] else str.ljust for j in columns]
         return [
             GAP.join(side(part, widths[j]) for side, part, j in zip(sides, row, columns, strict=True)).rstrip()

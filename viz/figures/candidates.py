@@ -87,7 +87,7 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
         ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
     ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
     ax.margins(x=0.25, y=0.04)
-    ax.set(xlabel="standard deviations from the other tests; blue can differ, red cannot; dotted: chance")
+    ax.set(xlabel="standard deviations from the other tests\nblue can differ, red cannot; dotted: chance")
     return paper.save(figure, png)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import inf, isfinite
 from shlex import join, quote
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -127,7 +128,7 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
     hidden = [
-        f"{h['words']} {f'below {limit(h)}' if h['smallest_detectable'] else 'at any size'}"
+        f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
         for h in document["cannot_see"]
     ]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
