@@ -225,8 +225,11 @@ def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
     return {c.name: tuple(1e-3 * x for x in c.position_mm) for c in columns}
 
 
-def find_case(name: str | Path) -> Path:
-    """A case folder by its path, or by the name of a case that comes with the tool."""
+def find_case(name: str | Path, machines: Iterable[str] = ()) -> Path:
+    """A case folder by its path, or by the name of a case that comes with the tool.
+
+    machines : what might have been meant as well
+    """
     path = Path(name)
     if path.is_dir():
         return path
@@ -236,7 +239,7 @@ def find_case(name: str | Path) -> Path:
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
     beside = [str(p.parent) for p in path.parent.glob("*/case.toml")]
-    near = [*beside, *shipped] or ["no case came along"]
+    near = [*beside, *shipped, *machines] or ["no case came along"]
     raise InputError("no such case folder", str(path), suggestion(str(path), near))
 
 

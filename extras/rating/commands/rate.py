@@ -61,7 +61,7 @@ def case_or_machine(
     """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
     path = Path(name)
     if not (path.is_file() or (not path.exists() and name in th.library())):
-        check(th.read_settings(th.find_case(name), untested=True))
+        check(th.read_settings(th.find_case(name, th.library()), untested=True))
         return th.open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name

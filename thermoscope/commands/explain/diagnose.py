@@ -97,7 +97,7 @@ def diagnosed(
 
     checked_diagnosis(folder)
     scope = Scope(tuple(without), tuple(only))
-    check_names(folder.case, [*without, *only], "what to leave out")
+    check_names(folder.case, [*without, *only], "the effects asked for or left out")
     budgets = folder.budgets
     worst = ErrorBudget.worst(budgets.values()).total_K
     diagnosis = search(
