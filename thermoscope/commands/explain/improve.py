@@ -111,12 +111,12 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
     """Why it ended, the error step by step, and what would decide if it stopped."""
     from validation.revision.revise import TOGETHER
 
-    steps = document["stairs"]
-    names = [f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]]
+    steps, tests = document["stairs"], document["stairs"][0]["tests"]
+    names = [f"{t['name']} ({t['role']}, K)" for t in tests]
     errors = Table.of(
         "Error, step by step (rms)",
         [{**s, **dict(zip(names, (t["rmse_K"] for t in s["tests"]), strict=True))} for s in steps],
-        " | ".join(["step=name", *(f"{'*' * name.endswith('(hold-out, K)')}{name}" for name in names)])
+        " | ".join(["step=name", *(f"{'*' * (t['role'] == 'hold-out')}{n}" for n, t in zip(names, tests, strict=True))])
         + " | *all (K)=rmse_K | *sensors as fitted (K)=fitted_rmse_K | *probability",
         name=lambda s: added_words(folder.case, s["effect"].split(TOGETHER)) if s["effect"] else s["step"],
         probability=lambda s: s["evidence"].get("probability", ""),

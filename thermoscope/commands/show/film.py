@@ -119,8 +119,8 @@ def misses(
     rms = {name: float(np.sqrt(np.nanmean(r**2))) for name, r in left.items()}
     within = {name: error for name, error in rms.items() if error <= limit_K[name]}
 
-    def seen(name: str, i: int) -> Sensor:
+    def one(name: str, i: int) -> Sensor:
         x, y, z = folder.positions[name]
         return Sensor(name, (x, y, z), float(left[name][i]), limit_K[name], within.get(name))
 
-    return [tuple(seen(name, i) for name in left) for i in at]
+    return [tuple(one(name, i) for name in left) for i in at]
