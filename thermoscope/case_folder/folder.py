@@ -226,10 +226,7 @@ def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
 
 
 def find_case(name: str | Path, machines: Iterable[str] = ()) -> Path:
-    """A case folder by its path, or by the name of a case that comes with the tool.
-
-    machines : what might have been meant as well
-    """
+    """A case folder by its path or the name of a case that comes along.  machines : what may be meant as well"""
     path = Path(name)
     if path.is_dir():
         return path

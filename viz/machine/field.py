@@ -15,7 +15,7 @@ import numpy as np
 from geom.arrays import Array
 from viz.colours import LIGHT, Theme, heat, missing, power
 from viz.data import LATE, Sensor
-from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked, worst_first
+from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
 from viz.rendering.callouts import draw_on_top, label_room
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
@@ -89,9 +89,9 @@ def cut_open(
     nodes: SplitMesh, sensors: Sequence[Sensor], labels: int, room: Room, wedge: Wedge | None, view: View, theme: Theme
 ) -> tuple[pyvista.Plotter, Surface, Marked]:
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
-    p, surface = scene.plotter(theme), cut_away(nodes, wedge)
+    p, surface, by_weight = scene.plotter(theme), cut_away(nodes, wedge), sorted(sensors, key=lambda s: -s.weight)
     scene.look(p, frame_points(surface, sensors), view, room)
-    return p, surface, marked(surface, worst_first(sensors), labels, np.array(p.camera.position))
+    return p, surface, marked(surface, by_weight, labels, np.array(p.camera.position))
 
 
 def difference(

@@ -65,12 +65,7 @@ def frame_points(surface: Surface, sensors: Sequence[Sensor]) -> Array:
 
 def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:
     """The labels of those furthest beyond their uncertainty."""
-    return [_label(s, False).text for s in worst_first(sensors)[:labels]]
-
-
-def worst_first(sensors: Sequence[Sensor]) -> list[Sensor]:
-    """Those furthest beyond their uncertainty come first."""
-    return sorted(sensors, key=lambda s: -s.weight)
+    return [_label(s, False).text for s in sorted(sensors, key=lambda s: -s.weight)[:labels]]
 
 
 def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: Array) -> Marked:

@@ -10,7 +10,7 @@ from extras.portraits.portrait import VIEW
 from geom import build_mesh, load_machine
 from viz import QUARTER, Sensor, split
 from viz.machine.parts import ASIDE
-from viz.machine.thermocouples import LABELS, marked, worst_first
+from viz.machine.thermocouples import LABELS, marked
 from viz.rendering.cut import cut_away
 from viz.rendering.ghost import RADIUS
 from viz.rendering.scene import View
@@ -63,7 +63,7 @@ def test_every_label_points_at_its_own_part(cases, view):
             chosen = names[first : first + LABELS]
             weights = {name: 10.0 if name in chosen else 0.1 for name in names}
             sensors = [Sensor(name, tuple(known[name][0]), weights[name]) for name in names]
-            seen = marked(surface, worst_first(sensors), LABELS, eye)
+            seen = marked(surface, sorted(sensors, key=lambda s: -s.weight), LABELS, eye)
             assert {s.name for s in seen.labelled} >= set(chosen)
             for name in chosen:
                 at, part = first_hit(seen.cut.solid, eye, known[name][0])

@@ -108,10 +108,7 @@ def largest(sensors: Sequence[Sensor]) -> str:
 def misses(
     folder: Folder, model: Case, test: Test, times: Array, limit_K: Mapping[str, float]
 ) -> list[tuple[Sensor, ...]]:
-    """At each of the times (s): the sensors with a place, and what the model misses there.
-
-    A sensor that is within its limit over the whole test is so at every instant, as in every other picture.
-    """
+    """At each of the times (s): the sensors with a place, and what is missed there of those over in the whole test."""
     from viz.data import Sensor
 
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
