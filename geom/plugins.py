@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from functools import cache
-from importlib.metadata import distributions
+from importlib.metadata import EntryPoint, distributions
 from pathlib import Path
 from typing import Any
 
@@ -21,5 +21,10 @@ def plugins(group: str) -> dict[str, Any]:
 
 @cache
 def _plugins(group: str, path: tuple[str, ...]) -> dict[str, Any]:
-    entries = [entry for one in distributions(path=list(path)) for entry in one.entry_points]
-    return {entry.name: entry.load() for entry in reversed(entries) if entry.group == f"thermoscope.{group}"}
+    return {entry.name: entry.load() for entry in reversed(_entries(path)) if entry.group == f"thermoscope.{group}"}
+
+
+@cache
+def _entries(path: tuple[str, ...]) -> list[EntryPoint]:
+    every = (entry for one in distributions(path=list(path)) for entry in one.entry_points)
+    return [entry for entry in every if entry.group.startswith("thermoscope.")]

@@ -19,7 +19,7 @@ class Table:
     """columns : in the order they are shown;  rows : most important first;  marked : words that make a row stand out
 
     keep : columns that a narrow medium leaves out last, after the first one
-    folded : the column whose words go over several lines rather than be cut
+    folded : the column that is never left out
     """
 
     title: str

@@ -246,7 +246,7 @@ from validation.parameters.unknowns import (
     working as working,
 )
 from validation.revision import revise as revise
-from validation.tables import bases_table as bases_table, fall as fall, offers as offers
+from validation.tables import bases_table as bases_table, offers as offers
 from geom.one_thread import one_blas_thread as one_blas_thread
 from viz.bench_run import BenchRun as BenchRun, bench_run as bench_run, journal as journal
 from viz.colours import (

@@ -118,7 +118,7 @@ def diagnose(
     named; `scope` what is asked about; `quick`: stop at the first odds, which are preliminary; `report` is told of what
     works out the same while the search goes on. Returns: the verdict with its odds and tables.
     """
-    check_names(case, [*scope.without, *scope.only], "what to leave out")
+    check_names(case, [*scope.without, *scope.only], "the effects asked for or left out")
     check_names(case, case.odds, "[odds] of case.toml")
     broken = broken_channels(case.training().tests)
     whole, case = case, low_fidelity_case(case, progress)

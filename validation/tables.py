@@ -101,10 +101,10 @@ def weighty_candidates(candidates: Sequence[Document]) -> Sequence[Document]:
 
 
 def candidates_table(candidates: Iterable[Document]) -> Table:
-    """Size with interval and detection limit, and what each buys."""
+    """Size with interval and detection limit."""
     columns = (
         "effect | *odds=probability | *size (95 %)=size | *detectable=smallest_detectable | *unit | "
-        "*error refitted=refitted | held out=held_out | log odds=score | threshold | decision"
+        "log odds=score | threshold | decision"
     )
     return Table.of(
         "Candidates (odds of each, alone or with others)",
@@ -112,26 +112,10 @@ def candidates_table(candidates: Iterable[Document]) -> Table:
         columns,
         ["named", "group"],
         size=lambda c: with_interval(c["amplitude"]["value"], *c["amplitude"]["ci95"]),
-        refitted=lambda c: fall(c.get("rmse_K")),
-        held_out=lambda c: fall(c.get("holdout_rmse_K")),
         probability=_percent,
         unit=lambda c: unit_of(c["amplitude"]),
         decision=lambda c: c["decision"].replace("-", " "),
     )
-
-
-def fall(pair: Mapping[str, float] | None) -> str:
-    """ "-64 %": how an error changes with an effect, all else fitted anew; empty where nothing was refitted.
-
-    The errors themselves are told of models that stand, by `model add` and `test compare`.
-    """
-    return f"{100 * (pair['after'] / pair['before'] - 1):+.0f} %" if pair and pair["before"] else ""
-
-
-def gain_words(candidate: Document) -> str:
-    """What a candidate would do to the error of each test; empty where it was not refitted."""
-    each = [f"{fall(t)} in {t['test']}{' (never used)' * t['held_out']}" for t in candidate.get("tests", [])]
-    return f"Error with it, all else fitted anew: {', '.join(each)}." if each else ""
 
 
 def unit_of(record: Document) -> str:

@@ -81,8 +81,6 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
             "score": th.percent(c["probability"]),
             "width": percent(c["probability"], 1.0),
             "amplitude": th.amplitude(c),
-            "error": th.fall(c["rmse_K"]),
-            "held": th.fall(c["holdout_rmse_K"]),
             "alike": ", ".join(words.get(name) or th.value_words(name) for name in c["confused_with"][:3]),
             "decision": c["decision"],
             "test": c.get("isolating_test", ""),

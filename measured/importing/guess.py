@@ -527,14 +527,15 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
 
-    def order(g: Guess) -> tuple[bool, ...]:
+    def order(g: Guess) -> tuple[int, ...]:
         words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
-        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST
+        more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
+        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, more
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")

@@ -72,7 +72,7 @@ class FirstNetwork:
         """As network.toml."""
         lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
         lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
-        role_of = {node: next(iter(roles_of(node)), "") for node in self.capacities}
+        role_of = {node: next((r for r in roles_of(node) if r not in BOUNDARIES), "") for node in self.capacities}
         role_of |= dict.fromkeys(self.wound, Role.WINDING)
         whole = [node for node in role_of if is_whole(node)]
         if len(whole) == 1 and Role.WINDING not in role_of.values():  # "motor temperature" of drives

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
-from lumped.machine.loss_sources import ASSUMED, ASSUMED_W, checked_losses
 from lumped.model.network import Network, Parameter
 from lumped.schemas.reader import suggestion
 from measured.case import Case, LowFidelity, Reference, Test
@@ -196,6 +195,10 @@ def _stamp(file: Path) -> tuple[str, int, int, int]:
 
 def _assumed(network: Network, settings: Settings) -> list[str]:
     """A note on losses that nobody declared; InputError where measurements are to be held against them."""
+    if settings.network is not None:
+        return []
+    from lumped.machine.loss_sources import ASSUMED, ASSUMED_W
+
     if all(source.name != ASSUMED for source in network.sources):
         return []
     what, right = "the machine declares no losses", "[losses.NAME] with kind, at and its numbers"
@@ -222,8 +225,8 @@ def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
     return {c.name: tuple(1e-3 * x for x in c.position_mm) for c in columns}
 
 
-def find_case(name: str | Path) -> Path:
-    """A case folder by its path, or by the name of a case that comes with the tool."""
+def find_case(name: str | Path, machines: Iterable[str] = ()) -> Path:
+    """A case folder by its path or the name of a case that comes along.  machines : what may be meant as well"""
     path = Path(name)
     if path.is_dir():
         return path
@@ -233,7 +236,7 @@ def find_case(name: str | Path) -> Path:
     if path.exists():
         raise InputError("is a file", str(path), "a folder with a case.toml")
     beside = [str(p.parent) for p in path.parent.glob("*/case.toml")]
-    near = [*beside, *shipped] or ["no case came along"]
+    near = [*beside, *shipped, *machines] or ["no case came along"]
     raise InputError("no such case folder", str(path), suggestion(str(path), near))
 
 
@@ -270,6 +273,7 @@ def network_of(settings: Settings, progress: Progress) -> tuple[Network, Built |
 def load_machine_file(path: Path) -> Machine:
     """A machine by its file, or by the name of a machine that comes with the tool."""
     from geom import library, load_machine
+    from lumped.machine.loss_sources import checked_losses
 
     if path.exists():
         machine = load_machine(path)

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import tomlkit
-
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
 from geom.storage import locked, write_whole
@@ -122,6 +120,8 @@ def save_history(path: Path, history: History, before: History) -> History:
 
     Raises InputError when the file holds something else by now: another command or tab was quicker.
     """
+    import tomlkit
+
     with locked(path.parent):
         standing = load_history(path)
         if standing != before:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from itertools import zip_longest
 from textwrap import wrap
 from typing import Any
 
@@ -22,7 +23,7 @@ from geom.text import visible
 
 LINES, USUAL = 25, 80  # lines after the sentence, and columns where nobody says
 GAP = "  "
-TITLE, LEAST = 2, 8  # lines over the rows of a table; letters that a shortened word keeps
+LEAST = 8  # letters of a line of a broken word
 
 NUMBERS = re.compile(r"[-+]?\d[\d.,eE+()\s-]*(?:[^\W\d]?\S{0,8})?")  # one, an interval, or either with its unit
 
@@ -80,10 +81,9 @@ def _pointer(more: str, cut: bool) -> str:
 
 def _cut(parts: Sequence[Table | str], full: list[Any], width: int, room: int) -> list[Any]:
     """The least of each part, the most important first, as far as there is room; the rest goes in the same order."""
-    lengths = list(map(len, full))
-    least = [min(n, TITLE + 2) if isinstance(p, Table) else n for p, n in zip(parts, lengths, strict=True)]
-    fitting = []
-    for n in least:
+    lengths, fitting = list(map(len, full)), list[int]()
+    for part, whole in zip(parts, lengths, strict=True):
+        n = min(len(grid(part, part.rows[:1], width)) + 1, whole) if isinstance(part, Table) else whole
         fitting.append(n if n <= room else 0)
         room -= fitting[-1]
     out = []
@@ -98,17 +98,13 @@ def _lines(part: Table | str, width: int, most: int | None) -> list[tuple[str, s
     if isinstance(part, str):
         lines = _plain(part, width)
         return lines if most is None or len(lines) <= most else []
-    if most is not None and most < TITLE + 2:
-        return []
     rows = part.rows[:most]  # a row is a line at least: of thousands of rows most are not even laid out
     lines = grid(part, rows, width)
-    while (
-        most is not None
-        and len(rows) > 1
-        and len(lines) + (len(rows) < len(part.rows)) > max(most, len(lines[:TITLE]) + 2)
-    ):
+    while most is not None and rows and len(lines) + (len(rows) < len(part.rows)) > most:
         rows = rows[:-1]
         lines = grid(part, rows, width)
+    if not rows:
+        return []
     left = len(part.rows) - len(rows)
     return [*lines, *([(f"{GAP}... and {left} more", "dim")] if left else [])]
 
@@ -143,17 +139,17 @@ def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[
             break
         widths[j] -= min(widths[j] - LEAST, _total(widths, columns) - width)
 
-    def line(cells: Sequence[str]) -> str:
-        return GAP.join(_padded(cells[j], widths[j], right[j]) for j in columns).rstrip()
-
     def lines(cells: Sequence[str]) -> list[str]:
-        last = columns[-1]
-        words = wrap(cells[last], widths[last]) if table.columns[last] == table.folded else []
-        rest = [line([""] * last + [word] + [""] * (len(cells) - last - 1)) for word in words[1:]]
-        return [line([*cells[:last], words[0], *cells[last + 1 :]] if words else cells), *rest]
+        parts = [wrap(cells[j], widths[j]) if j in words else [cells[j]] for j in columns]
+        sides = [str.rjust if right[j] else str.ljust for j in columns]
+        return [
+            GAP.join(side(part, widths[j]) for side, part, j in zip(sides, row, columns, strict=True)).rstrip()
+            for row in zip_longest(*parts, fillvalue="")
+        ]
 
     styles = ["bold" if any(c in table.marked for c in row) else "" for row in body]
-    head = [*((title, "bold") for title in folded(table.title, width)[:1]), (line(list(table.columns)), "dim")]
+    head = [(title, "bold") for title in folded(table.title, width)[:1]]
+    head += [(text, "dim") for text in lines(list(table.columns))]
     return [*head, *((text, style) for row, style in zip(body, styles, strict=True) for text in lines(row))]
 
 
@@ -173,17 +169,12 @@ def _fitting(table: Table, body: list[list[str]], widths: list[int], width: int)
 
 
 def _numbers(body: list[list[str]], j: int) -> bool:
-    """Does a column hold numbers, which are not to be shortened? Names that begin with a digit may be."""
+    """Does a column hold numbers, which are not to be broken? Names that begin with a digit may be."""
     return any(NUMBERS.fullmatch(row[j]) for row in body)
 
 
 def _total(widths: Sequence[int], columns: Sequence[int]) -> int:
     return sum(widths[j] for j in columns) + len(GAP) * (len(columns) - 1)
-
-
-def _padded(text: str, width: int, right: bool) -> str:
-    short = text if len(text) <= width else f"{text[: width - 1]}…"
-    return short.rjust(width) if right else short.ljust(width)
 
 
 def width() -> int:

@@ -120,7 +120,7 @@ class Comparison(TableResult):
         verdicts = [c.verdict for t in self.tests for c in t.channels]
         over, every = verdicts.count("over"), len(verdicts)
         effects = f" with {', '.join(self.effects)}" if self.effects else ""
-        records = f"{over} of {every} sensor records are over" if over else f"all {every} sensors within"
+        records = f"{over} of {every} sensor records are over" if over else f"all {every} sensor records are within"
         if "unknown" in verdicts:
             records = f"{every} sensor records, held against no limit"
         return (

@@ -173,7 +173,7 @@ def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) ->
         why = f"{why}; no plain model can be learnt from these tests, so nothing says how good a model could be"
         return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
-    beside = f"left out in turn {ours:.2f} K, where {NAMES[kind]} leaves {K:.2f} K"
+    beside = f"each test predicted from the others {ours:.2f} K, by {NAMES[kind]} {K:.2f} K"
     why = f"{beside}; what stops it: {why}" if ours > WORTH * K else f"{why}; {beside}"
     return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
 

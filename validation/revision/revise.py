@@ -16,6 +16,7 @@ from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
 from lumped.model.once import once
+from lumped.schemas.reader import suggestion
 from measured.case import AddedEffect, Case, Channel, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
@@ -194,8 +195,8 @@ def remove(case: Case, name: str, progress: Progress = no_progress) -> Revision:
     """Take an effect out and calibrate on all tests but the held-out ones."""
     left = tuple(e for e in case.model.effects if e.name != name)
     if len(left) == len(case.model.effects):
-        choices = ", ".join(e.name for e in case.model.effects) or "none"
-        raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", f"its effects: {choices}")
+        right = suggestion(name, [e.name for e in case.model.effects] or ["none"], "its effects")
+        raise InputError(f"'{name}' is not in the model", f"case '{case.name}'", right)
     values = {k: v for k, v in case.model.values.items() if k != name and not k.startswith(f"{name}^")}
     model = replace(case.model, effects=left, values=values)
     return _revised(case, model, "remove", name, TRAINING, progress)

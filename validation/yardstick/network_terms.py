@@ -18,7 +18,6 @@ from measured.doubt import PRIOR
 from validation.effects.base import Effect
 from validation.effects.build import links_between, losses_at
 from validation.effects.input_terms import InputConductance, InputLoss, InputTerm, factor_words
-from validation.yardstick.first_network import may_heat, may_stir
 from validation.yardstick.free_network import Powers, link_powers, loss_powers, power_words
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import POWERS, SHAPES, free_network_terms
@@ -75,6 +74,8 @@ def input_term(term: Term, network: Network, sizes: Mapping[str, float]) -> Inpu
 
 def possible_forms(network: Network, inputs: Sequence[str], element: str) -> list[Powers]:
     """What a loss or a link may follow, as the free network has it.  element : "loss" | "link" """
+    from validation.yardstick.first_network import may_heat, may_stir
+
     shapes = [*POWERS[-1], *(shape for shapes in SHAPES for shape in shapes if shape not in POWERS[-1])]
     every, may = (loss_powers(inputs), may_heat) if element == "loss" else (link_powers(inputs, shapes), may_stir)
     return [form for form in every if form and may([network.measures(f.input) for f in form])]

@@ -64,7 +64,7 @@ def posterior(
         ax.text(p, y, f"\u00a0{odds(x['probability'])}", va="center", fontsize=8.5)
         if likely := [n for n in x["partners"] if n["probability"] >= LEAST_PROBABILITY]:
             more = f" and {len(likely) - 1} more" if len(likely) > 1 else ""
-            note = f"\u00a0with {likely[0]['words']} {odds(likely[0]['probability'])}{more}"
+            note = f"\u00a0with: {likely[0]['words']} ({odds(likely[0]['probability'])}){more}"
             ax.text(0.0, y - 0.36, note, va="top", fontsize=8, color=LIGHT.ink, alpha=0.75)
     ax.set(xlabel="probability (%); pale: with something else", xlim=(0.0, 112.0), ylim=(-0.9, len(best) - 0.5))
     ax.set_title(title, loc="left", fontweight="bold")
@@ -87,7 +87,7 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
         ax.axvline(limit, color=LIGHT.ink, lw=1.0, ls=":")
     ax.axvline(0.0, color=LIGHT.ink, lw=1.0)
     ax.margins(x=0.25, y=0.04)
-    ax.set(xlabel="standard deviations from the other tests; blue can differ, red cannot; dotted: chance")
+    ax.set(xlabel="standard deviations from the other tests\nblue can differ, red cannot; dotted: chance")
     return paper.save(figure, png)
 
 

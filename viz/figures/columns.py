@@ -40,6 +40,6 @@ def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = Non
         colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
         ax.plot(panel.time[thin], panel.values[thin], color=colour, lw=1.0)
         ax.set_title(panel.name[:SHORT], fontsize=8.5)
-        ax.set_xlabel(panel.meaning or "left out", fontsize=8)
+        ax.set_xlabel(f"{panel.meaning or 'left out'} over time (s)", fontsize=8)
         ax.margins(x=0)
     return paper.save(figure, png)

@@ -6,7 +6,7 @@ Measured is ink, the model is blue, an earlier model is dashed orange; nothing e
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -48,10 +48,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
         ax.plot(t[thin], values[thin], color=LIGHT.ink, lw=0.9)
         ax.set_title(input_title(name))
         ax.margins(x=0)
-    names = comparison.temperatures(channels[0])
-    for i, curve in enumerate(sorted(names, key=lambda c: c.dashed)):  # once, top left, in the colour of their lines
-        place: dict[str, Any] = {"transform": axes[0].transAxes, "va": "top", "fontsize": 8.5}
-        axes[0].text(0.03, 0.97 - 0.12 * i, curve.name, color=curve.colour, **place)
+    axes[0].legend(labelcolor="linecolor", handlelength=0.0, handletextpad=0.0, frameon=False, fontsize=8.5)  # once
     return paper.save(figure, png)
 
 
@@ -71,10 +68,8 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
     end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves], dashes=dashes)
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
-    ax.set(
-        xlabel=f"time ({unit})", ylabel="measured − model (K)", title=f"{comparison.test.name}: what the model misses"
-    )
-    ax.set_title(f"green is {RULE}", loc="right", fontweight="normal", fontsize=8.5)
+    ax.set(xlabel=f"time ({unit}); green is {RULE}", ylabel="measured − model (K)")
+    ax.set_title(f"{comparison.test.name}: what the model misses")
     return paper.save(figure, png)
 
 
@@ -102,9 +97,8 @@ def _panel(ax: Axes, comparison: Comparison, channel: Channel) -> None:
             ax.fill_between(t[thin], y - limit, y + limit, color=LIGHT.faint, alpha=0.45, lw=0)
             alone(ax, t, curve.y, curve.colour, limit)
         dashes = (0, (4, 2)) if curve.dashed else "-"
-        ax.plot(
-            t[thin], curve.y[thin], color=curve.colour, lw=1.0 if curve.ink else 1.4 if curve.dashed else 1.6, ls=dashes
-        )
+        lw = 1.0 if curve.ink else 1.4 if curve.dashed else 1.6
+        ax.plot(t[thin], curve.y[thin], color=curve.colour, lw=lw, ls=dashes, label=curve.name)
     ax.set_title(short(channel.name))
     ax.margins(x=0)
     sensor = comparison.sensor(channel)

@@ -9,6 +9,7 @@ import numpy as np
 from geom.arrays import Array
 from lumped.integration.balance import Balance
 from lumped.model.network import Link, Network
+from validation.parameters.unknowns import value_words
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,7 @@ def heat_flows(network: Network, balance: Balance, step: int = -1) -> Heat:
     losses: dict[str, float] = {}
     for source in network.sources:
         name = source.name.removeprefix("loss:").partition("^")[0]  # what an exponent changes is the loss's own
+        name = value_words(name.removesuffix(":rise").removesuffix(":base"))
         losses[name] = losses.get(name, 0.0) + float(balance.power(source.name)[step])
     pairs: dict[tuple[str, str, str], Array] = {}
     out: dict[str, float] = {}

@@ -67,6 +67,8 @@ def panels(
     figure, axes = subplots(size[0] * across, size[1] * rows + more, rows, across)
     for ax in axes[count:]:
         ax.set_visible(False)
+    for ax in axes[count - across : count]:
+        ax.tick_params(labelbottom=True)  # also where the row below ends before
     figure.suptitle(title, fontsize=10, color=LIGHT.ink)
     figure.supxlabel(x, fontsize=9.5, color=LIGHT.ink)
     figure.supylabel(y, fontsize=9.5, color=LIGHT.ink)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from geom.errors import InputError
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMALL = 0.01  # of the total: smaller exits are drawn as one
+LINE = 26  # letters of a line of a name
 WARMS, COOLS, ELSEWHERE = "warms the machine", "the machine cools", "elsewhere"
 LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
 GAP = 0.065  # of the total between ribbons: nearly the height of a name; less where there are many
@@ -76,7 +78,7 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
         ax.text(
             outer + 0.02 * sign,
             height,
-            f"{name}  {watts:.0f} W",
+            fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE),
             ha="right" if sign < 0 else "left",
             va="center",
             fontsize=9,

@@ -89,9 +89,9 @@ def cut_open(
     nodes: SplitMesh, sensors: Sequence[Sensor], labels: int, room: Room, wedge: Wedge | None, view: View, theme: Theme
 ) -> tuple[pyvista.Plotter, Surface, Marked]:
     """A scene that looks at the machine with a wedge taken out, what is left of it, its sensors as they are seen."""
-    p, surface = scene.plotter(theme), cut_away(nodes, wedge)
+    p, surface, by_weight = scene.plotter(theme), cut_away(nodes, wedge), sorted(sensors, key=lambda s: -s.weight)
     scene.look(p, frame_points(surface, sensors), view, room)
-    return p, surface, marked(surface, sensors, labels, np.array(p.camera.position))
+    return p, surface, marked(surface, by_weight, labels, np.array(p.camera.position))
 
 
 def difference(
@@ -127,7 +127,7 @@ def pair(
 ) -> pyvista.Plotter:
     """Two fields side by side on one colour scale, and after minus before (K) on its own.
 
-    sensors : of either, with what the model misses, which stands beside the dots of the worst
+    sensors : the same of either, with what the model misses, which stands beside the dots of the worst
     limits : of the scale (degC), those of both if not given
     """
     first, last = on_nodes(nodes, before), on_nodes(nodes, after)
@@ -135,7 +135,8 @@ def pair(
     most = float(np.abs(last - first).max())
     p, view, surface = scene.plotter(theme, PANELS, (1, 3)), view or View(), cut_away(nodes, wedge)
     room = Room(0.13, 0.26, TITLE, NOTE) if any(sensors) else Room(0.02, 0.16, TITLE)
-    numbers = [tuple(replace(s, name="") for s in row) for row in sensors]
+    order = sorted(range(len(sensors[0])), key=lambda k: -max(row[k].weight for row in sensors))  # the same in both
+    numbers = [[replace(row[k], name="") for k in order] for row in sensors]
     for i, (field, T_limits, colours, row, words) in enumerate(
         [
             (first, ends, heat(), numbers[0], titles[0]),

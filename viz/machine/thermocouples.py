@@ -69,14 +69,13 @@ def label_texts(sensors: Sequence[Sensor], labels: int = LABELS) -> list[str]:
 
 
 def marked(surface: Surface, sensors: Sequence[Sensor], labels: int, eye: Array) -> Marked:
-    """The sensors as seen from `eye` (m); labels for those furthest beyond their uncertainty."""
-    by_weight = sorted(sensors, key=lambda s: -s.weight)
-    places, solid = np.array([s.xyz for s in by_weight]).reshape(-1, 3), obstacle(surface)
+    """The sensors as seen from `eye` (m); labels for the first of them."""
+    places, solid = np.array([s.xyz for s in sensors]).reshape(-1, 3), obstacle(surface)
     hidden = covered(solid, places, eye)
     afloat = distance(solid, places) > SLACK
     mine = places[:labels]
     cut = ghosted(surface, mine, (hidden | afloat)[:labels], eye)
-    return Marked(tuple(by_weight[:labels]), tuple(by_weight[labels:]), hidden, cut)
+    return Marked(tuple(sensors[:labels]), tuple(sensors[labels:]), hidden, cut)
 
 
 def _label(sensor: Sensor, hidden: bool) -> Label:

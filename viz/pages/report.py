@@ -159,8 +159,6 @@ def _missing(r: Report) -> str:
     if placed(d) and d["where"][0].get("heat"):
         caption = "Heat that would have to enter (or leave, below zero) at the likeliest place, with its 2σ band."
         parts.append(html.plot(bands.missing_heat(d["where"], events=d.get("events", [])), "heat", caption))
-    errors_words = "Errors: without the effect → with it, all else fitted anew each time."
-    parts.append(html.text(f"Odds: alone or with others. {errors_words}"))
     alike = [
         {**c, "confused_with": "; ".join(texts.get(name) or value_words(name) for name in c["confused_with"])}
         for c in by_odds

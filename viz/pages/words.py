@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from validation.tables import gain_words
 from viz.figures.candidates import amplitude
 
 Document = Mapping[str, Any]
@@ -51,7 +50,7 @@ def detail(diagnosis: Document | None) -> str:
     if best is None:
         return ""
     name = spoken([best.get("words") or best["effect"]])
-    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}. {gain_words(best)}".rstrip()
+    return f"{name[0].upper()}{name[1:]}: {amplitude(best)}."
 
 
 def spoken(effects: Sequence[str], last: str = "and") -> str:

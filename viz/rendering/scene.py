@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 SIZE = (1280, 800)  # pixels
 MARK, GAP = 9, 8  # letters of a colour bar's numbers; pixels between them and the bar
-HEADLINE, LETTER = 14, 1.06  # size of a headline; pixels that one of its letters is wide, of that size
+HEADLINE, SMALL, LETTER = 14, 9, 1.06  # size of a headline; pixels that one of its letters is wide, of that size
 FEATURE_ANGLE = 35.0  # degrees between facets from which an edge is drawn
 
 
@@ -167,9 +168,9 @@ def headline(p: pyvista.Plotter, text: str, theme: Theme = LIGHT, letters: int =
 
 
 def footnote(p: pyvista.Plotter, text: str, theme: Theme = LIGHT) -> None:
-    """A small line below the picture, as large as fits."""
-    fits = int(0.97 * p.renderer.GetSize()[0] / (LETTER * max(len(text), 1)))
-    _line(p, text, (0.02, 0.025), min(9, fits), theme, "footnote")
+    """Small lines below the picture."""
+    fits = int(0.97 * p.renderer.GetSize()[0] / (LETTER * SMALL))
+    _line(p, fill(text, fits), (0.02, 0.015), SMALL, theme, "footnote")
 
 
 def _line(

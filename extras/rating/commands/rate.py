@@ -61,7 +61,7 @@ def case_or_machine(
     """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
     path = Path(name)
     if not (path.is_file() or (not path.exists() and name in th.library())):
-        check(th.read_settings(th.find_case(name), untested=True))
+        check(th.read_settings(th.find_case(name, th.library()), untested=True))
         return th.open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:
         machine = str(path.resolve()) if path.is_file() else name
@@ -107,6 +107,7 @@ def rating_document(folder: th.Folder, request: RatingRequest, sure: bool | None
         "reference": {
             "input": op.main,
             "value": main,
+            "of": "Asked" if op.main in request.at else "Largest in the tests" if folder.case.tests else "Rated",
             "inputs": dict(op.inputs),
             "boundaries": dict(op.boundaries),
             "start": "cold" if request.start is None else request.start,
@@ -203,8 +204,8 @@ def rating_summary(document: Mapping[str, Any]) -> th.Summary:
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
     elif np.isfinite(margin := 100.0 * (first["value"] / reference["value"] - 1.0)):
-        more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"{-margin:.3g} % too much"
-        sentence += f" At {reference['value']:.4g} there is {more}."
+        more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"{-margin:.3g} % beyond it"
+        sentence += f" {reference['of']} {reference['value']:.4g}: {more}."
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
     around = {**{n: u for n, u in reference["inputs"].items() if n != main}, **reference["boundaries"]}
     at = ", ".join(f"{n} = {u:.4g}" for n, u in around.items())
@@ -215,7 +216,7 @@ def rating_summary(document: Mapping[str, Any]) -> th.Summary:
     parts: list[th.Table | str] = [table, f"At {at}; S2 from {begin}."]
     if over := document["overload"]:
         parts.append(
-            f"{over['percent']:g} % of it: {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
+            f"{over['percent']:g} % of it may last {over['from_cold_s']:.4g} s from cold, {over['from_warm_s']:.4g} s "
             f"from rest at {over['warm_percent']:g} %."
         )
     if cycle := document["cycle"]:

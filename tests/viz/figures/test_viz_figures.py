@@ -94,7 +94,7 @@ SHOWS = {
     "before_after": ["4.85 → 0.93 K", "road-2", "rms error (K)", "pale: what fell"],
     "staircase": ["road-2 (hold-out)", "+ forced", "vehicle", "rms error (K)", "strong: never used"],
     "scores": ["convection at flange.right", "12.3 W/m2/K", "as probable as nothing"],
-    "posterior": ["wind at flange.right", "93 %", "with sensor drifts", "nothing is missing", "probability (%)"],
+    "posterior": ["wind at flange.right", "93 %", "with: sensor drifts", "nothing is missing", "probability (%)"],
     "screened": ["convection x emissivity", "AB", "half-normal quantile", "Lenth, all at once", "|high - low| (K)"],
     "ranking": ["base", "speed", "Sobol ST"],
     "confusion": ["a@x", "b@y", ".83"],

@@ -63,7 +63,7 @@ def test_every_label_points_at_its_own_part(cases, view):
             chosen = names[first : first + LABELS]
             weights = {name: 10.0 if name in chosen else 0.1 for name in names}
             sensors = [Sensor(name, tuple(known[name][0]), weights[name]) for name in names]
-            seen = marked(surface, sensors, LABELS, eye)
+            seen = marked(surface, sorted(sensors, key=lambda s: -s.weight), LABELS, eye)
             assert {s.name for s in seen.labelled} >= set(chosen)
             for name in chosen:
                 at, part = first_hit(seen.cut.solid, eye, known[name][0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import inf, isfinite
 from shlex import join, quote
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -96,7 +97,7 @@ def diagnosed(
 
     checked_diagnosis(folder)
     scope = Scope(tuple(without), tuple(only))
-    check_names(folder.case, [*without, *only], "what to leave out")
+    check_names(folder.case, [*without, *only], "the effects asked for or left out")
     budgets = folder.budgets
     worst = ErrorBudget.worst(budgets.values()).total_K
     diagnosis = search(
@@ -126,7 +127,10 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
-    hidden = [f"{h['words']} below {limit(h)}" for h in document["cannot_see"]]
+    hidden = [
+        f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
+        for h in document["cannot_see"]
+    ]
     hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
     events, explained = document.get("events", []), document.get("explanations", [])
     explanations = tables.explanations_table(explained, partners=False)
@@ -162,12 +166,11 @@ def _words(candidates: Iterable[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
-    """From which size the leader shows, what it buys and looks like, and the experiment that proves it."""
+    """From which size the leader shows, what it looks like, and the experiment that proves it."""
     if not candidates or candidates[0]["probability"] <= tables.LEAST_PROBABILITY:
         return []
     first, words = candidates[0], _words(candidates)
     lines = [f"Detection limit: these tests show it from {limit(first)} on."]
-    lines += [tables.gain_words(first)] if first["decision"] != "no" else []
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])

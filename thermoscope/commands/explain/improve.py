@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,6 +16,7 @@ from geom.text import counted, visible
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
+from thermoscope.case_folder.runs import added_words, finding_words
 from thermoscope.case_folder.stored_yardstick import lacking_words, yardstick_document
 from thermoscope.commands.model.revise import recorded
 from thermoscope.commands.open_case import open_case_for_writing
@@ -22,7 +24,7 @@ from thermoscope.commands.stored_diagnosis import save_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
-from validation.tables import fall, next_tests, offers
+from validation.tables import next_tests, offers
 
 if TYPE_CHECKING:
     from validation.inference.result import Candidate, Diagnosis
@@ -54,8 +56,11 @@ def improve(
     number = ledger.history.last.number
     last = {"case": folder.case.name, "revision": number, **result.diagnosis.document(), "ended": result.why}
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
-    plain = yardstick_document(folder.yardstick, result.stairs[-1].comparison, result.case)
+    errors = result.stairs[-1].comparison
+    plain = yardstick_document(folder.yardstick, errors, result.case)
     document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
+    if any(step["effect"] for step in document["stairs"]):
+        document["found"] = finding_words(replace(folder, case=result.case, history=ledger.history), errors.document())
     give(document, target, lambda: improvement_summary(document, folder, case))
     return 0 if result.adequate else 1
 
@@ -99,19 +104,21 @@ def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None
 def offer(c: Candidate) -> str:
     """A candidate as the question shows it."""
     size = f"{with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
-    fell = f", error {fall({'before': c.rmse_K[0], 'after': c.rmse_K[1]})}" if c.rmse_K else ""
-    return f"{c.words}, {size}, odds {percent(c.probability)}{fell}"
+    return f"{c.words}, {size}, odds {percent(c.probability)}"
 
 
 def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str) -> Summary:
     """Why it ended, the error step by step, and what would decide if it stopped."""
-    steps = document["stairs"]
-    names = [f"{t['name']} ({t['role']}, K)" for t in steps[0]["tests"]]
+    from validation.revision.revise import TOGETHER
+
+    steps, tests = document["stairs"], document["stairs"][0]["tests"]
+    names = [f"{t['name']} ({t['role']}, K)" for t in tests]
     errors = Table.of(
         "Error, step by step (rms)",
         [{**s, **dict(zip(names, (t["rmse_K"] for t in s["tests"]), strict=True))} for s in steps],
-        " | ".join(["step=name", *names]) + " | *all (K)=rmse_K | *sensors as fitted (K)=fitted_rmse_K | *probability",
-        name=lambda s: s["effect"] or s["step"],
+        " | ".join(["step=name", *(f"{'*' * (t['role'] == 'hold-out')}{n}" for n, t in zip(names, tests, strict=True))])
+        + " | *all (K)=rmse_K | *sensors as fitted (K)=fitted_rmse_K | *probability",
+        name=lambda s: added_words(folder.case, s["effect"].split(TOGETHER)) if s["effect"] else s["step"],
         probability=lambda s: s["evidence"].get("probability", ""),
     )
     number, file = document["written"], folder.settings.model_file
@@ -125,4 +132,5 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         )
     plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
     why = document["why"]
-    return Summary(f"{why[:1].upper()}{why[1:]}; {outcome}.", [errors, plain, *further], more)
+    sentence = f"{document.get('found', '')} {why[:1].upper()}{why[1:]}; {outcome}.".strip()
+    return Summary(sentence, [errors, plain, *further], more)

@@ -10,7 +10,7 @@ import typer
 
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
-from thermoscope.case_folder.folder import checked_losses
+from lumped.machine.loss_sources import checked_losses
 from thermoscope.commands.model.machines import write_machine_file
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary

@@ -108,16 +108,16 @@ def largest(sensors: Sequence[Sensor]) -> str:
 def misses(
     folder: Folder, model: Case, test: Test, times: Array, limit_K: Mapping[str, float]
 ) -> list[tuple[Sensor, ...]]:
-    """At each of the times (s): the sensors with a place, and what the model misses there."""
+    """At each of the times (s): the sensors with a place, and what is missed there of those over in the whole test."""
     from viz.data import Sensor
 
     read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
-    out = []
-    for i in at:
-        row = []
-        for c in test.channels:
-            if c.name in folder.positions:
-                x, y, z = folder.positions[c.name]
-                row.append(Sensor(c.name, (x, y, z), float(c.y[i] - read[c.name][i]), limit_K[c.name]))
-        out.append(tuple(row))
-    return out
+    left = {c.name: c.y - read[c.name] for c in test.channels if c.name in folder.positions}
+    rms = {name: float(np.sqrt(np.nanmean(r**2))) for name, r in left.items()}
+    within = {name: error for name, error in rms.items() if error <= limit_K[name]}
+
+    def one(name: str, i: int) -> Sensor:
+        x, y, z = folder.positions[name]
+        return Sensor(name, (x, y, z), float(left[name][i]), limit_K[name], within.get(name))
+
+    return [tuple(one(name, i) for name in left) for i in at]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from geom.table import Table
+from geom.text import counted
 from measured.recordings.readings import UNSEEN
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
@@ -152,7 +153,8 @@ def roles_in_short(records: Sequence[Mapping[str, Any]]) -> str:
     if not guesses:
         return ""
     unknown, how = sum(r["role"] is None for r in guesses), 'say role = "..." in network.toml'
-    return f"{len(guesses)} roles are guessed, {unknown} of them unknown; effects are placed by them: {how}."
+    which = f"{counted(len(guesses), 'role')}{f', {unknown} of them unknown' * bool(unknown)}"
+    return f"Guessed: {which}; effects are placed by roles: {how}."
 
 
 def _reasons(document: Mapping[str, Any]) -> list[Table | str]:
@@ -193,7 +195,7 @@ def contradiction(row: Mapping[str, Any] | None) -> list[Table | str]:
     if not row:
         return []
     table = contradiction_table(row)
-    return [row["words"], *([table] if table.rows else [])]
+    return [*sentences([row["words"]]), *([table] if table.rows else [])]
 
 
 def _pulses(h: Mapping[str, Any]) -> str:

@@ -23,7 +23,7 @@ class CopperFeedback(Effect):
     """
 
     kind = "copper.feedback"
-    title = "copper resistance does not follow its temperature"
+    title = "copper resistance rises with its temperature"
     sits = "a copper loss that follows a temperature, or says its reference"
     unit = "1/K"
     source = "IEC 60034-1: copper, 0.00393 1/K at 20 degC"
