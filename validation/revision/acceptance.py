@@ -1,8 +1,9 @@
 """What a step must stand up to: it predicts what it was not fitted to better than the model did before, and than none.
 
 Each test is left out in turn, of the only one that tells of the step what follows half of it: fitted to the rest, with
-the step and without it, and its readings predicted with sensors as the rest has them. Log predictive density, both
-times under the noise of the model without the step, and error have to agree. Held-out tests have no say.
+the step and without it, and its readings predicted. Log predictive density, of the most probable parameters and both
+times under the noise of the model without the step, and error, of those that follow the readings, have to agree.
+Held-out tests have no say.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from measured.case import Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise, sorted_unknowns
 from validation.comparison.linearisation import Segment, segments
-from validation.noise import FOLLOWED
+from validation.noise import FOLLOWED, Noise
 from validation.parameters.unknowns import Unknowns, to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
@@ -144,20 +145,19 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     """
     learnt, unseen = _rows(fit, fold.fitted), _rows(fit, fold.predicted)
     causes, machine, others = sorted_unknowns(fit.unknowns, effects)
-    rows, at, seen = _places(fit, machine), _places(fit, causes), [s for s, _ in learnt]
-    if at:
-        cache = CachedSegments(seen, nearby=True)
-        every = (fit.unknowns, fit.theta, fit.noise, fixed)
-        sizes = minimise(fit.network, fold.fitted, *every, REFITS, cache, draft=True, worth=ROUGH).values
-        fixed = {**fixed, **{name: sizes[name] for name in causes.names}}
-    cache = CachedSegments([replace(s, J=s.J[:, rows]) for s in seen], nearby=True)
-    fixed, noise = {**fixed, **dict.fromkeys(others.names, 0.0)}, FOLLOWED.robust(seen)
-    alone = minimise(
-        fit.network, fold.fitted, machine, fit.theta[rows], noise, fixed, REFITS, cache, draft=True, worth=ROUGH
-    )
-    parts = segments(fit.network, fold.predicted, {**fixed, **alone.values})
-    read = [(replace(s, r=now.r), D) for (s, D), now in zip(learnt, alone.parts, strict=True)]
-    return FoldPrediction(_log_density(fit, read, unseen, parts, [*rows, *at]), *squares(parts, fold))
+    rows, seen = [fit.unknowns.names.index(name) for name in machine.names], [s for s, _ in learnt]
+
+    def fitted(some: Unknowns, theta: Array, noise: Noise, parts: Sequence[Segment]) -> dict[str, float]:
+        cache = CachedSegments(parts, nearby=True)
+        network, tests = fit.network, fold.fitted
+        return minimise(network, tests, some, theta, noise, values, REFITS, cache, draft=True, worth=ROUGH).values
+
+    values = dict(fixed)
+    likely = fitted(fit.unknowns, fit.theta, fit.noise, seen)
+    nats = _log_density(fit, learnt, unseen, segments(fit.network, fold.predicted, {**values, **likely}))
+    values |= {name: likely[name] for name in causes.names} | dict.fromkeys(others.names, 0.0)
+    values |= fitted(machine, fit.theta[rows], FOLLOWED.robust(seen), [replace(s, J=s.J[:, rows]) for s in seen])
+    return FoldPrediction(nats, *squares(segments(fit.network, fold.predicted, values), fold))
 
 
 def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
@@ -181,43 +181,22 @@ def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
     return out
 
 
-def _places(fit: Fit, some: Unknowns) -> list[int]:
-    """Where some of a fit's unknowns stand among all."""
-    return [fit.unknowns.names.index(name) for name in some.names]
-
-
-def _curvature(fit: Fit, learnt: Sequence[tuple[Segment, Array]]) -> tuple[Array, Array]:
-    """Curvature of the objective, of parameters and doubts, on what was learnt, and the pull of its residuals."""
-    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(fit.error.size if fit.error else 0)]))
-    slope = np.zeros(len(H))
-    for s, D in learnt:
-        X = fit.noise.whiten(s, np.column_stack([s.J, D, s.r]))
-        H += X[:, :-1].T @ X[:, :-1]
-        slope += X[:, :-1].T @ X[:, -1]
-    return H, slope
-
-
 def _log_density(
-    fit: Fit,
-    learnt: Sequence[tuple[Segment, Array]],
-    unseen: Sequence[tuple[Segment, Array]],
-    parts: Sequence[Segment],
-    machine: Sequence[int],
+    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], parts: Sequence[Segment]
 ) -> float:
     """Log density of unseen readings: noise, model error, and what the learnt ones leave open of the parameters.
 
-    Sensors, boundaries, clocks and doubts of the model are expected as they are in what is learnt.
-    machine : the columns of the other parameters, which stand as they were fitted
     By the determinant lemma and Woodbury: with X the whitened columns of parameters and doubts and H their curvature,
     r'S^-1 r = r'r - r'X (H + X'X)^-1 X'r and log|S| = log|noise| + log|H + X'X| - log|H|.
     """
-    H, slope = _curvature(fit, learnt)
-    free = np.setdiff1d(np.arange(len(H)), machine)
-    expected = np.linalg.solve(H[np.ix_(free, free)], slope[free])
+    doubts = fit.error.size if fit.error else 0
+    H = np.diag(np.concatenate([fit.unknowns.sd**-2.0, np.ones(doubts)]))
+    for s, D in learnt:
+        X = fit.noise.whiten(s, np.column_stack([s.J, D]))
+        H += X.T @ X
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
     for (s, D), now in zip(unseen, parts, strict=True):
-        columns = np.column_stack([s.J, D])
-        X = fit.noise.whiten(s, np.column_stack([columns, now.r - columns[:, free] @ expected]))
+        X = fit.noise.whiten(s, np.column_stack([s.J, D, now.r]))
         more += X[:, :-1].T @ X[:, :-1]
         pull += X[:, :-1].T @ X[:, -1]
         square += float(X[:, -1] @ X[:, -1])

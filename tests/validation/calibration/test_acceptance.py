@@ -68,23 +68,20 @@ def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
 
 
 def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
-    """Its error by the loss that follows the other alone, the sensor as it reads; its density by the whole covariance
-    of readings, the sensor's bias as the other shows it beside that loss."""
+    """Its error by the loss that follows the other alone, the sensor as it reads; its density, noise and all, by the
+    most probable parameters and the whole covariance of readings."""
     tests = [measured("one", shift=0.8), measured("two", loss=1.2)]
     fit = replace(list(both(tests))[1], error=None)
     fold = folds(tests, ["one", "two"])[0]
-    alone = minimise(fit.network, fold.fitted, Unknowns((LOSS,)), np.zeros(1), FOLLOWED)
-    at = ({"bias of body": 0.0} | alone.values, fit.unknowns.parameters)
-    (learnt,), (read,) = (segments(fit.network, some, *at) for some in (fold.fitted, fold.predicted))
-    white = [fit.noise.whiten(s, np.column_stack([s.J, s.r])) for s in (learnt, read)]
-    H = np.diag(fit.unknowns.sd**-2.0) + white[0][:, :2].T @ white[0][:, :2]
-    bias = white[0][:, 0] @ white[0][:, 2] / H[0, 0]
+    alone = minimise(fit.network, fold.fitted, fit.unknowns, np.zeros(2), fit.noise)
+    (read,) = segments(fit.network, fold.predicted, alone.values, fit.unknowns.parameters)
     W = fit.noise.whiten(read, np.eye(read.r.size))
-    S = np.linalg.inv(W.T @ W) + read.J @ np.linalg.inv(H) @ read.J.T
-    r = read.r - read.J[:, 0] * bias
-    density = -0.5 * (r @ np.linalg.solve(S, r) + np.linalg.slogdet(S)[1])
+    S = np.linalg.inv(W.T @ W) + read.J @ alone.covariance @ read.J.T
+    density = -0.5 * (read.r @ np.linalg.solve(S, read.r) + np.linalg.slogdet(S)[1])
+    follows = minimise(fit.network, fold.fitted, Unknowns((LOSS,)), np.zeros(1), FOLLOWED)
+    (left,) = segments(fit.network, fold.predicted, follows.values)
     found = fold_prediction(fit, fold, {})
-    assert found.square_K2 / found.count == pytest.approx(np.mean(read.r**2), rel=1e-3)
+    assert found.square_K2 / found.count == pytest.approx(np.mean(left.r**2), rel=1e-3)
     assert found.nats == pytest.approx(density, rel=1e-3, abs=0.05)
 
 
