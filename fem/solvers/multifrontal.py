@@ -42,8 +42,9 @@ class Factor:
 
     def __call__(self, b: Floats) -> Floats:
         """Solve A x = b for b (n,) or (n, k)."""
-        s, t = self.symbolic, self.symbolic.tree
+        s, t, shape = self.symbolic, self.symbolic.tree, b.shape
         x = np.ascontiguousarray(b[t.order].reshape(len(b), -1))
+        del b  # it may be of no more use to whoever asked
         for i, (L, B) in enumerate(zip(self.pivots, self.below, strict=True)):
             mine = slice(t.start[i], t.start[i + 1])
             x[mine] = blas.dtrsm(1.0, L, x[mine].T, side=1, lower=1, trans_a=1).T
@@ -54,7 +55,7 @@ class Factor:
             x[mine] = blas.dtrsm(1.0, self.pivots[i], rest.T, side=1, lower=1).T
         out = np.empty_like(x)
         out[t.order] = x
-        return out.reshape(b.shape)
+        return out.reshape(shape)
 
 
 def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:

@@ -6,8 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
-from lumped.model.network import Array, Network
+from lumped.model.network import Network
 
 if TYPE_CHECKING:
     from lumped.condensation.reduction import FullPoint, Reduction
@@ -21,17 +24,18 @@ STRONGEST = 4.0  # a part's favour grows at most by this at a time
 
 @dataclass(frozen=True)
 class Check:
-    """A point where networks are compared with the field: T (n, n_case) of the load cases; the rest as of a point."""
+    """A point where networks are compared with the field: T (n, n_case) of the load cases, in single precision as
+    solutions are; the rest as of a point."""
 
     films: Mapping[str, float]
     contacts: Mapping[str, float]
-    T: Array
+    T: NDArray[np.floating]
     shift: float
 
 
 def checks(points: Sequence[FullPoint], cases: LoadCases) -> list[Check]:
     """What is asked of a network at points that are solved, in a sixth of their memory."""
-    return [Check(p.films, p.contacts, cases.of_field(p.X), p.shift) for p in points]
+    return [Check(p.films, p.contacts, cases.of_field(p.X).astype(np.float32), p.shift) for p in points]
 
 
 @dataclass(frozen=True)
@@ -128,6 +132,7 @@ def enrich(
             break
         fuller = [*guides, *reduction.solved([reduction.extreme_point(first + k)])]
         met, guides, reduction = [*met, *checks(fuller, cases)], new, reduction.enriched(fuller)
+        del fuller  # what was learned is let go before the next points are solved
     return Enrichment(reduction, network, dict(weights), tuple(history))
 
 

@@ -175,7 +175,7 @@ def point_errors(
     network: Network,
     films: Mapping[str, float],
     contacts: Mapping[str, float],
-    full: Array,
+    full: NDArray[np.floating],
     cases: LoadCases,
     shift: float = 0.0,
 ) -> Errors:
