@@ -84,8 +84,8 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
         reach = symbolic.reach[i]
         k, m = hi - lo, len(reach)
         local[lo:hi], local[reach] = np.arange(k), np.arange(k, k + m)
-        own, under = room[filled : filled + k * k], room[filled + k * k : filled + k * (k + m)]
-        L, B, filled = own.reshape((k, k), order="F"), under.reshape((m, k), order="F"), filled + k * (k + m)
+        square, under = room[filled : filled + k * k], room[filled + k * k : filled + k * (k + m)]
+        L, B, filled = square.reshape((k, k), order="F"), under.reshape((m, k), order="F"), filled + k * (k + m)
         rest = np.zeros((m, m), order="F")
         _scatter(L, B, lo, hi, upper.indptr, upper.indices, upper.data, local)
         for c in children:

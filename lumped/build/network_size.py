@@ -1,4 +1,4 @@
-"""A network as small as the wish allows: error against number of states, checked at points it has not seen."""
+"""A network as small as the wish allows: error against number of states, checked at points it has not answers."""
 
 from __future__ import annotations
 
@@ -122,15 +122,15 @@ def smallest_network(
     at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
     at_points += [*map(reduction.joined_point, contact_factors), reduction.early_point(0)]
     full = reduction.solved(at_points)
-    seen = checks(full, cases)
-    looks = [*seen[points_each:], *seen[:points_each]]
+    answers = checks(full, cases)
+    looks = [*answers[points_each:], *answers[:points_each]]
     table = tuple(Size.of(reduction, requested, looks, cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
     if good:
         enrichment, condensed = None, good[0].network
     else:
         reduction, full = reduction.enriched(full[points_each:]), full[:points_each]  # what was learned is let go
-        enrichment = enrich(reduction, cases, limit, rounds, seen[points_each:], full, tell=progress)
+        enrichment = enrich(reduction, cases, limit, rounds, answers[points_each:], full, tell=progress)
         reduction, condensed = enrichment.reduction, enrichment.network
     few = motor_network(machine, table[SIZES.index(SMALL)].network)
     built = Built(machine, ready.mesh, motor_network(machine, condensed), ready.meshing, few)

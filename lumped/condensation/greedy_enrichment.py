@@ -145,10 +145,10 @@ def allotted_shapes(
     reduction: Reduction, learned: Sequence[Check], cases: LoadCases, accuracy: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
-    network, looked_at = reduction.network(weights=weights), None
+    network, previous = reduction.network(weights=weights), None
     for _ in range(FAVOURS):
-        if network is not looked_at:
-            errors, looked_at = merged(errors_at(learned, reduction, network, cases)), network
+        if network is not previous:
+            errors, previous = merged(errors_at(learned, reduction, network, cases)), network
         missing = {part: accuracy.excess(e) for part, e in errors.parts.items() if accuracy.excess(e) > MARGIN}
         if not missing:
             break

@@ -114,12 +114,12 @@ class Reduction:
         shapes = bases(self.field, self.principal, self.energy, recipe, weights, last)
         if not last or any(shapes[part] is not last[part] for part in shapes):
             whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
-            found = network_in(
+            network = network_in(
                 self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name
             )
-            self._last.update(network=found, shapes=shapes)
-        network: Network = self._last["network"]
-        return network
+            self._last.update(network=network, shapes=shapes)
+        last_network: Network = self._last["network"]
+        return last_network
 
     def solved(self, points: Sequence[Point]) -> list[FullPoint]:
         """The whole field at other coefficients."""
@@ -165,9 +165,9 @@ class Reduction:
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""
         S = [p.X for p in points]
-        found = enriched(self.field, self.principal, S, self.films, self.contacts, self.energy)
-        richer, worked_out = replace(self, principal=found), ("loads", "energy", "solver")  # none of the shapes' own
-        vars(richer).update({name: vars(self)[name] for name in worked_out if name in vars(self)})
+        principal = enriched(self.field, self.principal, S, self.films, self.contacts, self.energy)
+        richer, same = replace(self, principal=principal), ("loads", "energy", "solver")  # none of the shapes' own
+        vars(richer).update({name: vars(self)[name] for name in same if name in vars(self)})
         return richer
 
 
