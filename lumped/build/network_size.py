@@ -1,4 +1,4 @@
-"""A network as small as the wish allows: error against number of states, checked at points it has not answers."""
+"""A network as small as the wish allows: error against number of states, checked at points it has not seen."""
 
 from __future__ import annotations
 
