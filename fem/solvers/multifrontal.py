@@ -42,8 +42,9 @@ class Factor:
 
     def __call__(self, b: Floats) -> Floats:
         """Solve A x = b for b (n,) or (n, k)."""
-        s, t = self.symbolic, self.symbolic.tree
+        s, t, shape = self.symbolic, self.symbolic.tree, b.shape
         x = np.ascontiguousarray(b[t.order].reshape(len(b), -1))
+        del b  # it may be of no more use to whoever asked
         for i, (L, B) in enumerate(zip(self.pivots, self.below, strict=True)):
             mine = slice(t.start[i], t.start[i + 1])
             x[mine] = blas.dtrsm(1.0, L, x[mine].T, side=1, lower=1, trans_a=1).T
@@ -54,7 +55,7 @@ class Factor:
             x[mine] = blas.dtrsm(1.0, self.pivots[i], rest.T, side=1, lower=1).T
         out = np.empty_like(x)
         out[t.order] = x
-        return out.reshape(b.shape)
+        return out.reshape(shape)
 
 
 def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
@@ -74,33 +75,38 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
     """Cholesky factor of a symmetric positive definite A (n, n) whose pattern lies within `symbolic`."""
     tree, upper = symbolic.tree, _upper(A, symbolic.tree)
     local = np.full(A.shape[0], -1, np.int64)
+    room, filled = np.zeros(symbolic.size), 0  # one array: freed in pieces, it would leave holes that stay
     pivots: list[Floats] = []
     below: list[Floats] = []
     waiting: dict[int, Floats] = {}
     for i, children in enumerate(tree.children):
         lo, hi = int(tree.start[i]), int(tree.start[i + 1])
-        k, reach = hi - lo, symbolic.reach[i]
-        local[lo:hi], local[reach] = np.arange(k), np.arange(k, k + len(reach))
-        mine, rest = np.zeros((k + len(reach), k), order="F"), np.zeros((len(reach), len(reach)), order="F")
-        _scatter(mine, lo, hi, upper.indptr, upper.indices, upper.data, local)
+        reach = symbolic.reach[i]
+        k, m = hi - lo, len(reach)
+        local[lo:hi], local[reach] = np.arange(k), np.arange(k, k + m)
+        square, under = room[filled : filled + k * k], room[filled + k * k : filled + k * (k + m)]
+        L, B, filled = square.reshape((k, k), order="F"), under.reshape((m, k), order="F"), filled + k * (k + m)
+        rest = np.zeros((m, m), order="F")
+        _scatter(L, B, lo, hi, upper.indptr, upper.indices, upper.data, local)
         for c in children:
-            _extend_add(mine, rest, waiting.pop(c), local[symbolic.reach[c]])
-        L, B, waiting[i] = _eliminate(mine, rest)
+            _extend_add(L, B, rest, waiting.pop(c), local[symbolic.reach[c]])
+        waiting[i] = _eliminate(L, B, rest)
         pivots.append(L)
         below.append(B)
     return Factor(symbolic, tuple(pivots), tuple(below))
 
 
-def _eliminate(mine: Floats, rest: Floats) -> tuple[Floats, Floats, Floats]:
-    """Factor of a front's own columns (k + m, k), and what `rest` (m, m), overwritten, becomes without them."""
-    k = mine.shape[1]
-    L, info = lapack.dpotrf(mine[:k], lower=1, clean=1)
+def _eliminate(L: Floats, B: Floats, rest: Floats) -> Floats:
+    """Overwrites a front's pivots (k, k) and what is below (m, k); `rest` (m, m) without them."""
+    _, info = lapack.dpotrf(L, lower=1, clean=1, overwrite_a=1)
     if info:
         raise InputError(
             "the matrix is not positive definite", "solve", "a film or contact for every part, all above 0"
         )
-    B = blas.dtrsm(1.0, L, mine[k:], side=1, lower=1, trans_a=1)
-    return L, B, blas.dsyrk(-1.0, B, beta=1.0, c=rest, lower=1, overwrite_c=1) if len(B) else rest
+    if not len(B):
+        return rest
+    blas.dtrsm(1.0, L, B, side=1, lower=1, trans_a=1, overwrite_b=1)
+    return np.asarray(blas.dsyrk(-1.0, B, beta=1.0, c=rest, lower=1, overwrite_c=1))
 
 
 def _upper(A: sp.csr_array, tree: Tree) -> sp.csr_array:
@@ -108,19 +114,26 @@ def _upper(A: sp.csr_array, tree: Tree) -> sp.csr_array:
 
 
 @numba.njit(cache=True)
-def _scatter(mine, lo, hi, indptr, indices, data, local):  # type: ignore[no-untyped-def]
+def _scatter(L, B, lo, hi, indptr, indices, data, local):  # type: ignore[no-untyped-def]
+    k = hi - lo
     for row in range(lo, hi):
         for p in range(indptr[row], indptr[row + 1]):
-            mine[local[indices[p]], row - lo] += data[p]
+            i = local[indices[p]]
+            if i < k:
+                L[i, row - lo] += data[p]
+            else:
+                B[i - k, row - lo] += data[p]
 
 
 @numba.njit(cache=True)
-def _extend_add(mine, rest, update, where):  # type: ignore[no-untyped-def]
-    k = mine.shape[1]
+def _extend_add(L, B, rest, update, where):  # type: ignore[no-untyped-def]
+    k = L.shape[0]
     for j in range(len(where)):
-        if where[j] < k:
-            for i in range(j, len(where)):
-                mine[where[i], where[j]] += update[i, j]
-        else:
-            for i in range(j, len(where)):
-                rest[where[i] - k, where[j] - k] += update[i, j]
+        for i in range(j, len(where)):
+            row, column = where[i], where[j]
+            if column >= k:
+                rest[row - k, column - k] += update[i, j]
+            elif row >= k:
+                B[row - k, column] += update[i, j]
+            else:
+                L[row, column] += update[i, j]

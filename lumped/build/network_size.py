@@ -11,7 +11,7 @@ from geom.one_thread import one_blas_thread
 from lumped.build.load_cases import load_cases
 from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
 from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, meshed, reduced, silent
-from lumped.condensation.greedy_enrichment import Enrichment, Size, enrich
+from lumped.condensation.greedy_enrichment import Enrichment, Size, checks, enrich
 from lumped.condensation.reduction import Recipe, Reduction
 from lumped.condensation.reduction_error import Accuracy
 from lumped.machine.bases import on_all
@@ -122,15 +122,19 @@ def smallest_network(
     at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]
     at_points += [*map(reduction.joined_point, contact_factors), reduction.early_point(0)]
     full = reduction.solved(at_points)
-    guides, points = full[:points_each], full[points_each:]
-    table = tuple(Size.of(reduction, requested, [*points, *guides], cases, limit) for requested in SIZES)
+    answers = checks(full, cases)
+    looks = [*answers[points_each:], *answers[:points_each]]
+    table = tuple(Size.of(reduction, requested, looks, cases, limit) for requested in SIZES)
     good = [size for size in table if size.met]
-    enrichment = None if good else enrich(reduction, cases, limit, rounds, points, guides, tell=progress)
-    condensed = good[0].network if good else enrichment.network  # type: ignore[union-attr]
-    last = reduction if enrichment is None else enrichment.reduction
+    if good:
+        enrichment, condensed = None, good[0].network
+    else:
+        reduction, full = reduction.enriched(full[points_each:]), full[:points_each]  # what was learned is let go
+        enrichment = enrich(reduction, cases, limit, rounds, answers[points_each:], full, tell=progress)
+        reduction, condensed = enrichment.reduction, enrichment.network
     few = motor_network(machine, table[SIZES.index(SMALL)].network)
     built = Built(machine, ready.mesh, motor_network(machine, condensed), ready.meshing, few)
-    return NetworkSize(built, last, limit, table, enrichment)
+    return NetworkSize(built, reduction, limit, table, enrichment)
 
 
 SIZES = (0, 50, 100, 200, 400)  # 0: the means only

@@ -47,8 +47,7 @@ def network_in(
         states += [part, *(f"{part}#{k + 1}" for k in range(len(basis.capacity)))]
         C += [block.capacity, *basis.capacity]
         groups += [part] * len(part_states)
-        V = np.column_stack([np.ones(block.n), basis.Phi])
-        shapes[part] = PartShape(block.points, block.elements, V, block.w / block.volume, part_states)
+        shapes[part] = PartShape(block.points, block.elements, basis.V, block.w / block.volume, part_states)
     states, C, groups = [*states, *fluids], [*C, *fluids.values()], [*groups, *fluids]
     links = [_conduction(part, shape, bases[part]) for part, shape in shapes.items() if len(shape.states) > 1]
     links += [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]

@@ -6,6 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
 from lumped.model.network import Network
 
@@ -17,6 +20,22 @@ FAVOURS = 6  # times the shapes are dealt out anew before new solutions are aske
 MARGIN = 0.5  # points already learned from are met this much better than wished, because new ones are not
 RESERVE = 0.7  # a size is good enough when the points it is checked at use up no more than this of the wish
 STRONGEST = 4.0  # a part's favour grows at most by this at a time
+
+
+@dataclass(frozen=True)
+class Check:
+    """A point where networks are compared with the field: T (n, n_case) of the load cases, in single precision as
+    solutions are; the rest as of a point."""
+
+    films: Mapping[str, float]
+    contacts: Mapping[str, float]
+    T: NDArray[np.floating]
+    shift: float
+
+
+def checks(points: Sequence[FullPoint], cases: LoadCases) -> list[Check]:
+    """What is asked of a network at points that are solved, in a sixth of their memory."""
+    return [Check(p.films, p.contacts, cases.of_field(p.X).astype(np.float32), p.shift) for p in points]
 
 
 @dataclass(frozen=True)
@@ -61,9 +80,9 @@ class Size:
 
     @classmethod
     def of(
-        cls, reduction: Reduction, requested: int, points: Sequence[FullPoint], cases: LoadCases, accuracy: Accuracy
+        cls, reduction: Reduction, requested: int, points: Sequence[Check], cases: LoadCases, accuracy: Accuracy
     ) -> Size:
-        """points : the nominal one first, then random ones, all solved in full"""
+        """points : the nominal one first, then random ones"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *others = errors_at(points, reduction, network, cases)
         random = merged(others)
@@ -86,33 +105,34 @@ def enrich(
     cases: LoadCases,
     accuracy: Accuracy,
     rounds: int = 3,
-    points: Sequence[FullPoint] = (),
+    learned: Sequence[Check] = (),
     guides: Sequence[FullPoint] = (),
     fresh: int = 3,
     tell: Tell = lambda message: None,
 ) -> Enrichment:
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
-    reduction : of reduction.py;  points : already solved, to be learned;  guides : random ones, solved too
+    reduction : of reduction.py;  learned : points that are among its snapshots;  guides : random ones, solved too
     fresh : random points per round, the first one soon after a step of loss, too; those that were missed guide the
         next, and are learned after it with an extreme one
     """
     weights: dict[str, float] = {}
-    learned, first = list(points) or reduction.solved([reduction.nominal_point()]), len(points) + len(guides)
-    # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
-    reduction = reduction.enriched(learned) if points else reduction
+    first = len(learned) + len(guides)
+    met = list(learned) or checks(reduction.solved([reduction.nominal_point()]), cases)
     history: list[Round] = []
     for k in range(rounds):
-        network = allotted_shapes(reduction, [*learned, *guides], cases, accuracy, weights)
+        # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
+        network = allotted_shapes(reduction, [*met, *checks(guides, cases)], cases, accuracy, weights)
         seeds = range(first + fresh * k, first + fresh * (k + 1))
         new = reduction.solved([*map(reduction.random_point, seeds), reduction.early_point(seeds[0])])
-        errors = merged(errors_at(new, reduction, network, cases))
+        errors = merged(errors_at(checks(new, cases), reduction, network, cases))
         history.append(Round(len(network.states), tuple(p.name for p in new), errors, excess(errors, accuracy) <= 1.0))
         tell(f"error with {len(network.states)} states: {errors}")
         if history[-1].met or k == rounds - 1:
             break
         fuller = [*guides, *reduction.solved([reduction.extreme_point(first + k)])]
-        learned, guides, reduction = [*learned, *fuller], new, reduction.enriched(fuller)
+        met, guides, reduction = [*met, *checks(fuller, cases)], new, reduction.enriched(fuller)
+        del fuller  # what was learned is let go before the next points are solved
     return Enrichment(reduction, network, dict(weights), tuple(history))
 
 
@@ -122,12 +142,13 @@ def excess(errors: Errors, accuracy: Accuracy) -> float:
 
 
 def allotted_shapes(
-    reduction: Reduction, learned: Sequence[FullPoint], cases: LoadCases, accuracy: Accuracy, weights: dict[str, float]
+    reduction: Reduction, learned: Sequence[Check], cases: LoadCases, accuracy: Accuracy, weights: dict[str, float]
 ) -> Network:
     """Deal out shapes until the points already solved are met: parts that miss get more."""
-    network = reduction.network(weights=weights)
+    network, previous = reduction.network(weights=weights), None
     for _ in range(FAVOURS):
-        errors = merged(errors_at(learned, reduction, network, cases))
+        if network is not previous:
+            errors, previous = merged(errors_at(learned, reduction, network, cases)), network
         missing = {part: accuracy.excess(e) for part, e in errors.parts.items() if accuracy.excess(e) > MARGIN}
         if not missing:
             break
@@ -137,6 +158,6 @@ def allotted_shapes(
     return network
 
 
-def errors_at(points: Sequence[FullPoint], reduction: Reduction, network: Network, cases: LoadCases) -> list[Errors]:
+def errors_at(points: Sequence[Check], reduction: Reduction, network: Network, cases: LoadCases) -> list[Errors]:
     """Of the network at every point, in two processes where there is room."""
-    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.X, cases, p.shift), points)
+    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.T, cases, p.shift), points)

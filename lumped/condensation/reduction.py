@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -91,9 +91,9 @@ class Reduction:
         return energies(self.field, self.films, self.contacts)
 
     @cached_property
-    def _shapes(self) -> dict[str, Basis]:
-        """Those of the last network that was cut out of it: in the next most parts have as many."""
-        return {}
+    def _last(self) -> dict[str, Any]:
+        """The last network that was cut out of it, and its shapes: in the next most parts have as many, or all."""
+        return {"network": None, "shapes": {}}
 
     @cached_property
     def solver(self) -> Solver:
@@ -110,10 +110,16 @@ class Reduction:
         """Conduction and contacts as links, faces, parts and zones as places; no films yet. Costs no solve."""
         fine = self.recipe.tolerance if tolerance is None else tolerance
         recipe = replace(self.recipe, tolerance=fine, max_states=max_states)
-        shapes = bases(self.field, self.principal, self.energy, recipe, weights, self._shapes)
-        self._shapes.update(shapes)
-        whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
-        return network_in(self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name)
+        last: Mapping[str, Basis] = self._last["shapes"]
+        shapes = bases(self.field, self.principal, self.energy, recipe, weights, last)
+        if not last or any(shapes[part] is not last[part] for part in shapes):
+            whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
+            network = network_in(
+                self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name
+            )
+            self._last.update(network=network, shapes=shapes)
+        last_network: Network = self._last["network"]
+        return last_network
 
     def solved(self, points: Sequence[Point]) -> list[FullPoint]:
         """The whole field at other coefficients."""
@@ -159,7 +165,10 @@ class Reduction:
     def enriched(self, points: Sequence[FullPoint]) -> Reduction:
         """The same with the solutions of these points among its snapshots."""
         S = [p.X for p in points]
-        return replace(self, principal=enriched(self.field, self.principal, S, self.films, self.contacts, self.energy))
+        principal = enriched(self.field, self.principal, S, self.films, self.contacts, self.energy)
+        richer, same = replace(self, principal=principal), ("loads", "energy", "solver")  # none of the shapes' own
+        vars(richer).update({name: vars(self)[name] for name in same if name in vars(self)})
+        return richer
 
 
 def reduce(

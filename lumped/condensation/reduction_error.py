@@ -175,14 +175,14 @@ def point_errors(
     network: Network,
     films: Mapping[str, float],
     contacts: Mapping[str, float],
-    X: NDArray[np.floating],
+    full: NDArray[np.floating],
     cases: LoadCases,
     shift: float = 0.0,
 ) -> Errors:
-    """Worst over the load cases at one set of coefficients; X (n, n_load) and shift as in reduction.FullPoint.
+    """Worst over the load cases at one set of coefficients; full (n, n_case) of the field; shift as in reduction.Point.
 
     Early, in percent of the machine's largest rise: most parts have none of their own yet.
     """
-    shapes, full, floor = _shapes(network), cases.of_field(X), 1.0 if shift else FLOOR
+    shapes, floor = _shapes(network), 1.0 if shift else FLOOR
     recovered = shapes.field(network_states(network, films, contacts, cases, shift))
     return merged([_between(shapes, T, its, floor=floor) for T, its in zip(full.T, recovered.T, strict=True)])

@@ -64,7 +64,8 @@ def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: 
 
     Laminar below Re_crit(coil): Nu = 3.66 + 0.08 (1 + 0.8 (d/D)^0.9) Re^m Pr^(1/3), m = 0.5 + 0.2903 (d/D)^0.194;
     turbulent above 22000 by ht (whose own branch changes there); linear in Re between.
-    diameter: hydraulic (m), coil_diameter: of the helix (m). Range: Re < 2e5.
+    diameter: hydraulic (m), coil_diameter: of the helix (m). Range: Re < 2e5; 0.5 < Pr < 2000 as of a straight duct,
+    since Schmidt names none.
     Source: E. F. Schmidt 1967, Chem. Ing. Tech. 39, 781; VDI Heat Atlas G3.
     """
     import fluids
@@ -78,7 +79,8 @@ def schmidt_helical(speed: float, diameter: float, coil_diameter: float, fluid: 
     Nu = (1.0 - share) * laminar
     if share > 0.0:
         Nu += share * ht.helical_turbulent_Nu_Schmidt(high, Pr, diameter, coil_diameter)
-    info = checked("schmidt_helical", "Schmidt 1967", {"Nu": Nu, "Re": Re, "Pr": Pr}, {"Re": (0, 2e5)})
+    source, limits = "Schmidt 1967; Pr by Gnielinski 1976", {"Re": (0.0, 2e5), "Pr": (0.5, 2000.0)}
+    info = checked("schmidt_helical", source, {"Nu": Nu, "Re": Re, "Pr": Pr}, limits)
     return Nu * fluid.k / diameter, info
 
 

@@ -61,8 +61,7 @@ def missed(field, films, recipe):
         K = field.stiffness(random_coefficients(films, 5.0, rng), random_coefficients(CONTACTS, 5.0, rng))
         X = Solver(field).factor(K)(loads)
         for name, block in field.blocks.items():
-            V = np.column_stack([np.ones(len(block.points)), shapes[name].Phi])
-            Q = np.linalg.qr(V)[0]
+            Q = np.linalg.qr(shapes[name].V)[0]
             T = X[block.dofs]
             off = T - Q @ (Q.T @ T)
             worst = max(worst, float(np.abs(off).max() / np.abs(T - T.mean(0)).max()))

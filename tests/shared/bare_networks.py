@@ -13,7 +13,7 @@ from lumped.model.network import Network
 def means_only(ready: Prepared, machine: Machine | None = None) -> Network:
     """machine : what the network is made for, if not the machine that was meshed"""
     machine, blocks = machine or ready.machine, ready.field.blocks
-    none = {part: Basis(np.zeros((b.n, 0)), np.zeros(0), np.zeros(0)) for part, b in blocks.items()}
+    none = {part: Basis(np.ones((b.n, 1)), np.zeros(0), np.zeros(0)) for part, b in blocks.items()}
     loads = {part: ready.field.load(part) for part in blocks}
     condensed = network_in(
         ready.field, none, ready.contacts, loads, frozenset(loads), fluids(machine), boundaries(machine), machine.name

@@ -8,7 +8,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated, wound
 from fem.solvers.solve import Solver
-from lumped.condensation.greedy_enrichment import Size, enrich, excess
+from lumped.condensation.greedy_enrichment import Size, checks, enrich, excess
 from lumped.condensation.reduction import Recipe, Zone, reduce
 from lumped.condensation.reduction_error import Accuracy, point_errors, random_load_cases
 
@@ -66,7 +66,7 @@ def cases(found):
 
 def test_error_falls_with_the_number_of_states(field):
     found = reduction(field)
-    points = found.solved([found.nominal_point(), found.random_point(0)])
+    points = checks(found.solved([found.nominal_point(), found.random_point(0)]), cases(found))
     sizes = [Size.of(found, n, points, cases(found), Accuracy()) for n in (0, 10, 25)]
     assert len(sizes[0].network.states) == len(field.blocks) + 2
     assert sizes[0].nominal.mean > sizes[1].nominal.mean > sizes[2].nominal.mean
@@ -79,9 +79,9 @@ def test_guard_learns_until_unseen_points_are_met(field):
     learned = enrich(found, cases(found), wish, rounds=4)
     assert not learned.rounds[0].met
     assert learned.met
-    (unseen,) = found.solved([found.random_point(99)])
-    own = point_errors(learned.network, unseen.films, unseen.contacts, unseen.X, cases(found))
-    before = point_errors(found.network(), unseen.films, unseen.contacts, unseen.X, cases(found))
+    (unseen,) = checks(found.solved([found.random_point(99)]), cases(found))
+    own = point_errors(learned.network, unseen.films, unseen.contacts, unseen.T, cases(found))
+    before = point_errors(found.network(), unseen.films, unseen.contacts, unseen.T, cases(found))
     assert excess(own, wish) < 0.2 * excess(before, wish)
 
 
@@ -89,8 +89,8 @@ def test_guard_looks_at_a_step_of_loss(field):
     """Shapes of steady solutions hold at steady points they have not seen, and fail 30 s after a step."""
     found, wish = reduction(field, random_points=4), Accuracy()
     learned = enrich(found, cases(found), wish, rounds=4)
-    steady = found.solved([found.random_point(k) for k in range(3)])
-    of_steady = [point_errors(found.network(), p.films, p.contacts, p.X, cases(found)) for p in steady]
+    steady = checks(found.solved([found.random_point(k) for k in range(3)]), cases(found))
+    of_steady = [point_errors(found.network(), p.films, p.contacts, p.T, cases(found)) for p in steady]
     assert max(excess(e, wish) for e in of_steady) < 1.0
     assert [r.met for r in learned.rounds] == [False, True]
 
@@ -155,7 +155,7 @@ def test_shapes_of_another_centre_still_reproduce_the_field(field, tmp_path):
     """Found around one contact, used at another: same mesh, both contacts inside the spread."""
     reduction(field, tmp_path, random_points=4)
     moved = reduction(field, tmp_path, {"coil|core": 900.0, "coil|yoke": 800.0}, random_points=4)
-    (point,) = moved.solved([moved.nominal_point()])
-    found = point_errors(moved.network(tolerance=0.003), point.films, point.contacts, point.X, cases(moved))
+    (point,) = checks(moved.solved([moved.nominal_point()]), cases(moved))
+    found = point_errors(moved.network(tolerance=0.003), point.films, point.contacts, point.T, cases(moved))
     assert found.mean < 0.2
     assert max(found.hot, found.point) < 2.0

@@ -174,6 +174,15 @@ def test_a_coolant_that_freezes_and_a_flow_beyond_the_correlation_say_so():
         steady(net, {"flow_l_min": 1e5}, {"ambient": 20.0, "inlet": 60.0})
 
 
+@pytest.mark.parametrize(("more", "film"), [({}, "duct_film"), ({"coil_diameter_mm": 250.0}, "schmidt_helical")])
+def test_oil_that_is_too_cold_for_its_film_says_so(more, film):
+    """Below 14 degC its Prandtl number is above 2000, in a coil as in a straight channel."""
+    pytest.importorskip("CoolProp")
+    net = network(circuit(coolant="oil", flow_l_min=60.0, passes=[{**CHANNEL, **more}]))
+    with pytest.warns(RangeWarning, match=rf"its coolant at \d[.\d]* degC outside 1[34][.\d]* to 160 \({film}\)"):
+        steady(net, {}, {"ambient": 20.0, "inlet": 5.0})
+
+
 def test_water_under_pressure_is_liquid_above_100_degC():
     """At 3 bar up to 133 degC, by IAPWS; without a pressure what boils is said."""
     hot = network(circuit(coolant={"name": "water", "pressure_bar": 3.0}))
