@@ -32,6 +32,7 @@ from validation.effects.input_terms import law_words
 from validation.effects.time_window import checked, holds, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
+    SAME,
     Check,
     Fold,
     FoldPrediction,
@@ -443,14 +444,15 @@ def judge(
     was, now = mean_square(in_fit, "before"), mean_square(in_fit, "after")
     converged = all(fit.converged for fit in fits)
     failed, lower = failures(acceptance), all(c.passed for c in acceptance if c.check == FITTED)
+    falls = now <= (SAME if action == "add" else GETS_WORSE) * was
     reasons = [
         f"kept for the fitted tests only: {failed}" if failed and action == "calibrate" and lower else failed,
         "" if converged else "not converged",
+        "" if falls or failed else "the tests that it was fitted to are told worse with it",
         f"rms over the tests used {fall(was, now)}",
         *other_changes(changes, fitted),
     ]
-    predicts = action == "add" and bool(acceptance)
-    return bool((predicts or now <= GETS_WORSE * was) and converged and not failed), "; ".join(filter(None, reasons))
+    return bool(falls and converged and not failed), "; ".join(filter(None, reasons))
 
 
 def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[str]:

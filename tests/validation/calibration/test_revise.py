@@ -150,8 +150,8 @@ def test_a_frozen_channel_does_not_bend_the_calibration(monkeypatch):
     assert max(abs(bent[k] - gone[k]) for k in gone) > 0.2
 
 
-@pytest.mark.parametrize(("passed", "accepted"), [(True, True), (False, False)])
-def test_an_effect_is_judged_by_what_it_predicts_not_by_the_error_it_was_fitted_to(passed, accepted):
-    changes = (Change("stand", "calibrate", 3.0, 4.0),)
+@pytest.mark.parametrize(("passed", "after", "accepted"), [(True, 2.0, True), (False, 2.0, False), (True, 4.0, False)])
+def test_an_effect_has_to_predict_and_its_own_tests_must_not_be_told_worse(passed, after, accepted):
+    changes = (Change("stand", "calibrate", 3.0, after),)
     checks = (Check("left out", passed, 40.0, 0.0, "5.9 -> 2.9 K"),)
     assert judge("add", changes, (), checks, {"stand"})[0] is accepted
