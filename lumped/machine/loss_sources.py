@@ -18,6 +18,7 @@ from lumped.machine.hairpin import by_part
 from lumped.machine.settings import Losses, read
 from lumped.machine.shapes import conducts, gap_fluid
 from lumped.model.network import Network, Place, Row, Source
+from lumped.model.sites import ASSUMED, ASSUMED_W
 from lumped.schemas.reader import Table, suggestion
 from lumped.sources.loss_laws import EDDY, PowerLoss, declared_name
 from lumped.transfer.laws import InputPower, Law, Linear
@@ -60,8 +61,6 @@ def loss_watts(machine: Machine, network: Network, inputs: Mapping[str, float]) 
 
 
 Loss = tuple[str, str, Shares, Law, str]
-ASSUMED = "loss:assumed"
-ASSUMED_W = 100.0  # of a machine that declares no losses, so that it can be looked at
 
 
 def _declared(machine: Machine) -> list[Loss]:

@@ -10,6 +10,7 @@ from lumped.model.once import once
 
 AXLE = frozenset({Role.BEARING, Role.SHAFT})
 FIELD = frozenset({Role.IRON, Role.WINDING, Role.MAGNET, Role.ROTOR, Role.CAGE, Role.INSULATION, Role.COMMUTATOR})
+ASSUMED, ASSUMED_W = "loss:assumed", 100.0  # of a machine that declares no losses, so that it can be looked at
 NOBODY = Identity(why="nothing tells")
 
 

@@ -20,7 +20,7 @@ FAMILY = (
 from geom.machine_file import machine_from
 from lumped.integration.audit import audit
 from lumped.integration.simulate import Record, simulate
-from lumped.machine.loss_sources import ASSUMED_W
+from lumped.model.sites import ASSUMED_W
 from lumped.build.pipeline import build
 
 machine = machine_from({"machine": {"name": "rod", "family": "rod"}, "geometry": {"rod": {"length_mm": 100.0}}})

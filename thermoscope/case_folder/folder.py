@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from geom.errors import InputError
 from lumped.model.network import Network, Parameter
+from lumped.model.sites import ASSUMED, ASSUMED_W
 from lumped.schemas.reader import suggestion
 from measured.case import Case, LowFidelity, Reference, Test
 from measured.doubt import split_answers
@@ -195,10 +196,6 @@ def _stamp(file: Path) -> tuple[str, int, int, int]:
 
 def _assumed(network: Network, settings: Settings) -> list[str]:
     """A note on losses that nobody declared; InputError where measurements are to be held against them."""
-    if settings.network is not None:
-        return []
-    from lumped.machine.loss_sources import ASSUMED, ASSUMED_W
-
     if all(source.name != ASSUMED for source in network.sources):
         return []
     what, right = "the machine declares no losses", "[losses.NAME] with kind, at and its numbers"

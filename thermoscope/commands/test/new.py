@@ -17,7 +17,7 @@ from geom.errors import InputError
 from geom.escapes import toml_value
 from geom.storage import write_whole
 from geom.table import Table
-from lumped.machine.loss_sources import ASSUMED
+from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.aloud import first_lines, short_lines
