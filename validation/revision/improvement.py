@@ -123,16 +123,13 @@ class Supervisor:
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
-    """What may be added without asking: physics that stands alone, is sure, or of which only the law is open, at one
-    place; of faults those that held in one test.
+    """What may be added without asking: physics that stands alone or is sure; of faults those that held in one test.
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
     first = effect(choice[0].effect)
-    every = [effect(c.effect) for c in choice]
-    alike = all(e.place == first.place and not e.fault for e in every)
     sure = choice[0].probability >= SURE or (len(choice) == 1 and diagnosis.verdict in ("named", "several"))
-    return first.name if alike or (sure and (not first.fault or isinstance(first, During))) else None
+    return first.name if sure and (not first.fault or isinstance(first, During)) else None
 
 
 def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
