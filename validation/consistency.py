@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from measured.case import Case, Test
-from validation.calibration.calibrate import Fit, reading_fit, sorted_unknowns
+from validation.calibration.calibrate import Fit, reading_fit
 from validation.calibration.model_error import machine_rise
 from validation.comparison.compare import ChannelError, physical, pooled, test_error
 from validation.comparison.linearisation import allowed, rmse
@@ -22,7 +22,7 @@ from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
 from validation.inference.result import Check, Remainder
-from validation.parameters.unknowns import Unknowns, standing, working
+from validation.parameters.unknowns import Unknowns, sorted_unknowns, standing, working
 from validation.yardstick.words import WORTH
 from validation.yardstick.yardstick import free_network_error, persistence_error
 

@@ -19,7 +19,7 @@ from measured.doubt import USUAL, Doubt
 from validation.calibration.model_error import ModelError, model_error
 from validation.comparison.linearisation import Segment, segments
 from validation.noise import FOLLOWED, Noise, first_noise, fit_noise
-from validation.parameters.unknowns import Unknowns, measured, of_hidden_start
+from validation.parameters.unknowns import Unknowns, measured, sorted_unknowns
 
 Progress = Callable[[str], None]
 Keep = Callable[[Mapping[str, float]], None]
@@ -449,16 +449,6 @@ def reading_fit(
     theta = unknowns.coordinates({**now, **left.values})
     whole = minimise(network, tests, unknowns, theta, fit_noise(left.parts), fixed, 0)
     return replace(whole, converged=fit.converged, gradient=fit.gradient)
-
-
-def sorted_unknowns(unknowns: Unknowns, effects: Collection[str]) -> tuple[Unknowns, Unknowns, Unknowns]:
-    """Sizes and exponents of effects; the machine's own, with where began what no sensor sees; and what belongs to its
-    sensors, boundaries and clocks."""
-    names = tuple(f"{name}^" for name in effects)
-    causes = [p for p in unknowns.parameters if p.name in effects or p.name.startswith(names)]
-    others = [p for p in unknowns.parameters if measured(p.name) and not of_hidden_start(p)]
-    machine = [p for p in unknowns.parameters if p not in causes and p not in others]
-    return Unknowns(tuple(causes)), Unknowns(tuple(machine)), Unknowns(tuple(others))
 
 
 def with_model_error(

@@ -13,18 +13,9 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
 from measured.sensors.operators import of_measurement, starts
-from validation.calibration.calibrate import (
-    Fit,
-    Keep,
-    Progress,
-    minimise,
-    no_memory,
-    no_progress,
-    reading_fit,
-    sorted_unknowns,
-)
+from validation.calibration.calibrate import Fit, Keep, Progress, minimise, no_memory, no_progress, reading_fit
 from validation.noise import FOLLOWED
-from validation.parameters.unknowns import Unknowns, measured, working
+from validation.parameters.unknowns import Unknowns, measured, sorted_unknowns, working
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum
 

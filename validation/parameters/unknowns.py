@@ -128,6 +128,16 @@ def measured(name: str) -> bool:
     return bool(separator) and kind in OF_MEASUREMENT
 
 
+def sorted_unknowns(unknowns: Unknowns, effects: Collection[str]) -> tuple[Unknowns, Unknowns, Unknowns]:
+    """Sizes and exponents of effects; the machine's own, with where began what no sensor sees; and what belongs to its
+    sensors, boundaries and clocks."""
+    names = tuple(f"{name}^" for name in effects)
+    causes = [p for p in unknowns.parameters if p.name in effects or p.name.startswith(names)]
+    others = [p for p in unknowns.parameters if measured(p.name) and not of_hidden_start(p)]
+    machine = [p for p in unknowns.parameters if p not in causes and p not in others]
+    return Unknowns(tuple(causes)), Unknowns(tuple(machine)), Unknowns(tuple(others))
+
+
 def clock(test: Test, doubt: Doubt) -> float:
     """Standard deviation (s) of a test's clock: the recorder's, and of steps that lie anywhere between two samples."""
     return float(np.hypot(doubt["clock"], doubt["step in sample"] * test.step_s))

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from geom.arrays import Array
 from measured.case import Test
 from measured.sensors.blocks import groups
-from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise, sorted_unknowns
+from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
 from validation.noise import FOLLOWED, Noise
-from validation.parameters.unknowns import Unknowns, to_value
+from validation.parameters.unknowns import Unknowns, sorted_unknowns, to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
@@ -145,18 +145,18 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     """
     learnt, unseen = _rows(fit, fold.fitted), _rows(fit, fold.predicted)
     causes, machine, others = sorted_unknowns(fit.unknowns, effects)
-    rows, seen = [fit.unknowns.names.index(name) for name in machine.names], [s for s, _ in learnt]
+    rows, parts = [fit.unknowns.names.index(name) for name in machine.names], [s for s, _ in learnt]
 
-    def fitted(some: Unknowns, theta: Array, noise: Noise, parts: Sequence[Segment]) -> dict[str, float]:
-        cache = CachedSegments(parts, nearby=True)
+    def fitted(some: Unknowns, theta: Array, noise: Noise, like: Sequence[Segment]) -> dict[str, float]:
+        cache = CachedSegments(like, nearby=True)
         network, tests = fit.network, fold.fitted
         return minimise(network, tests, some, theta, noise, values, REFITS, cache, draft=True, worth=ROUGH).values
 
     values = dict(fixed)
-    likely = fitted(fit.unknowns, fit.theta, fit.noise, seen)
+    likely = fitted(fit.unknowns, fit.theta, fit.noise, parts)
     nats = _log_density(fit, learnt, unseen, segments(fit.network, fold.predicted, {**values, **likely}))
     values |= {name: likely[name] for name in causes.names} | dict.fromkeys(others.names, 0.0)
-    values |= fitted(machine, fit.theta[rows], FOLLOWED.robust(seen), [replace(s, J=s.J[:, rows]) for s in seen])
+    values |= fitted(machine, fit.theta[rows], FOLLOWED.robust(parts), [replace(s, J=s.J[:, rows]) for s in parts])
     return FoldPrediction(nats, *squares(segments(fit.network, fold.predicted, values), fold))
 
 
