@@ -182,8 +182,7 @@ def _numeric(cells: list[str]) -> list[str] | Column:
     """As numbers, or as they are where one is a word."""
     values = {cell: as_number(cell) for cell in set(cells)}
     if None in values.values():
-        same = {cell: cell.strip() for cell in values}  # a word that comes a million times is kept once
-        return [same[cell] for cell in cells]
+        return [cell.strip() for cell in cells]
     return np.array([values[cell] for cell in cells], float)
 
 

@@ -403,13 +403,38 @@ def calibrated(
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
     fixed, theta = parameter_values(network, values), unknowns.coordinates(values)
+
+    def left(parts: Sequence[Segment]) -> Noise:
+        return fit_noise(parts).robust(parts) if robust else fit_noise(parts)
+
+    return _fit_in_rounds(network, tests, unknowns, theta, noise, left, fixed, rounds, rough, progress)
+
+
+def _fit_in_rounds(
+    network: Network,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    theta: Array,
+    noise: Noise | None,
+    renewed: Callable[[Sequence[Segment]], Noise],
+    fixed: Mapping[str, float],
+    rounds: int,
+    rough: bool = False,
+    progress: Progress = no_progress,
+    keep: Keep = no_memory,
+) -> Fit:
+    """A fit under a first noise, then `rounds` times under the one that `renewed` makes of what is left."""
     worth, draft = ROUGH if rounds else WORTH, rough or rounds > 0
-    fit = minimise(network, tests, unknowns, theta, noise, fixed, progress=progress, draft=draft, worth=worth)
+    fit = minimise(
+        network, tests, unknowns, theta, noise, fixed, draft=draft, worth=worth, progress=progress, keep=keep
+    )
     for i in range(rounds):
         draft = rough or i + 1 < rounds
         steps, cache = DRAFT_STEPS if draft else LAST_STEPS, CachedSegments(fit.parts, nearby=False, stale=True)
-        noise = fit_noise(fit.parts).robust(fit.parts) if robust else fit_noise(fit.parts)
-        fit = minimise(network, tests, unknowns, fit.theta, noise, fixed, steps, cache, draft, progress=progress)
+        noise = renewed(fit.parts)
+        fit = minimise(
+            network, tests, unknowns, fit.theta, noise, fixed, steps, cache, draft, progress=progress, keep=keep
+        )
     return fit
 
 
@@ -435,15 +460,10 @@ def reading_fit(
     if causes.names:
         sizes = calibrated(network, tests, unknowns, values, progress=progress, robust=True).values
         fixed |= {name: sizes[name] for name in causes.names}
-    start = machine.coordinates(values)
-    fit = minimise(network, tests, machine, start, FOLLOWED, fixed, progress=progress, draft=True, worth=ROUGH)
-    for i in range(ROBUST):
-        noise, cache = FOLLOWED.robust(fit.parts), CachedSegments(fit.parts, nearby=False, stale=True)
-        draft = i + 1 < ROBUST
-        steps = DRAFT_STEPS if draft else LAST_STEPS
-        fit = minimise(
-            network, tests, machine, fit.theta, noise, fixed, steps, cache, draft, progress=progress, keep=keep
-        )
+    theta = machine.coordinates(values)
+    fit = _fit_in_rounds(
+        network, tests, machine, theta, FOLLOWED, FOLLOWED.robust, fixed, ROBUST, progress=progress, keep=keep
+    )
     now = {**fixed, **fit.values}
     left = minimise(network, tests, others, np.zeros(len(others.names)), fit_noise(fit.parts), now)
     theta = unknowns.coordinates({**now, **left.values})

@@ -29,19 +29,8 @@ def profiles(
     if not names:
         return {}
     values, here = {**fixed, **fit.values}, CachedSegments(fit.parts, nearby=False)
-    best = minimise(
-        fit.network,
-        tests,
-        fit.unknowns,
-        fit.theta,
-        fit.noise,
-        values,
-        LAST_STEPS,
-        here,
-        progress=progress,
-        error=fit.error,
-    )
-    fit, out = replace(best, error=fit.error), {}
+    start = (fit.network, tests, fit.unknowns, fit.theta, fit.noise, values, LAST_STEPS, here)
+    fit, out = minimise(*start, progress=progress, error=fit.error), {}  # where it is most probable
     for name in names:
         progress(f"profile of {name}")
         i = fit.unknowns.names.index(name)

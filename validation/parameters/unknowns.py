@@ -116,7 +116,8 @@ def start_name(state: str, test: str) -> str:
 
 def of_hidden_start(p: Parameter) -> bool:
     """Does it say where a state without a sensor began a test? No reading does."""
-    return p.targets[0][0].startswith("initial:") and p.targets[0][0].count(":") > 1
+    target, whole = p.targets[0][0], f"initial:{p.name.removeprefix('start of ')}"
+    return target.startswith("initial:") and target != whole
 
 
 OF_MEASUREMENT = ("bias", "slope", "lag", "start", "clock")  # first words of the names that `nuisances` gives

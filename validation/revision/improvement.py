@@ -190,7 +190,7 @@ def _added(
     case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
     """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
-    why, present = [], {e.name for e in case.model.effects}
+    why: list[str] = []
     for i in range(max(len(diagnosis.groups), 1)):
         choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
         choice = tuple(c for c in choice if not _stands(case, c.effect))  # larger than it is: nothing to add
@@ -201,7 +201,7 @@ def _added(
             why.append(f"not added: {' or '.join(c.words for c in choice)}")
             break
         for names in ((name,), needed_together(diagnosis, name)):
-            if names and present.isdisjoint(names):
+            if names and not any(_stands(case, one) for one in names):
                 step = add(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
@@ -230,7 +230,6 @@ def further_step(
     if yard is None:
         return None, {}, []
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]
-    present = {e.name for e in case.model.effects}
     why, trials = list[str](), list[Trial]()
     if best * WORTH < left_out and not diagnosis.groups:
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
@@ -243,7 +242,7 @@ def further_step(
             words = ", ".join(s.words for s in some)
             trials.append((tuple(n for s in some for n in s.effects), {"free network": words, "share": share}))
     for names, document in {names: document for names, document in trials if names}.items():
-        step = _present(case, names, progress) if present.isdisjoint(names) else None
+        step = None if any(_stands(case, one) for one in names) else _present(case, names, progress)
         if step and step.accepted:
             return step, document, why
         why += [refusal(names, step)] if step else []
