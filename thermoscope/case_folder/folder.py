@@ -13,6 +13,7 @@ from geom.errors import InputError
 from lumped.model.network import Network, Parameter
 from lumped.model.sites import ASSUMED, ASSUMED_W
 from lumped.schemas.reader import suggestion
+from lumped.transfer.laws import Law
 from measured.case import Case, LowFidelity, Reference, Test
 from measured.doubt import split_answers
 from measured.recordings.formats import recording
@@ -134,13 +135,13 @@ def load_case(
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     sheets = [one.sheet for one in patients.values()]
     network, built = network_of(settings, progress, sheets)
-    percentages = _percentages(network, _shares(sheets)) if settings.network else []
+    assumed = [*_assumed(network, settings), *(_percentages(network, _shares(sheets)) if settings.network else [])]
     read = [
         read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
         for e in counted("preparing the tests", settings.tests, len(settings.tests))
     ]
     findings = examined(list(patients.values()), network)
-    notes = tuple(dict.fromkeys([*_assumed(network, settings), *percentages, *(note for one in read for note in one.notes)]))
+    notes = tuple(dict.fromkeys([*assumed, *(note for one in read for note in one.notes)]))
     frees = {e.name: e.frees for e in settings.tests}
     channels = {r.test.name: tuple(replace(c, model_K=settings.model_K) for c in r.test.channels) for r in read}
     tests = tuple(replace(r.test, channels=channels[r.test.name], frees=frees[r.test.name]) for r in read)
@@ -281,8 +282,12 @@ def _percentages(network: Network, shares: set[str]) -> list[str]:
     from lumped.declarations.network import load_network
 
     declared = load_network(network.file) if shares else network
-    both = zip((*declared.links, *declared.sources), (*network.links, *network.sources), strict=True)
-    names = sorted(shares & {name for before, now in both if before.law != now.law for name in now.law.reads})
+
+    def laws(of: Network) -> list[Law]:
+        return [*(x.law for x in of.links), *(x.law for x in of.sources)]
+
+    both = zip(laws(declared), laws(network), strict=True)
+    names = sorted(shares & {name for before, now in both if before != now for name in now.reads})
     return [f"laws refer to {', '.join(names)} in percent, recorded as 0 to 1: taken so"] if names else []
 
 
