@@ -49,6 +49,7 @@ Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
+EVEN = 0.5  # probability from which that something is missing is more likely than not
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # records that stay off are told, worst first
 LESS = 0.7  # of its error: what another effect must bring a record to, to be its explanation
@@ -422,6 +423,9 @@ def sentence(
     if verdict == "adequate":
         none, sure = percent(1.0 - choice.sure), " sure" * bool(choice.withheld)
         words = f"no{sure} evidence of a missing effect (nothing missing: {none})"
+        if choice.sure > EVEN and rows:
+            words = f"whether something is missing cannot be told: nothing {none}, {rows[0].words} "
+            words += percent(rows[0].probability)
         if off := [r for r in left if not (r.effect or r.forgiven)]:
             where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, and nothing explains it"
             words = f"nothing with a{sure} name is missing ({none}); {where}"
