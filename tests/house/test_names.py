@@ -39,7 +39,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/calibration/staged_fit.py": "parameters that forms and shares name themselves, NAME^INPUT",
     "validation/revision/revise.py": "parameters that forms and shares name themselves, NAME^INPUT",
     "validation/effects/registry.py": "modules, and KIND@PLACE",
-    "validation/effects/films/gap_convection.py": "places of this effect, A|B",
+    "validation/effects/films/inner_air.py": "places of this effect, A|B",
     "validation/effects/conduction/contact.py": "links by their own name, contact:A|B",
     "validation/effects/streams/air_leak.py": "links by their own name, stream:NAME",
     "validation/effects/losses/copper_feedback.py": "sources by their own name, loss:NAME",
