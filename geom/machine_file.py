@@ -144,7 +144,7 @@ def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
     if not isinstance(name, str) or name not in library():
         raise InputError(f"like = {str(name)[:60]!r} is no machine that comes along", place, ", ".join(library()))
     original = completed(read_toml(library()[name], "a machine file"), name)
-    own_header = {key: value for key, value in header.items() if key not in ("like", "without")}
+    new_header = {key: value for key, value in header.items() if key not in ("like", "without")}
     tables = _without(original, ["machine", "name"])
     for key in without if isinstance(without, list) else [without]:
         try:
@@ -152,7 +152,7 @@ def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
         except ValueError:
             what, right = f"without: {name} has no {str(key)[:60]!r}", """such as ["fans", 'contacts."base|foot"']"""
             raise InputError(what, place, right) from None
-    return _overlaid(tables, {**sections, "machine": own_header})
+    return _overlaid(tables, {**sections, "machine": new_header})
 
 
 def _words_of_key(key: Any) -> list[str]:
