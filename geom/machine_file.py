@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -31,7 +32,7 @@ from geom.solids.step import machine_in_step
 LARGEST_MM = 1e6  # as all lengths of a machine file
 
 LIBRARY = Path(__file__).parent / "machines"
-_HEADER = ("name", "family", "description", "source", "assumed")
+_HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
 
 IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
 
@@ -94,6 +95,7 @@ def _usual_materials() -> Mapping[str, str]:
 
 def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine:
     """The machine described by the tables of a machine file; `where` names it in errors."""
+    sections = completed(sections, where)
     for section, table in sections.items():
         if section not in SECTIONS:
             raise InputError(f"unknown section [{section}]", where, f"known: {', '.join(SECTIONS)}")
@@ -128,6 +130,54 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
     )
     _refuse_outside_envelope(machine, where)
     return based(machine, load_machine, where)
+
+
+def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    """The tables of a machine file that says only what differs from a machine of the library, in full.
+
+    [machine] like = NAME is that machine; without = ["films.outer", ...] are keys of its file that are left out.
+    """
+    header = sections.get("machine")
+    if not isinstance(header, Mapping) or not {"like", "without"} & set(header):
+        return sections
+    place, name, without = f"{where} [machine]", header.get("like"), header.get("without", [])
+    if not isinstance(name, str) or name not in library():
+        raise InputError(f"like = {str(name)[:60]!r} is no machine that comes along", place, ", ".join(library()))
+    original = completed(read_toml(library()[name], "a machine file"), name)
+    new_header = {key: value for key, value in header.items() if key not in ("like", "without")}
+    tables = _without(original, ["machine", "name"])
+    for key in without if isinstance(without, list) else [without]:
+        try:
+            tables = _without(tables, _words_of_key(key))
+        except ValueError:
+            what, right = f"without: {name} has no {str(key)[:60]!r}", """such as ["fans", 'contacts."base|foot"']"""
+            raise InputError(what, place, right) from None
+    return _overlaid(tables, {**sections, "machine": new_header})
+
+
+def _words_of_key(key: Any) -> list[str]:
+    """The words of a key with dots, as TOML reads it: 'contacts."base|foot"' has contacts and base|foot."""
+    words, inner = [], tomllib.loads(f"{key} = 0")
+    while isinstance(inner, dict):
+        ((word, inner),) = inner.items()
+        words.append(word)
+    return words
+
+
+def _without(table: Mapping[str, Any], words: Sequence[str]) -> dict[str, Any]:
+    """Tables without a key of theirs, given by its words. ValueError where they have none."""
+    first, *rest = words
+    if not isinstance(table, Mapping) or first not in table:
+        raise ValueError(first)
+    left = {key: value for key, value in table.items() if key != first}
+    return {**table, first: _without(table[first], rest)} if rest else left
+
+
+def _overlaid(table: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables with the values of other tables in place of theirs."""
+    both = {key: value for key, value in above.items() if isinstance(value, Mapping) and key in table}
+    inner = {k: _overlaid(table[k], value) for k, value in both.items() if isinstance(table[k], Mapping)}
+    return {**table, **above, **inner}
 
 
 def _refuse_outside_envelope(machine: Machine, where: str) -> None:

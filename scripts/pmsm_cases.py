@@ -8,16 +8,12 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-import tomlkit
-
-from geom import library
-
 ROOT = Path(__file__).resolve().parents[1]
 BASES, MACHINES = ROOT / "cases" / "pmsm-bases", ROOT / "cases" / "pmsm-machines"
 BETA = 0.3925e-2
 PHASES_IN_METER = {"pmsm-m1": 3, "pmsm-m2": 2, "pmsm-m3": 2}  # in series between the ohmmeter's leads
 TESTS = {"pmsm-m1": ("wood", "plate", "bench", "bench-2", "bench-3"), "pmsm-m2": ("m2",), "pmsm-m3": ("m3",)}
-WORDS = "Written by scripts/pmsm_cases.py: the library's file with the winding's resistance as measured cold"
+WORDS = "Written by scripts/pmsm_cases.py: the library's machine with the winding's resistance as measured cold"
 
 
 def folder_of(machine: str) -> Path:
@@ -36,14 +32,18 @@ def phase_ohm(machine: str) -> float:
 
 def text(machine: str) -> str:
     """The machine file of a case."""
-    document = tomlkit.parse(library()[machine].read_text(encoding="utf-8"))
-    copper = document["losses"]["copper"]  # type: ignore[index]
-    copper["R20_ohm"] = float(f"{phase_ohm(machine):.4g}")  # type: ignore[index]
-    more = ", and both bases it was tested on." if machine == "pmsm-m1" else "."
-    head = f"# {WORDS}{more}\n"
-    if machine == "pmsm-m1":
-        document["bases"] = {"bench": "own", "plate": "pmsm-m1-plate"}
-    return head + tomlkit.dumps(document)
+    first = machine == "pmsm-m1"
+    more = ", and both bases it was tested on" if first else ""
+    bases = '\n[bases]\nbench = "own"\nplate = "pmsm-m1-plate"\n' if first else ""
+    return f"""# {WORDS}{more}.
+
+[machine]
+name = "{machine}"
+like = "{machine}"
+
+[losses.copper]
+R20_ohm = {phase_ohm(machine):.4g}
+{bases}"""
 
 
 def main() -> None:

@@ -64,7 +64,7 @@ def _progress(test: str) -> Callable[[int], None]:
 
 
 def make(out: Path, truth: Path, quick: bool, tests: Sequence[str]) -> None:
-    """Simulate, write NAME.csv and NAME.toml to `out` and the truth to `truth`."""
+    """Simulate, write NAME.csv, NAME.toml and their columns to `out` and the truth to `truth`."""
     out.mkdir(parents=True, exist_ok=True)
     jobs = [(test, hidden) for test in tests for hidden in ((True, False) if test.startswith("road") else (True,))]
     with ProcessPoolExecutor(2) as pool:
@@ -76,7 +76,7 @@ def make(out: Path, truth: Path, quick: bool, tests: Sequence[str]) -> None:
     drive.drives(draws)  # only so that their draws are recorded
     for test in tests:
         files.write_csv(out / f"{test}.csv", done[test, True][0], installed, test, draws)
-        files.write_toml(out / f"{test}.toml", DESCRIPTIONS[test])
+    files.write_sheets(out, {test: DESCRIPTIONS[test] for test in tests})
     sections = {"hidden": _hidden(draws, done), "runs": {test: _account(*done[test, True]) for test in tests}}
     files.write_truth(truth, draws, installed, sections)
 
@@ -89,7 +89,7 @@ def _hidden(draws: Draws, done: dict[tuple[str, bool], tuple[Result, float]]) ->
         largest = change[np.abs(change).argmax(axis=0), np.arange(change.shape[1])]
         names = [*sensors.THERMOCOUPLES, sensors.EXHAUST[0]]
         imprint[test] = {
-            n: {"at_end_K": round(float(e), 2), "largest_K": round(float(m), 2)}
+            n: files.inline({"at_end_K": round(float(e), 2), "largest_K": round(float(m), 2)})
             for n, e, m in zip(names, change[-1], largest)
         }
     return {

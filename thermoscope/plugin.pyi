@@ -15,7 +15,7 @@ from geom.errors import NoSolution as NoSolution
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
 from geom.machine_file import families as families
 from geom.limits import DROP_BYTES as DROP_BYTES
-from geom.machine_file import library as library, machine_from as machine_from
+from geom.machine_file import completed as completed, library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
 from geom.table import Table as Table, TableResult as TableResult, cell as cell, percent as percent

@@ -81,7 +81,7 @@ def meaning(key: str) -> str:
 def machine_schema() -> Schema:
     """The machine file: header and geometry from the families' parameters, the other sections as tables."""
     from geom.description.machine import SECTIONS
-    from geom.machine_file import families
+    from geom.machine_file import families, library
 
     groups: dict[str, dict[str, Schema]] = {}
     for family in families().values():
@@ -91,8 +91,13 @@ def machine_schema() -> Schema:
                 group[name] = _widest(group[name], key_schema) if name in group else key_schema
     geometry = {g: {"type": "object", "properties": keys, "additionalProperties": False} for g, keys in groups.items()}
     tables: dict[str, Schema] = {s: {"type": "object"} for s in SECTIONS}
-    header = {"family": {"description": "family of machines", "enum": list(families())}}
-    tables["machine"] = {"type": "object", "properties": header, "required": ["family"]}
+    header = {
+        "family": {"description": "family of machines", "enum": list(families())},
+        "like": {"description": "the machine that comes along from which this one differs", "enum": list(library())},
+        "without": {"description": "keys of that machine's file that are left out", "type": "array"},
+    }
+    either = [{"required": ["family"]}, {"required": ["like"]}]
+    tables["machine"] = {"type": "object", "properties": header, "anyOf": either}
     tables["geometry"] = {"type": "object", "properties": geometry, "additionalProperties": False}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

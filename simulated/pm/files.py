@@ -8,6 +8,8 @@ from typing import Any
 
 import tomlkit
 
+from simulated.road.files import inline
+
 SWITCHES = {"none": (0, 0), "plate": (1, 0), "bench": (0, 1)}  # on_plate, on_bench
 PLACES = {"none": "on a wooden base", "plate": "on the aluminium plate", "bench": "on the test bench"}
 
@@ -41,11 +43,11 @@ def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dic
         "quantity": "resistance",
         "unit": "ohm",
         "place": "winding.copper",
-        "cold": _inline({"reading": round(cold["cold_ohm"], 4), "at_degC": cold["cold_degC"]}),
+        "cold": inline({"reading": round(cold["cold_ohm"], 4), "at_degC": cold["cold_degC"]}),
         "reference_degC": 20,
         "coefficient_percent_K": [0.392, 0.393],
-        "meter": _inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
-        "after": _inline(after),
+        "meter": inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
+        "after": inline(after),
     }
 
 
@@ -56,17 +58,11 @@ def _emf(cold: Mapping[str, float]) -> dict[str, Any]:
         "quantity": "back_emf",
         "unit": "V",
         "place": "magnets",
-        "cold": _inline(reading),
+        "cold": inline(reading),
         "coefficient_percent_K": [-0.11, -0.10],
-        "meter": _inline({"percent": 0.1, "offset": 1.0}),
+        "meter": inline({"percent": 0.1, "offset": 1.0}),
         "speed_rpm": 383,
     }
-
-
-def _inline(values: Mapping[str, Any]) -> Any:
-    table = tomlkit.inline_table()
-    table.update(values)
-    return table
 
 
 def write_sheet(path: Path, tables: Mapping[str, Any]) -> None:

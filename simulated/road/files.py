@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -60,10 +60,8 @@ def write_csv(path: Path, result: Result, sensors: Sequence[Sensor], test: str, 
         writer.writerows(zip(*columns.values()))
 
 
-def write_toml(path: Path, description: str) -> None:
-    """What the columns are, as the drawing of the test set-up has it: nominal positions and lags."""
-    document = tomlkit.document()
-    document["test"] = {"time": "time_s", "time_unit": "s", "description": description, "initial": "first-readings"}
+def write_sheets(folder: Path, descriptions: Mapping[str, str]) -> None:
+    """columns.toml: the columns as the drawing of the test set-up has them, nominal positions and lags; NAME.toml."""
     columns: dict[str, dict[str, object]] = {}
     for name, (quantity, unit, place, feeds, _) in INPUTS.items():
         columns[name] = {"quantity": quantity, "unit": unit}
@@ -71,8 +69,22 @@ def write_toml(path: Path, description: str) -> None:
     for name, (part, position, lag) in THERMOCOUPLES.items():
         columns[name] = _thermocouple(part, lag) | {"position_mm": list(position)}
     columns[EXHAUST[0]] = _thermocouple(EXHAUST[1], EXHAUST[2])
-    document["columns"] = columns
-    path.write_text(tomlkit.dumps(document), encoding="utf-8")
+    clock = {"time": "time_s", "time_unit": "s"}
+    _write(folder / "columns.toml", {"test": {**clock, "description": "the columns of every test"}, "columns": columns})
+    for name, words in descriptions.items():
+        sheet = {**clock, "description": words, "initial": "first-readings", "columns_of": "columns.toml"}
+        _write(folder / f"{name}.toml", {"test": sheet})
+
+
+def inline(values: Mapping[str, object]) -> tomlkit.items.InlineTable:
+    """A table on one line."""
+    table = tomlkit.inline_table()
+    table.update(values)
+    return table
+
+
+def _write(path: Path, tables: Mapping[str, object]) -> None:
+    path.write_text(tomlkit.dumps(tables), encoding="utf-8")
 
 
 def _thermocouple(place: str, lag: float) -> dict[str, object]:

@@ -10,7 +10,14 @@ def series(**geometry):
     return {"machine": {"family": "series-dc"}, "geometry": geometry}
 
 
+def like(name="series-dc-100kw", **header):
+    return {"machine": {"like": name, **header}}
+
+
 WRONG = {
+    "like no machine that comes along": (like("steam"), ["like", "'steam'", "series-dc-100kw"]),
+    "without what is not there": (like(without=["fans", "contacts.wheel"]), ["without", "'contacts.wheel'"]),
+    "without no key": (like(without=["a = 1\nb"]), ["without", "such as"]),
     "a key nobody knows": (series(rotor={"slot_count": 46}), ["slot_count", "slots", "[geometry.rotor]"]),
     "a unit forgotten": (series(housing={"fin_height": 18}), ["fin_height", "unit", "fin_height_mm"]),
     "another unit": (series(housing={"fin_height_cm": 1.8}), ["fin_height_cm", "fin_height_mm"]),
@@ -75,6 +82,18 @@ def test_missing_machine_lists_the_library():
 @pytest.mark.parametrize("name", library())
 def test_library_machine_loads_and_carries_its_name(name):
     assert load_machine(name).name == name
+
+
+def test_a_file_may_say_only_what_differs_from_a_machine_of_the_library():
+    geometry = {"rotor": {"slots": 42}}
+    mine = machine_from(like(without=["fans", 'contacts."rotor.core|shaft"']) | {"geometry": geometry}, "mine.toml")
+    original = load_machine("series-dc-100kw")
+    assert (mine.name, mine.geometry.rotor.slots) == ("mine", 42)
+    assert mine.geometry.stator == original.geometry.stator
+    contacts = {key: h for key, h in original.sections["contacts"].items() if key != "rotor.core|shaft"}
+    expected = {**original.sections, "contacts": contacts}
+    del expected["fans"]
+    assert mine.sections == expected
 
 
 def test_material_override_changes_only_that_part():

@@ -59,7 +59,7 @@ CYCLE = {
     "load": {"current_A": 100.0},
     "duty": {"type": "S3", "period_s": 600.0, "duty_percent": 40.0, "cycles": 3, "step_s": 10.0},
 }
-MACHINE = shipped("cases/pmsm-bases/machine.toml")
+MACHINE = shipped("geom/machines/pmsm-m1.toml") | {"bases": {"bench": "own", "plate": "pmsm-m1-plate"}}
 DOCUMENTS = {**NETWORKS, "sheet": SHEET, "cycle": CYCLE}
 
 

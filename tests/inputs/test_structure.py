@@ -135,7 +135,7 @@ def test_sheet(way):
     accepted_or_refused(lambda document: read_sheet(document, "sheet.toml"), SHEET, way, "sheet.toml")
 
 
-MACHINE = shipped("cases/pmsm-bases/machine.toml")
+MACHINE = shipped("geom/machines/pmsm-m1.toml") | {"bases": {"bench": "own", "plate": "pmsm-m1-plate"}}
 OUTSIDE = [way for way in ways(MACHINE) if way[0] != "geometry" and len(way) < 3]
 
 

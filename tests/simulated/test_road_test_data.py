@@ -6,6 +6,8 @@ import tomllib
 import numpy as np
 import pytest
 
+from measured.recordings.sheet import load_sheet
+
 TESTS = ["stand-1", "stand-2", "stand-3", "road-1", "road-2"]
 
 
@@ -27,8 +29,8 @@ def columns(path):
 
 @pytest.mark.parametrize("name", TESTS)
 def test_columns_are_described(folder, name):
-    described = tomllib.loads((folder / f"{name}.toml").read_text(encoding="utf-8"))
-    assert [described["test"]["time"], *described["columns"]] == [*columns(folder / f"{name}.csv")]
+    described = load_sheet(folder / f"{name}.toml")
+    assert [described.time, *(column.name for column in described.columns)] == [*columns(folder / f"{name}.csv")]
 
 
 @pytest.mark.parametrize("name", TESTS)

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from measured.recordings.sheet import load_sheet
 from simulated import road_test
 from simulated.physics import air
 from simulated.physics.draws import Draws
@@ -84,11 +85,11 @@ def test_every_wetted_face_has_an_air_cell(plant):
 def test_files_agree_with_each_other(result, plant, draws, tmp_path):
     installed = sensors.install(plant.body, draws)
     files.write_csv(tmp_path / "x.csv", result, installed, "road-1", draws)
-    files.write_toml(tmp_path / "x.toml", "ten minutes")
+    files.write_sheets(tmp_path, {"x": "ten minutes"})
     with (tmp_path / "x.csv").open() as file:
         header, *rows = csv.reader(file)
-    described = tomllib.loads((tmp_path / "x.toml").read_text())
-    assert header == [described["test"]["time"], *described["columns"]]
+    described = load_sheet(tmp_path / "x.toml")
+    assert header == [described.time, *(column.name for column in described.columns)]
     assert [float(row[0]) for row in rows] == [120.0 * i for i in range(6)]
 
 

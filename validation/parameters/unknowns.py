@@ -18,7 +18,7 @@ from measured.doubt import USUAL, Doubt, boundary_doubt
 from measured.sensors.operators import of_measurement, start_target
 from validation.effects.base import Effect, Scene
 from validation.effects.registry import READ, effect, kinds, with_effects
-from validation.effects.sensors.input_offset import Shift
+from validation.effects.sensors.input_fault import Shift
 from validation.effects.time_window import IN
 from validation.parameters.model_form import with_model_form
 from validation.parameters.reference import effect_sizes, reference_of, value_counts

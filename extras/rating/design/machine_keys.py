@@ -48,7 +48,7 @@ class MachineFile:
         path = file if file.exists() else th.library()[file.name.removesuffix(".toml")]
         if path.suffix != ".toml":
             return None
-        sections = th.read_toml(path, "a machine file with [machine] and [geometry]")
+        sections = th.completed(th.read_toml(path, "a machine file with [machine] and [geometry]"), path.name)
         return cls(sections, path.name, th.machine_from(sections, path.name))
 
     @cached_property

@@ -29,8 +29,8 @@ from lumped.transfer.properties import water
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.thin_air import Slowed
 from validation.effects.build import Shaped
-from validation.effects.losses.iron_pwm import Ripple
-from validation.effects.streams.fouling import hours
+from validation.effects.films.fouling import hours
+from validation.effects.losses.added_loss import Ripple
 from validation.parameters.model_form import ExponentError, exponent_derivative
 
 

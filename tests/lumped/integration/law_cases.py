@@ -43,8 +43,7 @@ from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
 from lumped.transfer.thin_air import Slowed
 from validation.effects.build import Shaped
-from validation.effects.sensors.input_factor import Slope
-from validation.effects.sensors.input_offset import Shift
+from validation.effects.sensors.input_fault import Shift, Slope
 from validation.parameters.model_form import ExponentError
 
 

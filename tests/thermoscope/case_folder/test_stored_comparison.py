@@ -57,11 +57,13 @@ def test_whatever_decides_a_comparison_changes_its_key(folder, monkeypatch):
     file = settings.path / "case.toml"
     file.write_text(file.read_text() + "\n# another\n")
     keys.append(result_key(folder))
+    (settings.tests[0].sheet.parent / "columns.toml").write_text("# of another sheet\n")
+    keys.append(result_key(folder))
     content.code_digest.cache_clear()
     monkeypatch.setattr(content, "_modules", lambda rooms: iter([file]))
     keys.append(result_key(folder))
     content.code_digest.cache_clear()
-    assert len(set(keys)) == len(keys) == 7
+    assert len(set(keys)) == len(keys) == 8
 
 
 def test_a_network_declared_by_hand_is_quick_and_not_kept(tmp_path, monkeypatch):

@@ -24,20 +24,7 @@ from validation.effects.sensors.input_fault import InputFault
 KINDS = kinds()
 SHARED = {
     f"validation.effects.{name}"
-    for name in (
-        "above",
-        "input_terms",
-        "base",
-        "build",
-        "during",
-        "time_window",
-        "registry",
-        "sites",
-        "losses.added_loss",
-        "films.ambient_film",
-        "sensors.reading_fault",
-        "sensors.input_fault",
-    )
+    for name in ("above", "input_terms", "base", "build", "during", "time_window", "registry", "sites")
 }
 
 

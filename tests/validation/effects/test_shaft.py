@@ -8,7 +8,7 @@ from small_networks import MOTOR
 
 from lumped.declarations.network import read_network
 from validation.effects import Scene, kinds
-from validation.effects.conduction.shaft import stub
+from validation.effects.conduction.bridge import stub
 
 
 def test_stoutest_shaft_is_k_a_over_l():

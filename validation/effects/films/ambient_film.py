@@ -1,19 +1,25 @@
 """Heat transfer to the ambient air that a network lacks, beside whatever cools the face already."""
 
-from abc import abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 from lumped.model.network import Network
-from lumped.model.sites import ambient, outside
-from lumped.transfer.laws import Law
+from lumped.model.quantities import AIR
+from lumped.model.sites import AXLE, ambient, outside, role, turning, turns
+from lumped.transfer.laws import Fixed, InputPower, Law, Power
+from lumped.transfer.laws import Radiation as FourthPower
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
 
 
 @dataclass(frozen=True)
 class AmbientFilm(Effect):
-    """Links from every face of a part on the ambient, or one from a bare node."""
+    """Links from every face of a part on the ambient, or one from a bare node.
 
+    follows : (quantity, reference value, exponent) of what the coefficient follows; none: it is constant
+    """
+
+    follows: ClassVar[tuple[tuple[str, float, float], ...]] = ()
     sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"
 
@@ -21,9 +27,10 @@ class AmbientFilm(Effect):
     def candidate_places(cls, scene: Scene) -> list[str]:
         return outside(scene.network)
 
-    @abstractmethod
     def law(self, network: Network) -> Law:
-        """Of a coefficient of 1 (W/m2/K; W/K at a bare node)."""
+        """Of a coefficient of 1 (W/m2/K; W/K at a bare node) at the reference values."""
+        factors = tuple((network.signal(quantity), value, n) for quantity, value, n in self.follows)
+        return InputPower(1.0, factors) if factors else Fixed(1.0)
 
     def extend(self, network: Network) -> Network:
         air = str(ambient(network))
@@ -35,3 +42,126 @@ class AmbientFilm(Effect):
     def unit_and_scale(self, unit: str, scale: float) -> tuple[str, float]:
         """Unit and scale of its parameter, from those of a film coefficient there."""
         return unit, scale
+
+
+class ConstantConvection(AmbientFilm):
+    """Extra heat transfer to ambient, constant coefficient a (W/m2/K; W/K at a bare node): mounting, cable, draught."""
+
+    kind = "convection.constant"
+    empirical = True
+    title = "steady extra cooling to ambient"
+    source = "Newton's law of cooling; still air 5 to 15 W/m2/K (Staton and Cavagnino 2008)"
+    isolating_test = "insulate the face; cool down with and without it"
+    typical = (2.0, 15.0)
+    prior_sd = 10.0
+    high = 200.0
+    confused_with = ("radiation", "convection.buoyant", "conduction.bench", "convection")
+
+
+class BuoyantConvection(AmbientFilm):
+    """h = a (|T - T_ambient| / 40 K)^(1/4), a the coefficient at 40 K (W/m2/K; W/K at a bare node)."""
+
+    kind = "convection.buoyant"
+    empirical = True
+    title = "natural convection growing with the rise"
+    at = "40 K"
+    source = "McAdams 1954, vertical plate, laminar, Nu ~ Ra^(1/4)"
+    isolating_test = "hold two loss levels to steady state: h must grow with the rise to the power 1/4"
+    typical = (1.0, 8.0)
+    prior_sd = 5.0
+    high = 100.0
+    confused_with = ("convection.constant", "radiation")
+
+    def law(self, network: Network) -> Law:
+        return Fixed(40.0**-0.25, Power(0.25))
+
+
+class Convection(AmbientFilm):
+    """Forced convection by vehicle wind, parallel to whatever cools the face already.
+
+    h = a (v / 10 m/s)^0.8, v the vehicle's speed (m/s), a the coefficient at 10 m/s (W/m2/K; W/K at a bare node).
+    """
+
+    kind = "convection"
+    empirical = True
+    title = "forced convection by vehicle wind"
+    at = "10 m/s"
+    source = "McAdams 1954, turbulent flat plate, Nu ~ Re^0.8"
+    isolating_test = "roll at two speeds with the motor off; blow on the face and shield it"
+    typical = (5.0, 60.0)
+    prior_sd = 30.0
+    high = 300.0
+    confused_with = ("convection.constant", "flow", "windage", "sensor.stem")
+    needs = ("vehicle_speed",)
+    follows = (("vehicle_speed", 10.0, 0.8),)
+
+
+class RotationConvection(AmbientFilm):
+    """Cooling of a turning part to ambient: h = a (n / 1000 rpm)^0.7 (W/m2/K; W/K at a bare node)."""
+
+    kind = "convection.rotation"
+    empirical = True
+    title = "cooling of a turning part to ambient"
+    sits = "a turning part, with an ambient"
+    at = "1000 rpm"
+    source = "rotating cylinder in still air, Nu = 0.133 Re^(2/3) Pr^(1/3) (Kays and Bjorklund 1958)"
+    isolating_test = "cool down at several speeds without current"
+    typical = (1.0, 60.0)
+    prior_sd = 30.0
+    high = 300.0
+    confused_with = ("gap.convection", "loss.rotor")
+    needs = ("speed",)
+    follows = (("speed", 1000.0, 0.7),)
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        return turning(scene.network) if ambient(scene.network) else []
+
+
+class FanConvection(AmbientFilm):
+    """Air of a shaft fan over a standing face, parallel to what cools it already: h = a (n / 1000 rpm)^0.8.
+
+    a the coefficient at 1000 rpm (W/m2/K; W/K at a bare node); the fan's flow goes with its speed (affinity).
+    """
+
+    kind = "convection.fan"
+    empirical = True
+    title = "air of a fan on the shaft over a standing face"
+    sits = "a standing outer part off the axle, with no air flow recorded"
+    at = "1000 rpm"
+    source = "fin channels and end shields of TEFC machines, h ~ v^0.8 (Staton and Cavagnino 2008), v ~ n"
+    isolating_test = "cool down without current, once turning and once at rest; take the fan off"
+    typical = (5.0, 60.0)
+    prior_sd = 30.0
+    high = 300.0
+    confused_with = ("convection", "convection.constant", "convection.rotation", "windage")
+    needs = ("speed",)
+    follows = (("speed", 1000.0, 0.8),)
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        network = scene.network
+        if AIR in scene.recorded:  # a motor of its own drives the fan: then none is on the shaft
+            return []
+        return [p for p in outside(network) if not turns(network, p) and role(network, p) not in AXLE]
+
+
+class Radiation(AmbientFilm):
+    """q = a sigma A (T^4 - T_ambient^4), a the extra effective emissivity (1; emissivity times m2 at a bare node)."""
+
+    kind = "radiation"
+    title = "thermal radiation to the surroundings"
+    unit = "1"
+    source = "Stefan-Boltzmann; grey body in large surroundings"
+    isolating_test = "paint the face matt black or cover it with bright foil; wide range of temperature"
+    typical = (0.1, 0.9)
+    prior_sd = 0.5
+    high = 1.0
+    confused_with = ("convection.constant", "convection.buoyant")
+
+    def law(self, network: Network) -> Law:
+        return Fixed(1.0, FourthPower())
+
+    def unit_and_scale(self, unit: str, scale: float) -> tuple[str, float]:
+        """An emissivity; at a bare node times an area."""
+        return ("1", 1.0) if unit == "W/m2/K" else ("m2", scale / 5.0)

@@ -1,4 +1,4 @@
-"""An error of a recorded input: everything that follows it is off with it."""
+"""Errors of a recorded input: everything that follows it is off with it."""
 
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.model.network import Link, Network, Source
+from lumped.model.quantities import INPUTS
 from lumped.model.sites import standing_links, standing_sources
 from lumped.transfer.laws import Array, Inputs, Law, Wrapped
 from lumped.transfer.ranges import within_silence
@@ -14,6 +15,8 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_link, copy_source
 
 COUNTED = ("speed", "frequency")  # by encoder or clock: a wrong number of pulses is a factor, and seen at once
+FACTOR_STEP = 0.1  # of the input: a chord as wide as such faults are
+OFFSET_STEP = 0.05  # of the input's largest value: the same
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,23 @@ class Chord(Wrapped):
         with within_silence():  # the chord may leave a table that the input itself stays in
             more, less = (np.asarray(self.base.size({**readings, self.input: u})) for u in (above, below))
         return np.asarray((more - less) / (2.0 * error * self.temperature.level(readings)))
+
+
+@dataclass(frozen=True)
+class Slope(Chord):
+    """d law / d ln of one input."""
+
+    def chord(self, u: Array) -> tuple[float, Array, Array]:
+        return FACTOR_STEP, (1.0 + FACTOR_STEP) * u, (1.0 - FACTOR_STEP) * u
+
+
+@dataclass(frozen=True)
+class Shift(Chord):
+    """d law / d of one input, per unit of it."""
+
+    def chord(self, u: Array) -> tuple[float, Array, Array]:
+        h = OFFSET_STEP * float(np.max(np.abs(u), initial=0.0)) or 1.0
+        return h, u + h, u - h
 
 
 @dataclass(frozen=True)
@@ -73,3 +93,41 @@ def read(network: Network) -> list[tuple[str, Link | Source]]:
     """Inputs, and the links and losses of the model that follow them by themselves at every instant."""
     items: list[Link | Source] = [*standing_links(network), *standing_sources(network)]
     return [(name, x) for x in items if not x.law.looks_at_all for name in x.law.reads]
+
+
+class InputFactor(InputFault):
+    """An input is in truth 1 + a times what was written down: a wrong range, a wrong shunt, a worn flow meter."""
+
+    kind = "input.factor"
+    title = "an input is recorded too small or too large"
+    isolating_test = "read the input with a second instrument"
+    typical = (-0.3, 0.3)
+    prior_sd = 0.2
+    low = -0.9
+    high = 3.0
+    confused_with = ("flow", "loss.winding", "loss.factor")
+
+    def chord_of(self, law: Law) -> Law:
+        return Slope(law, self.place)
+
+
+class InputOffset(InputFault):
+    """An input is in truth larger by a constant than what was written down: a zero that was never set.
+
+    Its prior and bounds are shares of the input's level (rms over the fitted tests), see `at_level`.
+    """
+
+    kind = "input.offset"
+    title = "an input is recorded with an offset"
+    isolating_test = "read the input with everything switched off"
+    typical = (-0.1, 0.1)
+    prior_sd = 0.05
+    low = -0.5
+    high = 0.5
+    confused_with = ("input.factor", "loss.constant")
+
+    def chord_of(self, law: Law) -> Law:
+        return Shift(law, self.place)
+
+    def unit_of(self, network: Network) -> str:
+        return INPUTS.get(network.measures(self.place), "_1").rpartition("_")[2]

@@ -1,11 +1,18 @@
-"""More or less fan air or coolant than stated."""
+"""More or less fan air or coolant than stated: in all, past the machine, or from some instant on."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from lumped.model.network import Link, Network, Parameter
 from lumped.model.quantities import AIR, LIQUID
+from lumped.model.sites import cell, model_links
+from lumped.transfer.laws import RUNNING, Inputs
 from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import Shaped, copy_link
+
+PARTS = (25, 50, 75)  # percent of the test after which a fan or pump may have stopped
 
 
 def flows(network: Network) -> list[Parameter]:
@@ -52,3 +59,82 @@ class Flow(Effect):
     def extend(self, network: Network) -> Network:
         (original,) = [p for p in flows(network) if p.name == self.place]
         return with_parameter(network, replace(self.parameter(), targets=original.targets))
+
+
+def streams(network: Network) -> list[Link]:
+    return [link for link in model_links(network) if link.kind == "stream" and not cell(network, link.places[1])]
+
+
+@dataclass(frozen=True)
+class AirLeak(Effect):
+    """A share of a fluid stream passes by: m = m0 (1 + a), -0.95 <= a <= 0, films on the rest unchanged."""
+
+    kind = "bypass"
+    empirical = True
+    title = "part of the stream passes by"
+    sits = "a stream"
+    unit = "1"
+    source = "mass balance of the stream"
+    isolating_test = "inlet and outlet temperature at constant loss; flow sweep"
+    typical = (-0.6, -0.1)
+    sign = -1
+    prior_sd = 0.3
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+    confused_with = ("flow",)
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        return [link.name.split(":", 1)[-1] for link in streams(scene.network)]
+
+    def extend(self, network: Network) -> Network:
+        names = [link.name for link in streams(network) if link.name.split(":", 1)[-1] == self.place]
+        return with_parameter(network, self.parameter(*names))
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """-1 from some percent of one test on, 0 before and in all other tests."""
+
+    test: str
+    percent: int
+
+    def __call__(self, inputs: Inputs) -> np.ndarray:
+        time = np.asarray(inputs["time_s"], float)
+        late = time >= time[0] + 0.01 * self.percent * (time[-1] - time[0])
+        return -np.where(late, np.asarray(inputs.get(f"{RUNNING}{self.test}", 0.0), float), 0.0)
+
+
+@dataclass(frozen=True)
+class FanStop(Effect):
+    """What a flow carries off falls to 1 - a of it at one instant of one test. Place: "FLOW:TEST:50", in percent."""
+
+    kind = "fan.stop"
+    title = "fan or pump stops during a test"
+    sits = "a declared flow"
+    unit = "1"
+    source = "definition: a tripped breaker, a slipped hose"
+    isolating_test = "read the flow, or listen; repeat the test"
+    typical = (0.3, 1.0)
+    prior_sd = 0.5
+    high = 1.0
+    confused_with = ("flow", "fouling")
+    needs = ("time",)
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        names = [p.name for p in flows(scene.network)]
+        return [f"{flow}:{test}:{part}" for flow in names for test in scene.tests for part in PARTS]
+
+    def extend(self, network: Network) -> Network:
+        which, part = self.place.rsplit(":", 1)
+        original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
+        test = which.removeprefix(f"{original.name}:")
+        new = []
+        targets = {t for t, _ in original.targets}
+        for link in [x for x in model_links(network) if x.name in targets]:
+            new.append(f"{self.name}:{link.name}")
+            law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
+            network = copy_link(network, link, new[-1], law)
+        return with_parameter(network, self.parameter(*new))

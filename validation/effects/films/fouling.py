@@ -1,0 +1,116 @@
+"""Films weaker than assumed, throughout or more and more: dirt, shelter, a blocked fan."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from geom.description.roles import Role
+from lumped.model.network import Link, Network
+from lumped.model.sites import boundaries, cell, part_of, standing_links
+from lumped.transfer.laws import Inputs
+from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import HOUR, Shaped, copy_link
+
+
+def outer_films(network: Network, washing: Collection[str]) -> list[Link]:
+    """Films to some boundaries, none of them a test bed, which the machine stands on."""
+    washing = set(washing) - set(boundaries(network, Role.TEST_BED))
+    outer = [link for link in standing_links(network) if set(link.places) & washing]
+    return [link for link in outer if not any(cell(network, place) for place in link.places)]
+
+
+def films(network: Network, part: str) -> list[Link]:
+    """Films of a part to any boundary."""
+    outer = outer_films(network, network.boundaries)
+    return [link for link in outer if part in {part_of(network, p) for p in link.places} | set(link.places)]
+
+
+def hours(inputs: Inputs) -> np.ndarray:
+    return -(np.asarray(inputs["time_s"], float) - np.asarray(inputs["time_s"], float).flat[0]) / HOUR
+
+
+@dataclass(frozen=True)
+class WeakFilms(Effect):
+    """What may befall the films of one part."""
+
+    sits = "a part with a film to air or coolant"
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        parts = dict.fromkeys(part_of(scene.network, p) for link in scene.network.links for p in link.places)
+        return [p for p in parts if p not in scene.network.boundaries and films(scene.network, p)]
+
+
+class Fouling(WeakFilms):
+    """Films of a part fade linearly with time: h = h0 (1 - a t / 1 h), a the fraction lost in one hour."""
+
+    kind = "fouling"
+    empirical = True
+    title = "cooling fades during the test"
+    unit = "1/h"
+    source = "definition: dust, icing, a loosening duct, a fan that slows down"
+    isolating_test = "repeat the same test after cleaning; the first and last test of the day at the same load"
+    typical = (0.05, 0.5)
+    prior_sd = 0.2
+    high = 0.95
+    confused_with = ("mass", "sensor.drift")
+    needs = ("time",)
+
+    def extend(self, network: Network) -> Network:
+        names = []
+        for link in films(network, self.place):
+            names.append(f"{self.name}:{link.name}")
+            network = copy_link(network, link, names[-1], Shaped(link.law, hours, link.law.temperature, ("time_s",)))
+        return with_parameter(network, self.parameter(*names))
+
+
+class Blockage(WeakFilms):
+    """Outer films of a part are weaker than assumed: h = h0 (1 + a), -0.95 <= a <= 0 (dirt, shelter, blocked fins)."""
+
+    kind = "blockage"
+    title = "cooling of a face is blocked"
+    unit = "1"
+    source = "definition; open fin channels lose flow along their length (Valenzuela and Tapia 2008)"
+    isolating_test = "clean the fins; cool-down with the face freely exposed"
+    typical = (-0.7, -0.1)
+    sign = -1
+    prior_sd = 0.3
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+    confused_with = ("fouling", "flow")
+
+    def films(self, network: Network) -> list[Link]:
+        """What it weakens."""
+        return films(network, self.place)
+
+    def extend(self, network: Network) -> Network:
+        return with_parameter(network, self.parameter(*(link.name for link in self.films(network))))
+
+
+class SharedBlockage(Blockage):
+    """Films of all parts to one boundary are weaker at once, by one share: a clogged filter, a slow pump, a cover."""
+
+    kind = "blockage.all"
+    title = "less cooling of all faces"
+    sits = "a boundary that cools more than one part"
+    source = "definition: films of one flow of air or coolant follow it together"
+    isolating_test = "read the flow or the fan's speed; clean the filter; repeat the test without a cover"
+    confused_with = ("blockage", "flow")
+    temporary = True
+
+    @property
+    def statement(self) -> str:
+        return f"{self.title} by {self.place}"
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        one = scene.network
+        parts = {
+            b: {part_of(one, p) for x in outer_films(one, {b}) for p in x.places if p != b} for b in one.boundaries
+        }
+        return [boundary for boundary, some in parts.items() if len(some) > 1]
+
+    def films(self, network: Network) -> list[Link]:
+        return outer_films(network, {self.place})
