@@ -5,7 +5,9 @@ Source: Duff and Reid 1983; Liu 1992, "The multifrontal method for sparse matrix
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import sys
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numba
 import numpy as np
@@ -18,18 +20,57 @@ from geom.arrays import Ints
 from geom.errors import InputError
 
 
+@dataclass
+class Spare:
+    """Memory of a factor that nobody has any more, for the next one: pages that the system clears anew cost as much
+    time as the numbers that go there.  kept : between factors
+    """
+
+    kept: bool = False
+    room: Floats | None = None
+
+    def of(self, size: int) -> Floats:
+        """(size,) numbers of any value."""
+        if self.room is not None and sys.getrefcount(self.room) == 2:  # the attribute and the call: no views
+            return self.room
+        room = np.empty(size)
+        self.room = room if self.kept else None
+        return room
+
+    def let_go(self) -> None:
+        self.kept, self.room = False, None
+
+
 @dataclass(frozen=True)
 class Symbolic:
     """The pattern of the factor: tree, and the later unknowns (as eliminated) that each node's front reaches."""
 
     tree: Tree
     reach: tuple[Ints, ...]
+    spare: Spare = field(default_factory=lambda: Spare(), repr=False, compare=False)
 
     @property
     def size(self) -> int:
         """Numbers stored in the factor."""
         widths = np.diff(self.tree.start)
         return int(sum(o * (o + len(r)) for o, r in zip(widths, self.reach, strict=True)))
+
+    @cached_property
+    def fronts(self) -> tuple[Ints, Ints]:
+        """Where the update of every node begins on one of two stacks, and their heights: the lower one is of nodes
+        whose distance to the root is even. Postorder keeps a node's children on top of the other stack."""
+        depth = np.zeros(len(self.reach), np.int64)
+        for i in range(len(depth) - 1, -1, -1):
+            depth[[*self.tree.children[i]]] = depth[i] + 1
+        begin, top, heights = np.zeros_like(depth), [0, 0], np.zeros(2, np.int64)
+        for i, children in enumerate(self.tree.children):
+            mine = int(depth[i]) % 2
+            begin[i] = top[mine]
+            top[mine] += len(self.reach[i]) ** 2
+            heights[mine] = max(heights[mine], top[mine])
+            if children:
+                top[1 - mine] = begin[children[0]]
+        return begin + np.where(depth % 2, heights[0], 0), heights
 
 
 @dataclass(frozen=True)
@@ -61,11 +102,11 @@ class Factor:
 def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
     """Order and pattern of A (n, n), unknowns at xyz (n, 3): done once for all matrices of the same pattern."""
     tree = dissect(A, xyz)
-    upper = _upper(A, tree)
+    indptr, indices, _ = _upper(A.indptr, A.indices, A.data, tree.order)
     reach: list[Ints] = []
     for i, below in enumerate(tree.children):
         lo, hi = tree.start[i], tree.start[i + 1]
-        columns = [upper.indices[upper.indptr[lo] : upper.indptr[hi]], *(reach[c] for c in below)]
+        columns = [indices[indptr[lo] : indptr[hi]], *(reach[c] for c in below)]
         rows = np.unique(np.concatenate(columns))
         reach.append(rows[rows >= hi].astype(np.int64))
     return Symbolic(tree, tuple(reach))
@@ -73,12 +114,15 @@ def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
 
 def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
     """Cholesky factor of a symmetric positive definite A (n, n) whose pattern lies within `symbolic`."""
-    tree, upper = symbolic.tree, _upper(A, symbolic.tree)
+    tree = symbolic.tree
+    indptr, indices, data = _upper(A.indptr, A.indices, A.data, tree.order)
     local = np.full(A.shape[0], -1, np.int64)
-    room, filled = np.zeros(symbolic.size), 0  # one array: freed in pieces, it would leave holes that stay
+    begin, heights = symbolic.fronts
+    # One array: freed in pieces, it would leave holes that stay.
+    room, filled = symbolic.spare.of(symbolic.size + int(heights.sum())), int(heights.sum())
     pivots: list[Floats] = []
     below: list[Floats] = []
-    waiting: dict[int, Floats] = {}
+    updates: list[Floats] = []
     for i, children in enumerate(tree.children):
         lo, hi = int(tree.start[i]), int(tree.start[i + 1])
         reach = symbolic.reach[i]
@@ -86,31 +130,50 @@ def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
         local[lo:hi], local[reach] = np.arange(k), np.arange(k, k + m)
         square, under = room[filled : filled + k * k], room[filled + k * k : filled + k * (k + m)]
         L, B, filled = square.reshape((k, k), order="F"), under.reshape((m, k), order="F"), filled + k * (k + m)
-        rest = np.zeros((m, m), order="F")
-        _scatter(L, B, lo, hi, upper.indptr, upper.indices, upper.data, local)
+        rest = room[begin[i] : begin[i] + m * m].reshape((m, m), order="F")
+        for front in (L, B, rest):
+            front.fill(0.0)
+        _scatter(L, B, lo, hi, indptr, indices, data, local)
         for c in children:
-            _extend_add(L, B, rest, waiting.pop(c), local[symbolic.reach[c]])
-        waiting[i] = _eliminate(L, B, rest)
+            _extend_add(L, B, rest, updates[c], local[symbolic.reach[c]])
+        _eliminate(L, B, rest)
+        updates.append(rest)
         pivots.append(L)
         below.append(B)
     return Factor(symbolic, tuple(pivots), tuple(below))
 
 
-def _eliminate(L: Floats, B: Floats, rest: Floats) -> Floats:
-    """Overwrites a front's pivots (k, k) and what is below (m, k); `rest` (m, m) without them."""
+def _eliminate(L: Floats, B: Floats, rest: Floats) -> None:
+    """Overwrites a front's pivots (k, k), what is below (m, k), and the rest (m, m), which has lost them then."""
     _, info = lapack.dpotrf(L, lower=1, clean=1, overwrite_a=1)
     if info:
         raise InputError(
             "the matrix is not positive definite", "solve", "a film or contact for every part, all above 0"
         )
-    if not len(B):
-        return rest
-    blas.dtrsm(1.0, L, B, side=1, lower=1, trans_a=1, overwrite_b=1)
-    return np.asarray(blas.dsyrk(-1.0, B, beta=1.0, c=rest, lower=1, overwrite_c=1))
+    if len(B):
+        blas.dtrsm(1.0, L, B, side=1, lower=1, trans_a=1, overwrite_b=1)
+        blas.dsyrk(-1.0, B, beta=1.0, c=rest, lower=1, overwrite_c=1)
 
 
-def _upper(A: sp.csr_array, tree: Tree) -> sp.csr_array:
-    return sp.csr_array(sp.triu(A[tree.order][:, tree.order], format="csr"))
+@numba.njit(cache=True)
+def _upper(indptr, indices, data, order):  # type: ignore[no-untyped-def]
+    """Rows of a symmetric matrix as eliminated, from the diagonal on: indptr, indices (in no order) and data."""
+    n = len(order)
+    place, start = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
+    for i in range(n):
+        place[order[i]] = i
+    for i in range(n):
+        start[i + 1] = start[i]
+        for p in range(indptr[order[i]], indptr[order[i] + 1]):
+            start[i + 1] += place[indices[p]] >= i
+    columns, values = np.empty(start[n], np.int32), np.empty(start[n])
+    filled = 0
+    for i in range(n):
+        for p in range(indptr[order[i]], indptr[order[i] + 1]):
+            if place[indices[p]] >= i:
+                columns[filled], values[filled] = place[indices[p]], data[p]
+                filled += 1
+    return start, columns, values
 
 
 @numba.njit(cache=True)
@@ -127,13 +190,16 @@ def _scatter(L, B, lo, hi, indptr, indices, data, local):  # type: ignore[no-unt
 
 @numba.njit(cache=True)
 def _extend_add(L, B, rest, update, where):  # type: ignore[no-untyped-def]
-    k = L.shape[0]
+    k, inside = L.shape[0], 0
+    while inside < len(where) and where[inside] < k:
+        inside += 1
     for j in range(len(where)):
-        for i in range(j, len(where)):
-            row, column = where[i], where[j]
-            if column >= k:
-                rest[row - k, column - k] += update[i, j]
-            elif row >= k:
-                B[row - k, column] += update[i, j]
-            else:
-                L[row, column] += update[i, j]
+        column = where[j]
+        if j < inside:
+            for i in range(j, inside):
+                L[where[i], column] += update[i, j]
+            for i in range(inside, len(where)):
+                B[where[i] - k, column] += update[i, j]
+        else:
+            for i in range(j, len(where)):
+                rest[where[i] - k, column - k] += update[i, j]

@@ -86,7 +86,9 @@ class Solver:
 
     def each(self, work: Callable[[A], B], items: Sequence[A]) -> list[B]:
         """work(item) of every item, each with a factor of its own, in two processes where there is room."""
-        return in_two_processes(work, items, len(self.symbolic.tree.order))
+        spare = self.symbolic.spare
+        spare.kept = True
+        return in_two_processes(work, items, len(self.symbolic.tree.order), spare.let_go)
 
 
 @dataclass(frozen=True)

@@ -17,14 +17,20 @@ BYTES = 10_000  # per unknown: the second factor and what it was assembled from;
 LEAST = 10_000  # unknowns: below, a fork and the way back of the solutions take longer than they save
 
 
-def in_two_processes(work: Callable[[A], B], items: Sequence[A], unknowns: int) -> list[B]:
+def in_two_processes(
+    work: Callable[[A], B], items: Sequence[A], unknowns: int, after: Callable[[], None] = lambda: None
+) -> list[B]:
     """work(item) of every item, at most 255, in their order; a forked process takes its share where there is room.
 
     unknowns : of the largest matrix that is factorised;  work : does not depend on what it was called with before
+    after : in each process when no item is left, before solutions are sent
     """
     _return_memory()
     if len(items) < 2 or unknowns < LEAST or not _room(BYTES * unknowns):
-        return [work(item) for item in items]
+        try:
+            return [work(item) for item in items]
+        finally:
+            after()
     turns, numbers = os.pipe()  # a byte is the number of an item: whoever is free reads the next
     os.write(numbers, bytes(range(len(items))))
     os.close(numbers)
@@ -34,14 +40,14 @@ def in_two_processes(work: Callable[[A], B], items: Sequence[A], unknowns: int) 
         try:
             os.close(back)
             with os.fdopen(forth, "wb") as out:
-                pickle.dump(_share(work, items, turns, parent), out, protocol=5)
+                pickle.dump(_share(work, items, turns, parent, after), out, protocol=5)
         except BaseException:  # its parent does what is missing, and meets the same
             os._exit(1)
         os._exit(0)
     os.close(forth)
     try:
         with os.fdopen(back, "rb") as source:
-            results = {**_share(work, items, turns, os.getppid()), **_received(source)}
+            results = {**_share(work, items, turns, os.getppid(), after), **_received(source)}
     finally:
         os.close(turns)
         os.kill(child, signal.SIGKILL)
@@ -55,11 +61,14 @@ def _return_memory() -> None:
         ctypes.CDLL(None).malloc_trim(0)
 
 
-def _share(work: Callable[[A], B], items: Sequence[A], turns: int, parent: int) -> dict[int, B]:
-    results = {}
-    while os.getppid() == parent and (turn := os.read(turns, 1)):
-        results[turn[0]] = work(items[turn[0]])
-    return results
+def _share(
+    work: Callable[[A], B], items: Sequence[A], turns: int, parent: int, after: Callable[[], None]
+) -> dict[int, B]:
+    numbers = iter(lambda: os.read(turns, 1) if os.getppid() == parent else b"", b"")
+    try:
+        return {turn[0]: work(items[turn[0]]) for turn in numbers}
+    finally:
+        after()
 
 
 def _received(source: BinaryIO) -> dict[int, B]:

@@ -12,7 +12,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +44,7 @@ SLOWEST = 0.75  # of what a halving moved, moved by the next: slower, and nothin
 ACTS = 1.25  # times the points: a halving that adds less changes next to nothing, and the next one is looked at
 MOST_UNKNOWNS = 150_000  # of the mesh that is condensed: 3.9 GB, and with the choice some 4 min of a core
 MOST_SOLVED = 220_000  # of one that is solved once, for its hot spots: some 10 s
-MOST_BESIDE = 235_000  # of both meshes that are solved at once: of 257,000 they took 4.0 to 4.2 GB
+MOST_BESIDE = 320_000  # of both meshes that are solved at once: about 3.3 GB
 MOST_QUADRATIC = 300_000  # of the one that has quadratic elements in every part: 2.5 GB and 30 s
 ROOM = 0.75  # of those: a first mesh of more leaves nothing to middles of edges and to what is refined
 BEGIN = 0.5  # of those: what such a first mesh keeps, with fewer elements across slots and bars
@@ -148,8 +148,13 @@ class _Looks:
     def size(self, how: Meshing) -> tuple[int, int]:
         """Points and unknowns; nothing is assembled."""
         if how not in self.sizes:
-            self.sizes[how] = size_of(self.machine, how)
+            self.measure([how])
         return self.sizes[how]
+
+    def measure(self, meshes: Iterable[Meshing]) -> None:
+        """Sizes of those that are not known, in two processes where there is room."""
+        new = [how for how in dict.fromkeys(meshes) if how not in self.sizes]
+        self.sizes.update(zip(new, in_two_processes(partial(size_of, self.machine), new, MOST_SOLVED), strict=True))
 
     @cached_property
     def point(self) -> FixedCoefficients:
@@ -228,6 +233,7 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
     in_vain: set[tuple[str, str]] = set()
     stale: set[str] = set()  # ways looked at before another step was taken, which may have done some of theirs
     while True:
+        looks.measure(how.along(way, 0.5) for way, halvings in ways.items() if halvings.unsure)
         pairs = {way: _halved(looks, how, way) for way, halvings in ways.items() if halvings.unsure}
         candidates = (finer.along(way, 0.5) for way, (_, finer) in pairs.items() if way not in WAYS)
         looks.solve([how, *(mesh for pair in pairs.values() for mesh in pair)], candidates)
@@ -281,6 +287,7 @@ def _one_part_finer(
     worth = {p: lost for p, loss in looks.losses.items() if (lost := loss[column]) >= NOTABLE}
     new = [p for p in sorted(worth, key=lambda p: -worth[p]) if (worst, p) not in in_vain]
     finer = {part: replace(how, finer=(*how.finer, part)) for part in new}
+    looks.measure(finer.values())
     fits = {part: there for part, there in finer.items() if looks.size(there)[1] <= most}
     for part, there in fits.items():
         looks.solve([there], fits.values())
@@ -345,7 +352,9 @@ def _solvable(looks: _Looks, there: Meshing) -> bool:
 def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) -> str | None:
     """Of the ways that may be halved and leave about as much as the worst of them, the one with the fewest unknowns."""
     idle = IDLE * sum(left.values())
-    sizes = {way: looks.size(how.along(way, 0.5))[1] for way, kelvins in left.items() if kelvins > idle}
+    finer = {way: how.along(way, 0.5) for way, kelvins in left.items() if kelvins > idle}
+    looks.measure(finer.values())
+    sizes = {way: looks.size(there)[1] for way, there in finer.items()}
     fits = {way: size for way, size in sizes.items() if size <= most}
     worst = max((left[way] for way in fits), default=0.0)
     return min(

@@ -123,6 +123,7 @@ def enrich(
     for k in range(rounds):
         # Shapes are dealt out by guides, points that were not learned: those that were are met by very few.
         network = allotted_shapes(reduction, [*met, *checks(guides, cases)], cases, accuracy, weights)
+        guides = guides if k < rounds - 1 else ()  # after the last round nothing is learned
         seeds = range(first + fresh * k, first + fresh * (k + 1))
         new = reduction.solved([*map(reduction.random_point, seeds), reduction.early_point(seeds[0])])
         errors = merged(errors_at(checks(new, cases), reduction, network, cases))

@@ -39,6 +39,7 @@ from lumped.model.network import Array, Network
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]
 
+FEW = 24  # right-hand sides at a time: all of them need as much memory as a factor, and are hardly faster
 EARLY_S = 30.0  # after a step of loss: what comes before is less than a thermocouple's own delay
 
 
@@ -123,13 +124,15 @@ class Reduction:
 
     def solved(self, points: Sequence[Point]) -> list[FullPoint]:
         """The whole field at other coefficients."""
-        loads = np.column_stack([*self.loads.values()])
+        loads = sp.csc_array(np.column_stack([*self.loads.values()]))
 
         def full(point: Point) -> FullPoint:
             name, films, contacts, shift = point
             factor = self.solver.factor(self.field.stiffness(films, contacts), shift)
-            heated = film_columns(self.field, films, self.washing)[0]
-            X = factor(np.column_stack([loads, heated])).astype(np.float32)  # a ten-millionth: errors are a thousandth
+            heat = sp.hstack([loads, film_columns(self.field, films, self.washing)[0]], format="csc")
+            X = np.empty(heat.shape, np.float32)  # a ten-millionth: errors are a thousandth
+            for k in range(0, heat.shape[1], FEW):
+                X[:, k : k + FEW] = factor(heat[:, k : k + FEW].toarray())
             return FullPoint(name, films, contacts, X, shift)
 
         return self.solver.each(full, points)
