@@ -91,7 +91,7 @@ class Folder:
 
     @cached_property
     def yardstick(self) -> Yardstick | None:
-        """What plain models leave on these tests; None where the tests teach nothing."""
+        """What file_network models leave on these tests; None where the tests teach nothing."""
         from thermoscope.case_folder.stored_yardstick import stored_yardstick
 
         return stored_yardstick(self.case)
@@ -281,12 +281,12 @@ def _percentages(network: Network, shares: set[str]) -> list[str]:
     """A note on laws that refer to a percentage where a share is recorded, as files of before did."""
     from lumped.declarations.network import load_network
 
-    declared = load_network(network.file) if shares else network
+    file_network = load_network(network.file) if shares else network
 
     def laws(of: Network) -> list[Law]:
         return [*(x.law for x in of.links), *(x.law for x in of.sources)]
 
-    both = zip(laws(declared), laws(network), strict=True)
+    both = zip(laws(file_network), laws(network), strict=True)
     names = sorted(shares & {name for before, now in both if before != now for name in now.reads})
     return [f"laws refer to {', '.join(names)} in percent, recorded as 0 to 1: taken so"] if names else []
 
