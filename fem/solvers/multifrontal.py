@@ -23,10 +23,10 @@ from geom.errors import InputError
 @dataclass
 class Spare:
     """Memory of a factor that nobody has any more, for the next one: pages that the system clears anew cost as much
-    time as the numbers that go there.  kept : between factors
+    time as the numbers that go there.  reuse : whether to keep it between factors
     """
 
-    kept: bool = False
+    reuse: bool = False
     room: Floats | None = None
 
     def of(self, size: int) -> Floats:
@@ -34,11 +34,11 @@ class Spare:
         if self.room is not None and sys.getrefcount(self.room) == 2:  # the attribute and the call: no views
             return self.room
         room = np.empty(size)
-        self.room = room if self.kept else None
+        self.room = room if self.reuse else None
         return room
 
     def let_go(self) -> None:
-        self.kept, self.room = False, None
+        self.reuse, self.room = False, None
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,7 @@ class Solver:
     def each(self, work: Callable[[A], B], items: Sequence[A]) -> list[B]:
         """work(item) of every item, each with a factor of its own, in two processes where there is room."""
         spare = self.symbolic.spare
-        spare.kept = True
+        spare.reuse = True
         return in_two_processes(work, items, len(self.symbolic.tree.order), spare.let_go)
 
 

@@ -227,7 +227,7 @@ def test_a_factor_takes_the_memory_of_one_that_nobody_has():
     soft, stiff = (field.stiffness(dict.fromkeys(field.films, h), {"core|yoke": 100.0}) for h in (5.0, 50.0))
     alone = [solver.factor(K)(load) for K in (soft, stiff)]
     assert solver.symbolic.spare.room is None
-    solver.symbolic.spare.kept = True
+    solver.symbolic.spare.reuse = True
     first = solver.factor(soft)
     beside = solver.factor(stiff)
     assert not np.shares_memory(first.pivots[-1], beside.pivots[-1])
