@@ -57,4 +57,4 @@ def _viscosity(sheet: DataSheet, T: float) -> float:
     one, two = (math.log10(math.log10(nu + 0.7)) for nu in (sheet.at_40C, sheet.at_100C))
     warm, hot = math.log10(40.0 + ZERO_C), math.log10(100.0 + ZERO_C)
     along = (math.log10(T + ZERO_C) - warm) / (hot - warm)
-    return float(10.0 ** 10.0 ** (one + along * (two - one)) - 0.7)
+    return float(10.0**10.0 ** (one + along * (two - one)) - 0.7)
