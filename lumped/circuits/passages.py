@@ -18,7 +18,7 @@ BORE = 3.0  # length of a nozzle over its diameter: where the pressure is lost
 class Bore:
     """Equal round bores side by side: diameter, length (m); bends of 90 degrees.
 
-    One that turns about its own axis is as one that stands: a laminar flow turns with it as a whole, and its film stays.
+    One that turns about its own axis is as one that stands: a laminar flow turns with it, and its film stays.
     """
 
     diameter: float

@@ -121,9 +121,14 @@ def read_coolant(table: Table) -> Coolant:
     return coolant(name, **numbers, sheet=sheet)
 
 
+def wet(table: Table) -> bool:
+    """Does it name a liquid?"""
+    return "coolant" in table and table.raw("coolant") != "air"
+
+
 def over(table: Table) -> Streamed:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
-    liquid = "coolant" in table and table.raw("coolant") != "air"
+    liquid = wet(table)
     surfaces = {**moving_surfaces(), **plugins("moving_air")}
     film, scale = surfaces[table.word("surface", None, surfaces)], table.number("m_s_per_unit", 1.0)
     fluid, usual = (read_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)

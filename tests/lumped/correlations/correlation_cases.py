@@ -258,6 +258,13 @@ CASES = {
         400.0,
         0.0,
     ),
+    "levich_disc": _film(
+        lambda f, u: rotating.levich_disc(300 / u.s, 0.1 * u.m, u.fluid(f)),
+        lambda: rotating.levich_disc(3e3, 0.1, ATF80),
+        lambda x: rotating.levich_disc(x, 0.08, ATF80)[0],
+        300.0,
+        0.0,
+    ),
     "rotating_shaft": _film(
         lambda f, u: rotating.rotating_shaft(300 / u.s, 0.05 * u.m, u.fluid(f)),
         lambda: rotating.rotating_shaft(1.0, 0.05),

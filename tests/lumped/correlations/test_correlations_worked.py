@@ -161,6 +161,12 @@ WORKED = {
     ),
     "gazley_slotting": (lambda: air_gap.gazley_slotting(0.01, 0.001, 4000.0), 1.1, 1e-9, "the stated tenth"),
     "rotating_disc": (lambda: rotating.rotating_disc(100.0, 0.1, ROUND), 0.36 * 5e4**0.5 * 0.3, 1e-9, "by hand"),
+    "levich_disc": (
+        lambda: rotating.levich_disc(32.0, 0.05, OILY),
+        0.62048 * 100 * 100 ** (1 / 3) / (1 + 0.2980 / 100 ** (1 / 3) + 0.14514 / 100 ** (2 / 3)) * 2.56,
+        1e-6,
+        "by hand",
+    ),
     "rotating_shaft": (
         lambda: rotating.rotating_shaft(300.0, 0.05, ROUND),
         0.133 * 18750 ** (2 / 3) * (2 / 3) ** (1 / 3) * 0.6,
