@@ -1,8 +1,8 @@
 """Oil on end windings: nozzles above a part, and the oil that leaves through the end space.
 
 [spray] in a machine file: coolant, flow_L_per_min, inlet_C, and PART = { nozzles = 8, nozzle_mm = 1.5, run_mm = 60 }
-for every part under nozzles. The inlet is boundary "oil", the flow the input "oil_l_min"; all nozzles hang on one rail. The
-end space is what the oil leaves as: its node is as warm as the oil that runs off.
+for every part under nozzles. The inlet is boundary "oil", the flow the input "oil_l_min"; all nozzles hang on one rail.
+The end space is what the oil leaves as: its node is as warm as the oil that runs off.
 """
 
 from __future__ import annotations
