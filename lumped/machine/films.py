@@ -98,7 +98,7 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
     if around.cooling is not None and stem(fluid) in around.cooling.feeds:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
     if around.spray is not None and around.spray.wets(part, fluid):
-        return {"": AtUsualTemperature(around.spray.film(part))}
+        return {"spray": AtUsualTemperature(around.spray.film(part))}
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.usual_rpm)}
     ducts, ways = around.machine.features.ducts, around.ways
