@@ -23,8 +23,8 @@ def _local(r: Array, speed: float, diameter: float, fluid: Fluid) -> Array:
     below, edge = 0.745 * Re**0.5, 0.1773 * Re ** (1 / 3)
     thickness = 0.1713 / x**2 + 5.147 * x / max(Re, 1e-300)
     warmed = np.maximum(0.5 * x**2 - 5.051e-5 * Re ** (2 / 3), 1e-300)
-    beyond = 0.407 * Re ** (1 / 3) * x ** (-2 / 3) / (thickness ** (2 / 3) * warmed ** (1 / 3))
-    Nu = np.minimum(below, np.where(x < edge, 0.632 * (Re / x) ** 0.5, beyond)) * fluid.Pr ** (1 / 3)
+    outer = 0.407 * Re ** (1 / 3) * x ** (-2 / 3) / (thickness ** (2 / 3) * warmed ** (1 / 3))
+    Nu = np.minimum(below, np.where(x < edge, 0.632 * (Re / x) ** 0.5, outer)) * fluid.Pr ** (1 / 3)
     return np.asarray(Nu * fluid.k / diameter)
 
 

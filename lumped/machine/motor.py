@@ -96,8 +96,8 @@ def _cells(machine: Machine, jacket: Part) -> dict[str, float]:
 def boundaries(machine: Machine) -> tuple[str, ...]:
     """Temperatures given from outside."""
     around = surroundings(machine, ())
-    fed = ((INLET, around.cooling), (RAIL, around.spray))
-    return ("ambient", *(name for name, of in fed if of is not None))
+    feeds = ((INLET, around.cooling), (RAIL, around.spray))
+    return ("ambient", *(name for name, of in feeds if of is not None))
 
 
 def operating_point(machine: Machine) -> dict[str, np.ndarray]:

@@ -75,8 +75,8 @@ class AllNozzles(NozzleBlockage):
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
         network = scene.network
-        fed = [(inlet(network, link), part_of(network, link.places[0])) for link in sprayed(network)]
-        return [first for first in dict.fromkeys(x for x, _ in fed) if len({p for x, p in fed if x == first}) > 1]
+        pairs = [(inlet(network, link), part_of(network, link.places[0])) for link in sprayed(network)]
+        return [first for first in dict.fromkeys(x for x, _ in pairs) if len({p for x, p in pairs if x == first}) > 1]
 
     def films(self, network: Network) -> list[Link]:
         return [link for link in sprayed(network) if inlet(network, link) == self.place]
