@@ -23,6 +23,7 @@ SECTIONS = (
     "losses",
     "fans",
     "cooling",
+    "spray",
     "sensors",
     "calibration",
     "bases",

@@ -15,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 
 from geom.constants import L_MIN, M3_H
-from lumped.circuits.hydraulics import Array, Duct, parallel_shares, pressure_drop, pumping_power, split
+from lumped.circuits.hydraulics import Array, Duct, Passage, parallel_shares, pressure_drop, pumping_power, split
+from lumped.circuits.passages import Bore, Nozzles
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
 from lumped.correlations.streams import LEAST, MOST, restretched, streamed, warmed
@@ -36,9 +37,9 @@ Edge = tuple[str, str]  # from, to
 
 @dataclass(frozen=True)
 class Pass:
-    """A channel and the walls it touches: node -> share of its wetted area. A one-sided jacket names one wall."""
+    """A channel, a bore or nozzles, and the walls: node -> share of the wetted area. A one-sided jacket names one."""
 
-    duct: Duct
+    duct: Duct | Bore | Nozzles
     walls: Mapping[str, float]
 
 
@@ -99,7 +100,7 @@ class Circuit:
         return dict(zip(self.branches, split, strict=True))
 
     @property
-    def _ducts(self) -> list[list[Duct]]:
+    def _ducts(self) -> list[list[Passage]]:
         return [[p.duct for p in passes] for passes in self.branches.values()]
 
     @cached_property
@@ -273,8 +274,10 @@ class Circuit:
         return pumping_power(self.pressure_drop(q), q, self.pump_efficiency)
 
 
-def film_in(duct: Duct, flow: float, fluid: Fluid) -> tuple[float, Info]:
-    """h (W/m2/K) in a duct at a flow (m3/s): Gnielinski in straight ones, Schmidt in coils."""
+def film_in(duct: Duct | Bore | Nozzles, flow: float, fluid: Fluid) -> tuple[float, Info]:
+    """h (W/m2/K) at a flow (m3/s): Gnielinski in straight ducts, Schmidt in coils, what bores and nozzles say."""
+    if not isinstance(duct, Duct):
+        return duct.film(flow, fluid)
     speed = flow / duct.section
     if duct.coil:
         return schmidt_helical(speed, duct.diameter, duct.coil, fluid)

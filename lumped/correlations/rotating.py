@@ -28,6 +28,19 @@ def rotating_disc(omega: float, radius: float, fluid: Fluid | None = None) -> tu
     return Nu * fluid.k / radius, checked("rotating_disc", "Howey et al. 2012", {"Nu": Nu, "Re": Re}, {"Re": (0, 1e7)})
 
 
+def levich_disc(omega: float, radius: float, fluid: Fluid) -> tuple[float, Info]:
+    """Mean film of a disc that turns in much liquid, laminar: a rotor's end face in oil, h (W/m2/K).
+
+    Nu_r = 0.62048 Re^(1/2) Pr^(1/3) / (1 + 0.2980 Pr^(-1/3) + 0.14514 Pr^(-2/3)), Re = omega r^2 / nu; alike all over.
+    omega (rad/s), radius (m). Range: Re < 2.4e5, Pr > 20 (exact to 0.1 % from 100 on).
+    Source: Levich 1942; Newman 1966, J. Phys. Chem. 70, 1327.
+    """
+    Re, Pr = abs(omega) * radius**2 / fluid.nu, fluid.Pr
+    Nu = 0.62048 * Re**0.5 * Pr ** (1 / 3) / (1 + 0.2980 * Pr ** (-1 / 3) + 0.14514 * Pr ** (-2 / 3))
+    limits = {"Re": (0.0, DISC_CRITICAL), "Pr": (20.0, 1e5)}
+    return Nu * fluid.k / radius, checked("levich_disc", "Newman 1966", {"Nu": Nu, "Re": Re, "Pr": Pr}, limits)
+
+
 def rotating_shaft(omega: float, diameter: float, fluid: Fluid | None = None) -> tuple[float, Info]:
     """Film of a rotating shaft in still air, h (W/m2/K): Nu = 0.133 Re^(2/3) Pr^(1/3), Re = omega D^2 / (2 nu).
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
 from lumped.circuits.hydraulics import Duct
+from lumped.circuits.passages import Bore, Nozzles
 from lumped.declarations.films import read_coolant
 from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
@@ -59,9 +60,19 @@ def _pass(table: Table, nodes: list[str]) -> Pass:
             raise table.error(f"unknown wall '{wall}'", suggestion(wall, nodes))
     if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
         raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
+    return Pass(_passage(table), walls)
+
+
+def _passage(table: Table) -> Duct | Bore | Nozzles:
+    """Nozzles, a round bore, else a rectangular channel, by the keys of the table."""
     n = table.number
+    if "nozzles" in table:
+        drip = table.flag("drip", False)
+        return Nozzles(int(n("nozzles")), 1e-3 * n("nozzle_mm"), n("area_m2"), 1e-3 * n("run_mm"), drip)
+    if "diameter_mm" in table:
+        return Bore(1e-3 * n("diameter_mm"), n("length_m"), int(n("bends", 0)), int(n("parallel", 1)))
     size = (1e-3 * n("width_mm"), 1e-3 * n("height_mm"), n("length_m"))
-    return Pass(Duct(*size, int(n("bends", 0)), 1e-3 * n("coil_diameter_mm", 0.0), int(n("parallel", 1))), walls)
+    return Duct(*size, int(n("bends", 0)), 1e-3 * n("coil_diameter_mm", 0.0), int(n("parallel", 1)))
 
 
 def _cooler(table: Table, boundaries: list[str]) -> Cooler:

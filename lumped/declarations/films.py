@@ -12,10 +12,12 @@ from lumped.correlations.streams import Moving, streamed
 from lumped.schemas.reader import Table
 from lumped.transfer.coolant import NAMES, Coolant, coolant
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law
+from lumped.transfer.oils import DataSheet
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.streamed import Streamed
 
 Still = Callable[[float, float], tuple[float, Info]]
+SHEET = ("viscosity_40C_mm2_s", "viscosity_100C_mm2_s", "density_15C_kg_m3")  # of an oil
 Film = Callable[[float], tuple[float, Info]]  # of |input|
 Of = Callable[[float], Fluid]
 TABLED = 4.0  # of the fastest that is expected: tables reach five times as far (streams.REACH)
@@ -107,19 +109,26 @@ def moving_surfaces() -> dict[str, Callable[[Table, Fluid], Film]]:
 
 
 def read_coolant(table: Table) -> Coolant:
-    """T (degC) -> Fluid of the table's key `coolant`: a name, or a table with a share of glycol or a pressure."""
+    """T (degC) -> Fluid of the table's key `coolant`: a name, or a table with a share of glycol, a pressure, or what
+    an oil's data sheet says."""
     if isinstance(table.raw("coolant"), str):
         return coolant(table.word("coolant", None, NAMES))
     inner = Table(table.raw("coolant", {}), f"{table.where} coolant")
     name = inner.word("name", None, NAMES)
     numbers = {key: inner.number(key) for key in ("mass_percent", "volume_percent", "pressure_bar") if key in inner}
+    sheet = DataSheet(*(inner.number(key) for key in SHEET)) if any(key in inner for key in SHEET) else None
     inner.close()
-    return coolant(name, **numbers)
+    return coolant(name, **numbers, sheet=sheet)
+
+
+def wet(table: Table) -> bool:
+    """Does it name a liquid?"""
+    return "coolant" in table and table.raw("coolant") != "air"
 
 
 def over(table: Table) -> Streamed:
     """Air, or a coolant, moving over a known surface; its speed is `m_s_per_unit` times an input."""
-    liquid = "coolant" in table and table.raw("coolant") != "air"
+    liquid = wet(table)
     surfaces = {**moving_surfaces(), **plugins("moving_air")}
     film, scale = surfaces[table.word("surface", None, surfaces)], table.number("m_s_per_unit", 1.0)
     fluid, usual = (read_coolant(table), 40.0) if "coolant" in table else (film_air(table), 30.0)

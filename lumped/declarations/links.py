@@ -10,7 +10,17 @@ from itertools import pairwise
 from geom.constants import L_MIN, M3_H, RPM
 from lumped.correlations import Info
 from lumped.correlations.streams import Moving
-from lumped.declarations.films import contact, film_air, millimetres, moving_film, natural, natural_film, over
+from lumped.declarations.films import (
+    contact,
+    film_air,
+    millimetres,
+    moving_film,
+    natural,
+    natural_film,
+    over,
+    read_coolant,
+    wet,
+)
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import Table, powers
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
@@ -41,18 +51,18 @@ def gap(table: Table) -> Streamed:
 
 
 def rotating(table: Table) -> Streamed:
-    """A disc or a shaft that turns in open air."""
-    from lumped.correlations.rotating import rotating_disc, rotating_shaft
+    """A disc or a shaft that turns in open air, or in a coolant of a flooded end space."""
+    from lumped.correlations.rotating import levich_disc, rotating_disc, rotating_shaft
 
-    disc = table.word("surface", None, ROTATING) == "disc"
-    film, size = (rotating_disc, 0.5) if disc else (rotating_shaft, 1.0)
+    disc, liquid = table.word("surface", None, ROTATING) == "disc", wet(table)
+    film, size = (levich_disc if liquid else rotating_disc, 0.5) if disc else (rotating_shaft, 1.0)
     size *= millimetres(table, "diameter_mm")
-    return _over_speed(table, lambda rpm, fluid: film(rpm * RPM, size, fluid), 50.0)
+    return _over_speed(table, lambda rpm, fluid: film(rpm * RPM, size, fluid), 50.0, liquid)
 
 
-def _over_speed(table: Table, film: Moving, usual_degC: float) -> Streamed:
+def _over_speed(table: Table, film: Moving, usual_degC: float, liquid: bool = False) -> Streamed:
     of, top = table.word("speed", "speed_rpm"), table.number("up_to_rpm", 20000.0)
-    return moving_film(table, of, film, film_air(table), usual_degC, top)
+    return moving_film(table, of, film, read_coolant(table) if liquid else film_air(table), usual_degC, top, liquid)
 
 
 # Mixed convection in network.toml: still and moving air on one surface, which do not add

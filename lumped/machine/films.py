@@ -15,7 +15,8 @@ from lumped.machine.part_identities import turning
 from lumped.machine.path import stem
 from lumped.machine.settings import Fan, Films, read, read_films
 from lumped.machine.shapes import Gap, gap_fluid, radius
-from lumped.transfer.laws import Inputs, Law
+from lumped.machine.sprays import Spray, spray_of
+from lumped.transfer.laws import AtUsualTemperature, Inputs, Law
 from lumped.transfer.terms_value import coefficient
 
 USUAL_RPM = 1500.0  # where a machine file rates none: films of speed are tabulated around it
@@ -64,6 +65,10 @@ class Surroundings:
         return cooling_of(self.machine)
 
     @cached_property
+    def spray(self) -> Spray | None:
+        return spray_of(self.machine)
+
+    @cached_property
     def turning(self) -> frozenset[str]:
         return turning(self.machine, self.contacts)
 
@@ -92,6 +97,8 @@ def face_films(part: str, fluid: str, around: Surroundings) -> dict[str, Law]:
         return outer_films(around.machine, part, films)
     if around.cooling is not None and stem(fluid) in around.cooling.feeds:
         return {"": jacket_film(around.machine, stem(fluid), around.cooling)}
+    if around.spray is not None and around.spray.wets(part, fluid):
+        return {"spray": AtUsualTemperature(around.spray.film(part))}
     if gap is not None and fluid in around.gaps:
         return {"": gap_film(gap, around.usual_rpm)}
     ducts, ways = around.machine.features.ducts, around.ways

@@ -37,6 +37,7 @@ LIQUIDS: dict[str, tuple[str, float | None]] = {
     "water": ("water", None),
     "glycol-50": ("ethylene glycol", 50.0),
     "propylene-glycol-50": ("propylene glycol", 50.0),
+    "ATF": ("ATF", None),
 }
 
 

@@ -8,14 +8,16 @@ What comes out, for every family and for imported machines alike (the machine fi
 
     states      every part's mean ("winding", "magnets", ...), its shapes "winding#1", ..., the fluids ("airgap", ...;
                 "jacket@0", "jacket@1", ...: the coolant as it leaves each cell of a jacket)
-    boundaries  "ambient", and "coolant" where the machine has jackets (the temperature of the coolant's inlet)
-    inputs      "current_A", "speed_rpm", "fan_flow_m3h" (open machines), "flow_l_min" (jackets); `operating_point`
+    boundaries  "ambient", "coolant" where the machine has jackets (the temperature of the coolant's inlet), "oil" where
+                it is sprayed (that of the nozzles)
+    inputs      "current_A", "speed_rpm", "fan_flow_m3h" (open machines), "flow_l_min" (jackets), "oil_l_min" (sprays);
+                `operating_point`
                 gives their rated values. With three phases current_A is the rms of each phase, which direct current
                 through the phases in series also is: DC heating is current_A = I, speed_rpm = 0.
     places      every part, every face ("housing.fins"), every fluid, "JACKET.outlet", and the means declared in
                 [sensors], such as "winding.copper": the mean over all copper, what a resistance measurement sees
     parameters  "h.PART" outer faces, "h.FLUID" inner ones, "contact.A|B", "loss.NAME", "capacity.machine", "fan.flow",
-                "coolant.flow", and "k.GROUP" for conductivities declared in [calibration]
+                "coolant.flow", "oil.flow", "h.oil", and "k.GROUP" for conductivities declared in [calibration]
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ from lumped.machine.parameters import parameters
 from lumped.machine.part_identities import declared, with_channels
 from lumped.machine.path import cells_of, stem
 from lumped.machine.settings import contact_coefficients
+from lumped.machine.sprays import OIL_FLOW, RAIL
 from lumped.model.network import Link, Network, Place
+from lumped.model.quantities import LIQUID
 from lumped.schemas.reader import Table, suggestion
 
 AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
@@ -91,7 +95,9 @@ def _cells(machine: Machine, jacket: Part) -> dict[str, float]:
 
 def boundaries(machine: Machine) -> tuple[str, ...]:
     """Temperatures given from outside."""
-    return ("ambient", INLET) if surroundings(machine, ()).cooling is not None else ("ambient",)
+    around = surroundings(machine, ())
+    feeds = ((INLET, around.cooling), (RAIL, around.spray))
+    return ("ambient", *(name for name, of in feeds if of is not None))
 
 
 def operating_point(machine: Machine) -> dict[str, np.ndarray]:
@@ -102,6 +108,8 @@ def operating_point(machine: Machine) -> dict[str, np.ndarray]:
         values["fan_flow_m3h"] = around.fan.flow_m3_h
     if around.cooling is not None:
         values[FLOW] = around.cooling.flow_l_min
+    if around.spray is not None:
+        values[OIL_FLOW] = around.spray.flow_l_min
     return {name: np.array([float(value)]) for name, value in values.items()}
 
 
@@ -137,6 +145,9 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     streams = [] if around.ways is None else fan_streams(network, machine.features, around.ways)
     if around.cooling is not None:
         streams += coolant_streams(machine, network, around.cooling)
+    if around.spray is not None:
+        streams += around.spray.streams(network, faces)
+        network = replace(network, quantities={OIL_FLOW: LIQUID})
     losses = sources(machine, network)
     multipliers = parameters(machine, network, faces, films, streams, losses)
     return switched(machine, network.extended([*films, *streams], losses, multipliers))
@@ -149,6 +160,8 @@ def _contact(link: Link) -> str:
 def _film_links(network: Network, face: Place, around: Surroundings) -> list[Link]:
     if around.cooling is not None and stem(str(face.fluid)) in around.cooling.feeds:
         return [outlet_film(around.machine, network, face.name, around.cooling)]
+    if around.spray is not None and around.spray.wets(face.part, str(face.fluid)):
+        return [around.spray.link(network, face)]
     laws = face_films(face.part, str(face.fluid), around)
     name = {mechanism: f"film:{face.name}" + (f":{mechanism}" if mechanism else "") for mechanism in laws}
     return [network.surface_link(name[m], "film", face.name, str(face.fluid), law) for m, law in laws.items()]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.machine.path import stem
+from lumped.machine.sprays import OIL_STREAM, SPRAY
 from lumped.model.network import Link, Network, Parameter, Place, Source
 from lumped.schemas.reader import suggestion
 from lumped.sources.loss_laws import declared_name
@@ -21,6 +22,7 @@ SPREADS = (  # log-sd, kinds of losses
 )
 LOSS_SPREAD = {kind: sd for sd, kinds in SPREADS for kind in kinds.split()}
 FLOW_EXPONENT = 0.8  # of films in turbulent flow
+OIL_EXPONENT = 0.3  # of films under nozzles
 
 
 def parameters(
@@ -34,17 +36,23 @@ def parameters(
     """Films 0.3, contacts 0.3, losses by kind, capacity 0.05, flows 0.04 (log-sd), conductivities as declared."""
     beside = {name for name, duct in machine.features.ducts.items() if not duct.turns}
     out = []
-    for name, by_fan in (("fan.flow", True), ("coolant.flow", False)):
-        flow_links = [s for s in streams if s.name.startswith("stream:fan:") == by_fan]
-        cells = beside if by_fan else {s.places[1] for s in flow_links}
-        films_there = [(f.name, FLOW_EXPONENT) for f in films if f.places[1] in cells]
+    begins = {"fan.flow": "stream:fan:", "oil.flow": OIL_STREAM, "coolant.flow": "stream:"}
+    left = list(streams)
+    for name, begin in begins.items():
+        flow_links = [s for s in left if s.name.startswith(begin)]
+        left = [s for s in left if s not in flow_links]
+        cells = beside if name == "fan.flow" else {s.places[1] for s in flow_links}
+        oiled = name == "oil.flow"
+        of = OIL_EXPONENT if oiled else FLOW_EXPONENT
+        films_there = [(f.name, of) for f in films if f.places[1] in cells and f.name.endswith(SPRAY) == oiled]
         acts = (*((s.name, 1.0) for s in flow_links), *films_there)
         if flow_links:
             out.append(Parameter(name, acts, prior_sd=0.04, low=0.2, high=5.0, source="flow meter, +-3 %", flow=True))
     groups: dict[str, list[tuple[str, float]]] = {}
     for face in faces:
         group = face.part if face.fluid == "ambient" else stem(str(face.fluid))
-        groups.setdefault(group, []).extend((link.name, 1.0) for link in films if link.places[0] == face.name)
+        for link in (x for x in films if x.places[0] == face.name):
+            groups.setdefault("oil" if link.name.endswith(SPRAY) else group, []).append((link.name, 1.0))
     return [
         *[
             Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")

@@ -13,7 +13,8 @@ from lumped.machine.path import stem
 from lumped.machine.shapes import wound
 from lumped.model.network import Network
 
-BOUNDARIES = {"ambient": Role.AMBIENT, "coolant": Role.COOLANT}  # the names that lumped.machine.motor gives them
+# The names that lumped.machine.motor gives them.
+BOUNDARIES = {"ambient": Role.AMBIENT, "coolant": Role.COOLANT, "oil": Role.COOLANT}
 OF_MATERIAL = {
     "bearing": Role.BEARING,
     "commutator": Role.COMMUTATOR,

@@ -1,4 +1,4 @@
-"""Coolants by name: water, glycol mixtures with a stated share, oil, air."""
+"""Coolants by name: water, glycol mixtures with a stated share, oils, air."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from geom.errors import InputError
+from lumped.transfer.oils import ATF, DataSheet
 from lumped.transfer.properties import (
     ATMOSPHERE_BAR,
     Fluid,
@@ -34,7 +35,7 @@ def glycol(kind: str, mass_percent: float | None = None, volume_percent: float |
     return partial(mixture, mass_fraction=share)
 
 
-PLAIN: dict[str, Coolant] = {"water": water, "oil": oil, "air": air}
+PLAIN: dict[str, Coolant] = {"water": water, "oil": oil, "ATF": ATF, "air": air}
 MIXED = {"ethylene glycol": "ethylene", "propylene glycol": "propylene"}
 NAMES = (*PLAIN, *MIXED)
 
@@ -45,11 +46,16 @@ def coolant(
     volume_percent: float | None = None,
     altitude_m: float = 0.0,
     pressure_bar: float = ATMOSPHERE_BAR,
+    sheet: DataSheet | None = None,
 ) -> Coolant:
-    """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air only.
+    """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air, a data sheet for oil only.
 
     pressure_bar : absolute; where water boils. Mixtures are known up to 100 degC, below where they boil.
     """
+    if sheet is not None:
+        if name != "oil":
+            raise InputError("viscosities were given", name, 'name = "oil" with the numbers of its data sheet')
+        return sheet
     if name in MIXED:
         return glycol(MIXED[name], mass_percent, volume_percent)
     if mass_percent is not None or volume_percent is not None:

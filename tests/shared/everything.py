@@ -1,12 +1,16 @@
 """A network on which every effect of the catalogue finds a place: a declared motor with faces, streams and coolant."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from playground import SENSORS, network, row, stand
 
-from lumped.model.network import Link, Place, Row
+from lumped.correlations.oil import sprayed_face
+from lumped.correlations.streams import streamed
+from lumped.model.network import NOTHING, Link, Place, Row
 from lumped.transfer.laws import Fixed
+from lumped.transfer.oils import ATF
 from measured.case import Channel, Test
 from validation.effects import Scene
 
@@ -43,7 +47,19 @@ def machine():
         Fixed(30.0),
         *air,
     )
-    return base.extended(links=[coolant, inner, stream])
+    parts = ("winding.field", "yoke")
+    wet = [base.surface_link(f"film:{part}:spray", "film", part, "coolant", spray()) for part in parts]
+    return base.extended(links=[coolant, inner, stream, *(replace(x, hot=x.cold, cold=NOTHING) for x in wet)])
+
+
+@cache
+def spray():
+    """Film of six nozzles at 4 l/min of ATF."""
+
+    def film(flow, fluid):
+        return sprayed_face(flow, 6, 0.002, 0.02, 0.06, fluid)
+
+    return streamed(None, 4.0 / 6e4, film, ATF, 40.0, True, value=0.02)
 
 
 def moved(link, n):

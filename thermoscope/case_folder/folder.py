@@ -91,7 +91,7 @@ class Folder:
 
     @cached_property
     def yardstick(self) -> Yardstick | None:
-        """What file_network models leave on these tests; None where the tests teach nothing."""
+        """What plain models leave on these tests; None where the tests teach nothing."""
         from thermoscope.case_folder.stored_yardstick import stored_yardstick
 
         return stored_yardstick(self.case)

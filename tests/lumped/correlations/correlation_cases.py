@@ -9,10 +9,24 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import lumped.correlations
-from lumped.correlations import Info, air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
+from lumped.correlations import (
+    Info,
+    air_gap,
+    bearings,
+    contacts,
+    ducts,
+    end_space,
+    fins,
+    forced,
+    natural,
+    oil,
+    rotating,
+)
+from lumped.transfer.oils import ATF
 from lumped.transfer.properties import Fluid, air, ethylene_glycol
 
 AIR, GLYCOL = air(60.0), ethylene_glycol(60.0, 0.5)
+ATF80 = ATF(80.0)
 K40, K80 = air(40.0).k, air(80.0).k
 PR = air(20.0).Pr
 POPIEL_AT_5 = 1 + (0.0571322 + 0.20305 * PR**-0.43) * 5 ** (
@@ -65,6 +79,7 @@ class Units:
 CARRY_UNITS: dict[tuple[object, str], Callable[[Units], object]] = {
     (natural, "G"): lambda u: natural.G * u.v / u.s,
     (fins, "G"): lambda u: fins.G * u.v / u.s,
+    (oil, "G"): lambda u: oil.G * u.v / u.s,
     (fins, "INVERSE_METRE"): lambda u: fins.INVERSE_METRE / u.m,
     (contacts, "SIGMA"): lambda u: contacts.SIGMA * u.film / u.K**3,
     (contacts, "ZERO_C"): lambda u: contacts.ZERO_C * u.K,
@@ -243,6 +258,13 @@ CASES = {
         400.0,
         0.0,
     ),
+    "levich_disc": _film(
+        lambda f, u: rotating.levich_disc(300 / u.s, 0.1 * u.m, u.fluid(f)),
+        lambda: rotating.levich_disc(3e3, 0.1, ATF80),
+        lambda x: rotating.levich_disc(x, 0.08, ATF80)[0],
+        300.0,
+        0.0,
+    ),
     "rotating_shaft": _film(
         lambda f, u: rotating.rotating_shaft(300 / u.s, 0.05 * u.m, u.fluid(f)),
         lambda: rotating.rotating_shaft(1.0, 0.05),
@@ -264,6 +286,27 @@ CASES = {
         lambda: rotating.disc_windage(3e4, 0.3),
         lambda x: rotating.disc_windage(x, 0.2)[0],
         600.0,
+        0.0,
+    ),
+    "free_jet": _film(
+        lambda f, u: oil.free_jet(3 * u.v, 0.002 * u.m, 0.01 * u.m, u.fluid(f)),
+        lambda: oil.free_jet(30.0, 0.002, 0.01, ATF80),
+        lambda x: oil.free_jet(x, 0.002, 0.01, ATF80)[0],
+        10.0,
+        0.0,
+    ),
+    "falling_film": _film(
+        lambda f, u: oil.falling_film(1e-4 * u.m * u.v, 0.05 * u.m, u.fluid(f)),
+        lambda: oil.falling_film(1e-5, 0.05, ATF80),
+        lambda x: oil.falling_film(x**9, 0.05, ATF80)[0],  # it grows with its ninth root
+        0.4,
+        0.0,
+    ),
+    "sprayed_face": _film(
+        lambda f, u: oil.sprayed_face(3e-5 * u.m**2 * u.v, 6, 0.002 * u.m, 0.02 * u.m**2, 0.06 * u.m, u.fluid(f)),
+        lambda: oil.sprayed_face(1e-6, 6, 0.002, 0.02, 0.06, ATF80),
+        lambda x: oil.sprayed_face(x**9, 6, 0.002, 0.02, 0.06, ATF80)[0],
+        0.35,
         0.0,
     ),
     "end_space": _film(

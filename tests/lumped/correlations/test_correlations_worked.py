@@ -9,12 +9,13 @@ from itertools import pairwise
 
 import pytest
 
-from lumped.correlations import air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, rotating
+from lumped.correlations import air_gap, bearings, contacts, ducts, end_space, fins, forced, natural, oil, rotating
 from lumped.transfer.properties import Fluid, air
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 
 ROUND = Fluid(1.0, 1000.0, 0.03, 2e-5, 1 / 300)
+OILY = Fluid(800.0, 2000.0, 0.128, 6.4e-3, 7e-4)  # nu 8e-6, Pr 100
 WATERY = Fluid(1000.0, 4000.0, 0.6, 1e-3, 2e-4)  # nu 1e-6, Pr 6.667
 INCROPERA_7_1 = Fluid(1.0, 687.0 * 0.0364 / 521e-6 / 1000.0, 0.0364, 521e-6, 1 / 437)  # nu 521e-6, Pr 0.687
 
@@ -38,6 +39,19 @@ F_ANNULUS = (
     * (1.8 * math.log10(4e4 * ((1 + 25 / 36) * math.log(5 / 6) + 1 - 25 / 36) / (math.log(5 / 6) / 36)) - 1.5) ** -2
 )
 F_TUBE = (0.79 * math.log(2e4) - 1.64) ** -2
+
+# Re 1000: the mean over two diameters of radius of 0.745 up to (632/745)^2, 0.632 (d/r)^1/2 to 1.773, the film beyond
+JET_RINGS = [r / 1000 for r in range(1773, 2001)]
+JET_BEYOND = [
+    4.07 * r ** (1 / 3) / ((0.1713 / r**2 + 5.147e-3 * r) ** (2 / 3) * (0.5 * r**2 - 5.051e-3) ** (1 / 3))
+    for r in JET_RINGS
+]
+JET_NU = (
+    0.5 * 0.745 * 1000**0.5 * (632 / 745) ** 4
+    + 0.632 * 1000**0.5 * (1.773**1.5 - (632 / 745) ** 3) / 1.5
+    + 0.001 * (sum(JET_BEYOND) - 0.5 * (JET_BEYOND[0] + JET_BEYOND[-1]))
+) / 2.0
+FILM_H = 0.8076 * 0.128 * (9.80665 * (3 * 10 * 6.4e-11 / 9.80665) ** (1 / 3) / 8e-8 / 8e-6 / 0.05) ** (1 / 3)
 
 # name -> (what the function gives, worked value, relative tolerance, where the value comes from)
 WORKED = {
@@ -147,6 +161,12 @@ WORKED = {
     ),
     "gazley_slotting": (lambda: air_gap.gazley_slotting(0.01, 0.001, 4000.0), 1.1, 1e-9, "the stated tenth"),
     "rotating_disc": (lambda: rotating.rotating_disc(100.0, 0.1, ROUND), 0.36 * 5e4**0.5 * 0.3, 1e-9, "by hand"),
+    "levich_disc": (
+        lambda: rotating.levich_disc(32.0, 0.05, OILY),
+        0.62048 * 100 * 100 ** (1 / 3) / (1 + 0.2980 / 100 ** (1 / 3) + 0.14514 / 100 ** (2 / 3)) * 2.56,
+        1e-6,
+        "by hand",
+    ),
     "rotating_shaft": (
         lambda: rotating.rotating_shaft(300.0, 0.05, ROUND),
         0.133 * 18750 ** (2 / 3) * (2 / 3) ** (1 / 3) * 0.6,
@@ -164,6 +184,14 @@ WORKED = {
         0.146 / 1.5e5**0.2 * 300**3 * 1e-5 / 4,
         1e-9,
         "by hand, Re 1.5e5",
+    ),
+    "free_jet": (lambda: oil.free_jet(4.0, 0.002, 0.004, OILY), JET_NU * 100 ** (1 / 3) * 64.0, 2e-3, "by hand"),
+    "falling_film": (lambda: oil.falling_film(8e-5, 0.05, OILY), FILM_H, 1e-6, "by hand"),
+    "sprayed_face": (
+        lambda: oil.sprayed_face(4 * math.pi * 1e-6 * 5, 5, 0.002, 5 * math.pi * 1.6e-5, 0.06, OILY),
+        JET_NU * 100 ** (1 / 3) * 64.0,
+        2e-3,
+        "by hand: the jets reach all of it",
     ),
     "end_space": (lambda: end_space.end_space(10.0, 20.0, 0.5, 1.0), 120.0, 1e-12, "by hand"),
     "cooper_mikic_yovanovich": (

@@ -11,6 +11,7 @@ from geom.errors import InputError, MissingDependency
 from lumped.circuits.circuit import film_in
 from lumped.circuits.hydraulics import Duct, friction, helical_friction, parallel_shares, pressure_drop, pumping_power
 from lumped.declarations.circuit import read_circuits
+from lumped.declarations.films import read_coolant
 from lumped.declarations.network import read_network
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
@@ -317,6 +318,39 @@ def test_oil_is_a_mineral_oil():
     assert coolant("oil")(65.0).nu < 0.5 * coolant("oil")(40.0).nu < 0.25 * coolant("oil")(15.0).nu
     with pytest.raises(InputError, match="oil"):
         coolant("oil")(900.0)
+
+
+def test_an_oil_by_its_data_sheet_is_that_oil():
+    """Texatherm 22 of CoolProp, of which only its viscosities at 40 and 100 degC and its density at 15 are said."""
+    pytest.importorskip("CoolProp")
+    sheet = {
+        "viscosity_40C_mm2_s": 1e6 * oil(40.0).nu,
+        "viscosity_100C_mm2_s": 1e6 * oil(100.0).nu,
+        "density_15C_kg_m3": oil(15.0).rho,
+    }
+    said = read_coolant(Table({"coolant": {"name": "oil", **sheet}}, "test"))
+    for T in (20.0, 40.0, 60.0, 80.0, 100.0, 120.0):
+        mine, tabled = said(T), oil(T)
+        assert (mine.rho, mine.cp, mine.k) == pytest.approx((tabled.rho, tabled.cp, tabled.k), rel=0.003)
+        assert mine.nu == pytest.approx(tabled.nu, rel=0.015)
+        assert mine.beta == pytest.approx(-(np.log(said(T + 0.1).rho / said(T - 0.1).rho)) / 0.2, rel=1e-3)
+    for wrong, words in (
+        ({"viscosity_40C_mm2_s": 5.0, "viscosity_100C_mm2_s": 6.0}, "falls with temperature"),
+        ({"name": "water"}, "data sheet"),
+        ({"density_15C_kg_m3": 0.85}, "500 to 1500"),
+    ):
+        with pytest.raises(InputError, match=words):
+            read_coolant(Table({"coolant": {"name": "oil", **sheet, **wrong}}, "test"))
+
+
+def test_ATF_needs_no_package_and_has_the_viscosities_of_its_data_sheet():
+    fluid = coolant("ATF")
+    assert (1e6 * fluid(40.0).nu, 1e6 * fluid(100.0).nu) == pytest.approx((29.0, 6.5), rel=1e-12)
+    assert fluid(15.0).rho == pytest.approx(845.0)
+    with pytest.raises(InputError, match="-20 to 160 degC"):
+        fluid(-30.0)
+    with pytest.raises(InputError, match="-20 to 160 degC"):
+        fluid(170.0)
 
 
 def test_oil_without_its_package_is_one_message(monkeypatch):
