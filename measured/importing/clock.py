@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, time, timedelta
 from functools import cache
@@ -27,6 +28,7 @@ INSTANT = re.compile(
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
     r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
+ISO = re.compile(r"\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,6})?)?")  # NumPy reads it
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
 IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
@@ -352,6 +354,10 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     """Dates with times, in any zone; a day before the month where points divide them or a first number is over 12."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return _since_first((cells - EPOCH) / np.timedelta64(1, "s"), columns, "dates")
+    if all(isinstance(c, str) and ISO.fullmatch(c) for c in cells):
+        with suppress(ValueError):  # no such day
+            seconds = (np.array(cells, "M8[us]") - EPOCH) / np.timedelta64(1, "s")
+            return _since_first(seconds, columns, f"dates, {ZONELESS}")
     cells = [WEEKDAY.sub("", c.strip()) if isinstance(c, str) else c for c in cells]
     parts = [INSTANT.fullmatch(str(c).strip()) or INSTANT.fullmatch(_spelled_out(c)) for c in cells]
     read = [m for m in parts if m]

@@ -24,7 +24,7 @@ from measured.headers.words import is_rise, is_time, quantities_of, roles_of, wi
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
-from measured.recordings.data_table import DataTable
+from measured.recordings.data_table import PIECE, DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 
@@ -79,11 +79,11 @@ class Source(DataTable):
 
     def is_numeric(self, column: str) -> bool:
         """Does it hold numbers, but for a few words such as "overload"?"""
-        finite = np.isfinite(self.numbers(column))
-        if isinstance(cells := self.cells[column], np.ndarray) and cells.dtype.kind == "f":
+        cells, finite = self.cells[column], np.isfinite(self.numbers(column))
+        if finite.mean() >= 1 - TEXT or not finite.any() or (isinstance(cells, np.ndarray) and cells.dtype.kind == "f"):
             return bool(finite.any())
-        words = [c for c, good in zip(self.cells[column], finite, strict=True) if not good and not _empty(c)]
-        return bool(finite.any()) and len(words) <= TEXT * (len(words) + finite.sum())
+        words = sum(not _empty(c) for c in itertools.compress(cells, ~finite))
+        return bool(words <= TEXT * (words + finite.sum()))
 
 
 def _empty(cell: Any) -> bool:
@@ -97,6 +97,8 @@ def as_numbers(cells: Sequence[Any]) -> Array:
     """Numbers of cells, nan for all else; commas are points, switches 0 and 1."""
     if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
         return np.asarray(cells, float)
+    if len(cells) > PIECE:
+        return np.concatenate([as_numbers(cells[i : i + PIECE]) for i in range(0, len(cells), PIECE)])
     cells = [None if isinstance(cell, list | dict | np.ndarray) else cell for cell in cells]  # as Parquet may hold
     meaning = {cell: number(cell) for cell in set(cells)}
     meaning |= {c: SWITCH[word] for c in meaning if isinstance(c, str) and (word := c.strip().lower()) in SWITCH}

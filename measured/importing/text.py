@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import re
 from collections import Counter
@@ -15,7 +16,8 @@ from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_date, is_reading, number
 from measured.headers.rows import SAMPLE, Layout, layout, transposed
 from measured.headers.words import CLOCKS, IDEOGRAPHS, VOCABULARY
-from measured.recordings.csv_file import Body, chunks
+from measured.recordings.csv_file import Body, chunks, shared
+from measured.recordings.data_table import PIECE
 
 DELIMITERS = ("\t", ";", ",", "|")
 BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have single blanks in them
@@ -78,25 +80,18 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes += [odd] * (len(readings) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
     plan = layout(head, str(file))
-    again = sign.join(plan.names)  # a header and remarks may come again
-    body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
-    columns = _plain(file, body, sign, plan)
+    interval_s = _interval("".join(lines[: plan.first]))
+    columns = _plain(file, lines, sign, plan)
     if columns is None:
-        rows = [
-            r
-            for r in split_cells(lines, sign)[plan.first :]
-            if r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")
-        ]
-        long = sum(any(c.strip() for c in row[plan.width :]) for row in rows)
+        columns, long = _with_words(lines, sign, plan)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
-        columns = _raw([row for row in rows if any(row)], plan.width)
         whole = in_thousands(columns)
         notes += [
             f"{file.name}: the sign in the numbers of '{plan.names[j] or f'column {j + 1}'}' stands between thousands"
             for j in whole
         ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
-    return plan, columns, notes, _interval("".join(lines[: plan.first]))
+    return plan, columns, notes, interval_s
 
 
 def _objects(text: str) -> tuple[Layout, Columns] | None:
@@ -185,17 +180,34 @@ def _interval(preamble: str) -> float | None:
 
 def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | None:
     """By the reader of plain CSV, which a table is once signs are replaced; None where it is not that simple."""
-    content = "".join(lines)
-    if '"' in content or sign in BLANKS or (sign != "," and "," in content and BOTH_SIGNS.search(content)):
+    again = sign.join(plan.names)  # a header and remarks may come again
+    body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
+    commas = sign != "," and any("," in line for line in body)
+    if sign in BLANKS or any('"' in line for line in body) or (commas and any(map(BOTH_SIGNS.search, body))):
         return None
+    texts = ("".join(body[i : i + PIECE]) for i in range(0, len(body), PIECE))
     if sign != ",":
-        content = content.replace(",", ".").replace(sign, ",")
-    raw = content.encode()
-    del content
+        texts = (text.replace(",", ".").replace(sign, ",") for text in texts)
     try:
-        return Body(file, plan.width).columns(raw)
+        return Body(file, plan.width).columns(text.encode() for text in texts)
     except csv.Error:
         return None
+
+
+def _with_words(lines: list[str], sign: str, plan: Layout) -> tuple[Columns, int]:
+    """Columns of cells, and how many rows have more than the header.  lines : are used up, so many at once as end
+    outside quotation marks: the words of all rows together take ten times their memory"""
+    columns, long, first = [list[Any]() for _ in range(plan.width)], 0, plan.first
+    while lines:
+        marks = itertools.accumulate(line.count('"') for line in lines)
+        end = next((i for i, count in enumerate(marks, 1) if i >= PIECE and count % 2 == 0), len(lines))
+        rows, first = split_cells(lines[:end], sign)[first:], 0
+        del lines[:end]
+        body = [r for r in rows if any(r) and r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")]
+        long += sum(any(c.strip() for c in row[plan.width :]) for row in body)
+        for column, cells in zip(columns, _raw(body, plan.width), strict=True):
+            column += shared(cells)
+    return columns, long
 
 
 def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:

@@ -74,10 +74,10 @@ class Body:
     words: set[int] = field(default_factory=set)
     gaps: bool = False
 
-    def columns(self, content: bytes) -> list[Any]:
+    def columns(self, content: Iterable[bytes]) -> list[Any]:
         """All cells, column by column: numbers, or every cell of a column that has a word in it."""
-        parts = [*self.pieces(cut_blocks([content]), 1)]
-        return [joined_parts([part[j] for part in parts]) for j in range(self.width)]
+        parts = [[*part] for part in self.pieces(cut_blocks(content), 1)]
+        return [joined_parts([part.pop(0) for part in parts]) for _ in range(self.width)]
 
     def pieces(self, blocks: Iterator[bytes], line: int) -> Iterator[Sequence[Any]]:
         """The cells of whole lines.  line : that of the first of them"""
@@ -182,8 +182,14 @@ def _numeric(cells: list[str]) -> list[str] | Column:
     """As numbers, or as they are where one is a word."""
     values = {cell: as_number(cell) for cell in set(cells)}
     if None in values.values():
-        return [cell.strip() for cell in cells]
+        return shared([cell.strip() for cell in cells])
     return np.array([values[cell] for cell in cells], float)
+
+
+def shared(cells: Sequence[Any]) -> list[Any]:
+    """Cells of which equal ones are one object: a million words of their own take a hundred megabytes."""
+    one = dict(zip(cells, cells, strict=True))
+    return [one[cell] for cell in cells]
 
 
 def joined_parts(parts: Sequence[Any]) -> Any:
