@@ -218,5 +218,5 @@ def _with_materials(parts: tuple[Part, ...], materials: Mapping[str, Any], where
     for part, name in materials.items():
         if part not in names:
             raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
-        material(name)
+        material(name, f"{where} [materials]")
     return tuple(replace(part, material=materials.get(part.name, part.material)) for part in parts)

@@ -67,10 +67,10 @@ def material_table() -> Mapping[str, Material]:
     return {name: _read(name, values) for name, values in _table().items()}
 
 
-def material(name: str) -> Material:
+def material(name: str, where: str = "[materials]") -> Material:
     """One material; InputError names the known ones."""
     if not isinstance(name, str) or name not in material_table():
-        raise InputError(f"unknown material {name!r}", "[materials]", f"known: {', '.join(sorted(material_table()))}")
+        raise InputError(f"unknown material {name!r}", where, f"known: {', '.join(sorted(material_table()))}")
     return material_table()[name]
 
 

@@ -216,7 +216,9 @@ def _all_units(row: Row) -> bool:
     """A label may stand before them; units of times alone are those of the steps between rows."""
     cells = [str(c).strip() for c in row if c is not None and str(c).strip()]
     steps = len(cells) > 2 and {unit_of(c) for c in cells[1:]} <= {*TIMES}
-    return bool(cells) and not steps and sum(is_unit(c) for c in cells) >= 0.6 * len(cells)
+    units = [c for c in cells if is_unit(c)]
+    ratios = all(is_reading(c) for c in units)  # 1 is a unit, but not the only one
+    return bool(cells) and not steps and not ratios and len(units) >= 0.6 * len(cells)
 
 
 def _padded(row: Row, width: int) -> list[str]:

@@ -59,7 +59,7 @@ def sampled(steps: Mapping[str, SampleStep]) -> str:
         return f"readings and model are compared {sentence}, as recorded"
     tau_s = worst.time_constant_s
     late = f"{tau_s / 3600.0:.0f} h" if tau_s and tau_s >= 7200.0 else f"{tau_s:.3g} s" if tau_s is not None else ""
-    fast = f", where {worst.node} follows in {late}" * bool(late)
+    fast = f", where the time constant of {worst.node} is {late}" * bool(late)
     return (
         f"readings and model are compared {sentence}; that leaves {worst.error_K:.2g} K (rms) at {worst.sensor}{fast}"
     )

@@ -48,7 +48,7 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
         ax.plot(t[thin], values[thin], color=LIGHT.ink, lw=0.9)
         ax.set_title(input_title(name))
         ax.margins(x=0)
-    axes[0].legend(labelcolor="linecolor", handlelength=0.0, handletextpad=0.0, frameon=False, fontsize=8.5)  # once
+    axes[0].legend(labelcolor="linecolor", handlelength=1.0, handletextpad=0.5, frameon=False, fontsize=8.5)  # once
     return paper.save(figure, png)
 
 

@@ -92,9 +92,9 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
     """Files, and those in folders: UNIT.csv or UNIT@YEAR-MONTH[-DAY].csv."""
     files = [f for name in names for f in (_inside(name) if name.is_dir() else [name])]
     out = [_recording(file) for file in files]
-    if len({r.unit for r in out}) < 3:
+    if (count := len({r.unit for r in out})) < 3:
         raise InputError(
-            f"{len({r.unit for r in out})} motors are no fleet",
+            f"{'one motor is' if count == 1 else f'{count} motors are'} no fleet",
             ", ".join(map(str, names)),
             "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv",
         )

@@ -488,7 +488,8 @@ FORMATS: dict[str, Format] = {
     "what channels are in a row of remarks": Format(
         "tWHAI",
         ["Time", "U1-1[C]", "U1-2[C]", "U1-3[C]", "U2-1[A]"],
-        before='"Mode","Tc K","Tc K","Tc K","Voltage"\n"Comment","Winding","Housing","Room","Shunt"\n',
+        before='"Mode","Tc K","Tc K","Tc K","Voltage"\n"Comment","Winding","Housing","Room","Shunt"\n'
+        '"Scaling","OFF","OFF","OFF","ON"\n"Ratio","1","1","1","10"\n',
     ),
     "days since year 0": Format(
         "tIWA", ["datenum", "i_rms", "T_wdg", "T_amb"], stamp=lambda k: f"{740069.5 + k / 17280:.9f}"

@@ -117,8 +117,8 @@ def test_a_sensor_that_follows_fast_asks_for_short_steps():
     assert chosen("winding").time_constant_s == pytest.approx(58.0, rel=0.1)
     assert chosen("housing", 5.0).step_s == 5.0
     assert "every 10 s in warm" in sampled({"warm": chosen("housing")})
-    assert "follows in 56.2 s" in sampled({"warm": replace(chosen("winding"), time_constant_s=56.18)})
-    assert "follows in 10 h" in sampled({"warm": replace(chosen("winding"), time_constant_s=36000.0)})
+    assert "time constant of winding is 56.2 s" in sampled({"warm": replace(chosen("winding"), time_constant_s=56.18)})
+    assert "time constant of winding is 10 h" in sampled({"warm": replace(chosen("winding"), time_constant_s=36000.0)})
 
 
 def test_modes_and_what_a_mean_leaves_of_them():
