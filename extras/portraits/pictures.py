@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from thermoscope import plugin as th
-
-if TYPE_CHECKING:
-    pass
 
 
 def machine_picture(s: th.Subject, png: Path) -> None:

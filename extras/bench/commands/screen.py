@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermoscope import InputError
 from thermoscope import plugin as th
-
-if TYPE_CHECKING:
-    pass
 
 DESIGNS = ("full", "half", "gap", "morris", "sobol")
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
