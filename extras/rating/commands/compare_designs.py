@@ -55,6 +55,9 @@ def compared_designs(
         th.require_gl()  # before anything is built
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
+    for name in names:  # all are there before the first is built
+        if not Path(name).is_file() and name not in th.library():
+            th.find_case(name, th.library())
     with th.progress() as tell:
         designs: list[Design] = []
         for name in names:

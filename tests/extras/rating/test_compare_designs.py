@@ -8,6 +8,7 @@ import pytest
 
 from extras.rating.commands.compare_designs import Designs, compare_designs, designs_summary, dimensions, masses
 from geom import load_machine, part_table
+from geom.errors import InputError
 
 PLATE, FREE = "pmsm-m1-plate", "pmsm-m1-no-base"
 
@@ -88,3 +89,9 @@ def test_two_motors_side_by_side(thermoscope):
     assert all(d["rating"]["value"] > 0.0 for d in (long, short))
     low, high = long["rating"]["ci95"]
     assert low < long["rating"]["value"] < high, "of its priors, however many states it has"
+
+
+def test_every_design_is_there_before_the_first_is_built(monkeypatch):
+    monkeypatch.setattr("extras.rating.commands.compare_designs.case_or_machine", lambda *_: pytest.fail("built"))
+    with pytest.raises(InputError, match="pmsm-m9.*pmsm-m"):
+        compare_designs("pmsm-m1", "pmsm-m9")
