@@ -93,5 +93,5 @@ def test_two_motors_side_by_side(thermoscope):
 
 def test_every_design_is_there_before_the_first_is_built(monkeypatch):
     monkeypatch.setattr("extras.rating.commands.compare_designs.case_or_machine", lambda *_: pytest.fail("built"))
-    with pytest.raises(InputError, match="pmsm-m9.*pmsm-m"):
+    with pytest.raises(InputError, match=r"pmsm-m9.*pmsm-m"):
         compare_designs("pmsm-m1", "pmsm-m9")
