@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from measured.case import Case, Test
-from validation.calibration.calibrate import Fit, reading_fit
+from validation.calibration.calibrate import Fit, followed, reading_fit
 from validation.calibration.model_error import machine_rise
 from validation.comparison.compare import ChannelError, physical, pooled, test_error
 from validation.comparison.linearisation import allowed, rmse
@@ -22,7 +22,7 @@ from validation.comparison.uncertainty import COVERAGE
 from validation.inference.contradiction import Contradiction
 from validation.inference.decide import Decision, Posterior
 from validation.inference.result import Check, Remainder
-from validation.parameters.unknowns import Unknowns, sorted_unknowns, standing, working
+from validation.parameters.unknowns import standing, working
 from validation.yardstick.words import WORTH
 from validation.yardstick.yardstick import free_network_error, persistence_error
 
@@ -189,11 +189,8 @@ def named_check(case: Case, tests: Sequence[Test], before: Fit, after: Fit, name
     check = refit_check(before, after, " + ".join(names))
     if not check.contradicts:
         return check
-    effects, fits = {*names, *(e.name for e in case.model.effects)}, []
-    for fit in (before, after):
-        _, machine, others = sorted_unknowns(fit.unknowns, effects)
-        free = Unknowns((*machine.parameters, *others.parameters))
-        fits.append(reading_fit(fit.network, tests, free, fit.values))
+    effects = {*names, *(e.name for e in case.model.effects)}
+    fits = [followed(fit, tests, case.model.values, effects) for fit in (before, after)]
     return refit_check(fits[0], fits[1], " + ".join(names))
 
 

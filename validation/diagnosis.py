@@ -60,7 +60,7 @@ from validation.inference.refit import (
     refitted,
     weighty_refits,
 )
-from validation.inference.result import Diagnosis
+from validation.inference.result import Diagnosis, Remainder
 from validation.inference.say import (
     ROWS,
     candidate_rows,
@@ -131,13 +131,15 @@ def diagnose(
         small = fidelity_error(whole, case, posterior)
         most = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
         choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), most))
+        left, first = remainder(case, posterior, choice, posterior.single), choice.groups
         if not preliminary:
-            left = remainder(posterior, choice, posterior.single)
             choice = consistent_decision(choice, checks(case, posterior, choice, most, left))
         if wrong:  # nothing else is accused of what the base does
             choice = Decision("data", (), choice.sure)
+        if choice.groups != first:
+            left = remainder(case, posterior, choice, posterior.single)
         faults = PlainFaults(tuple(broken), tuple(wrong))
-        answer = tabulate(case, posterior, choice, faults, bases, plan and not preliminary, scope, preliminary)
+        answer = tabulate(case, posterior, choice, faults, bases, left, plan and not preliminary, scope, preliminary)
         return replace(answer, small_network_K=small)
 
     posterior = infer(training, kinds, progress, scope, quick, lambda first: report(lambda: result(first, True)))
@@ -230,6 +232,7 @@ def tabulate(
     choice: Decision,
     broken: PlainFaults,
     bases: Sequence[BaseDeviance],
+    left: Sequence[Remainder],
     plan: bool,
     scope: Scope,
     preliminary: bool = False,
@@ -243,7 +246,6 @@ def tabulate(
     rivals = competing_models(e, choice, single) if plan and verdict in ("group", "several") else None
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
-    left = remainder(posterior, choice, single)
     words = sentence(verdict, posterior, choice, rows, pulls, broken, left)
     words += unsteady_words(posterior, choice) + unseen_words(e.fit)
     return Diagnosis(
@@ -266,7 +268,7 @@ def tabulate(
         explanations=explanations(posterior),
         p_nothing=0.0 if broken.names else 1.0 - choice.sure,
         events=possible_events(posterior),
-        remainder=left,
+        remainder=tuple(left),
         doubts=record_doubts(e.fit),
         contradiction=posterior.against,
         question=best_question(posterior),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
+LARGEST_SHARE = 10.0  # that a law refers to: nothing is loaded tenfold, so 100 is a percentage
 
 
 def read_identities(
@@ -65,12 +66,25 @@ def read_quantities(top: Table) -> dict[str, str]:
     return out
 
 
-def load_network(path: str | Path) -> Network:
+def load_network(path: str | Path, shares: Container[str] = ()) -> Network:
     """The network of a TOML file.
 
+    shares : inputs that are recorded as 0 to 1; what refers to more than ten of one is taken as a percentage
     Raises InputError that names the file, the table, the key and what would be right.
     """
-    return replace(read_network(read_toml(Path(path), RIGHT), str(path)), file=str(path))
+    return replace(read_network(_with_shares(read_toml(Path(path), RIGHT), shares), str(path)), file=str(path))
+
+
+def _with_shares(data: Any, shares: Container[str]) -> Any:
+    """A document whose powers of inputs, `{input, at, exponent}`, refer to shares where they have percentages."""
+    if isinstance(data, list):
+        return [_with_shares(x, shares) for x in data]
+    if not isinstance(data, dict):
+        return data
+    at, share = data.get("at"), data.get("input") in shares
+    if share and isinstance(at, int | float) and at > LARGEST_SHARE:
+        return {**data, "at": at / 100.0}
+    return {key: _with_shares(x, shares) for key, x in data.items()}
 
 
 def load_circuits(path: str | Path) -> dict[str, Circuit]:

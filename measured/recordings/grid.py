@@ -67,11 +67,11 @@ def rms(time: Array, values: Array, grid: Array) -> Array:
     return np.copysign(np.sqrt(averaged(time, values**2, grid)), averaged(time, values, grid))
 
 
-def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[Array, list[str]]:
+def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> Array:
     """An input or boundary with short holes drawn straight across; a longer one is refused."""
     finite = np.flatnonzero(np.isfinite(values))
     if finite.size == grid.size:
-        return values, []
+        return values
     edges = np.concatenate([[0.0], grid[finite], [grid[-1]]])
     worst = int(np.argmax(np.diff(edges)))
     if edges[worst + 1] - edges[worst] > max(max_gap_s, 2 * (grid[1] - grid[0])):
@@ -80,4 +80,4 @@ def bridged(grid: Array, values: Array, max_gap_s: float, where: str) -> tuple[A
             where,
             f"gaps of {max_gap_s:g} s at most: split the test there, or raise max_gap_s in its sheet",
         )
-    return np.interp(grid, grid[finite], values[finite]), [f"{where}: {grid.size - finite.size} instants interpolated"]
+    return np.interp(grid, grid[finite], values[finite])

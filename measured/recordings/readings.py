@@ -116,7 +116,7 @@ def _on_grid(
     """Inputs and boundaries, averaged; a current by its heat."""
     inputs = {n: np.full(grid.size, v) for n, v in sheet.inputs.items()}
     inputs |= {n: events.mean(grid, samples.start_s) for n, events in sheet.events.items()}
-    boundaries, notes = {n: np.full(grid.size, v) for n, v in sheet.boundaries.items()}, []
+    boundaries, bridges = {n: np.full(grid.size, v) for n, v in sheet.boundaries.items()}, dict[str, int]()
     for column in sheet.columns:
         if column.is_temperature and column.place not in network.boundaries:
             continue
@@ -124,13 +124,14 @@ def _on_grid(
         values = samples.values[column.name]
         if not column.is_temperature:
             values = np.where(np.isfinite(values), fine[column.feeds], np.nan)
-        whole, doubts = bridged(
-            grid, mean(samples.time, values, grid), sheet.max_gap_s, f"{samples.file} column '{column.name}'"
-        )
-        notes += doubts
+        average, where = mean(samples.time, values, grid), f"{samples.file} column '{column.name}'"
+        whole = bridged(grid, average, sheet.max_gap_s, where)
+        bridges[column.name] = int(np.sum(~np.isfinite(average)))
         (boundaries if column.is_temperature else inputs)[column.feeds or column.place] = whole
     inputs |= {name: _root_sum_square(name, of, sheet, inputs) for name, of in sheet.squares.items()}
-    return inputs, boundaries, notes
+    most = max(bridges, key=lambda name: bridges[name], default="")
+    words = [f"{samples.file} column '{most}': {bridges[most]} instants interpolated"] if bridges.get(most) else []
+    return inputs, boundaries, words
 
 
 def _finer(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from geom.constants import ZERO_C
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
@@ -62,6 +62,7 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
     gaps = _gaps(time)
     read = {c.name: numbers(table, c.header, file) for c in sheet.columns}
     filled = recorder_rows(read, bool(sheet.recorders))
+    missing: dict[str, Ints] = {}
     values, sigma, notes = {}, {}, [f"{file.name}: no rows from {a:g} s to {b:g} s; {IN_GAPS}" for a, b in gaps]
     for column in sheet.columns:
         raw = read[column.name][rows]
@@ -83,7 +84,8 @@ def load_table(path: Path, sheet: Sheet) -> Samples:
         if sensor_sigma is not None:
             sigma[column.name] = sensor_sigma
         notes += _other_unit(column, table.units.get(column.header, ""), file)
-        notes += _look(column, values[column.name], file, line, filled[column.name][rows])
+        missing[column.name] = _missing(column, values[column.name], file, line, filled[column.name][rows])
+    notes += _missing_words(file, {name: rows for name, rows in missing.items() if rows.size}, line)
     return Samples(file, time, values, gaps, tuple(notes), sigma, start, line)
 
 
@@ -219,8 +221,18 @@ def recorder_rows(read: Mapping[str, Array], several: bool) -> dict[str, NDArray
     }
 
 
-def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[np.bool_]) -> list[str]:
-    """Missing readings and impossible temperatures of one column.
+def _missing_words(file: Path, missing: Mapping[str, Ints], first: int) -> list[str]:
+    """A note on the rows without a reading of some columns, one for all of them."""
+    if not missing:
+        return []
+    most = max(missing, key=lambda name: missing[name].size)
+    where = f"column '{most}': {missing[most].size} missing readings, first in line {missing[most][0] + first}"
+    more = f"; {sum(map(np.size, missing.values()))} in {len(missing)} columns" if len(missing) > 1 else ""
+    return [f"{file.name} {where}{more}"]
+
+
+def _missing(column: Column, values: Array, file: Path, first: int, awake: NDArray[np.bool_]) -> Ints:
+    """Rows without a reading of one column; InputError for impossible temperatures.
 
     first : line at which the test begins;  awake : rows in which its recorder read anything
     """
@@ -243,10 +255,7 @@ def _look(column: Column, values: Array, file: Path, first: int, awake: NDArray[
     slower = (
         rows.size > LEAST and 1 < rows.min() >= rows.max() - 1
     )  # a column that is recorded less often lacks nothing
-    if missing.size and column.electrical is None and not slower:
-        line = missing[0] + first
-        return [f"{file.name} column '{column.name}': {missing.size} missing readings, first in line {line}"]
-    return []
+    return missing[:0] if column.electrical or slower else missing
 
 
 def standing_still(columns: Iterable[Column], samples: Samples) -> dict[str, str]:

@@ -48,7 +48,7 @@ def test_what_a_command_prints_stands_under_it_and_fits_a_screen(commands, print
     assert lines, "python scripts/tutorial.py writes it"
     assert max(map(len, lines)) <= 80
     count = sum(line.startswith("thermoscope") for line in commands.splitlines())
-    assert len(lines) <= count * (LINES + 6), "a sentence of some lines, and at most 25 after it"
+    assert len(lines) <= count * (LINES + 5), "a sentence of some lines, and at most 25 after it"
 
 
 @pytest.mark.parametrize(

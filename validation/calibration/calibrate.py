@@ -471,6 +471,13 @@ def reading_fit(
     return replace(whole, converged=fit.converged, gradient=fit.gradient)
 
 
+def followed(fit: Fit, tests: Sequence[Test], values: Mapping[str, float], effects: Collection[str] = ()) -> Fit:
+    """What a fit had free, but for its effects, fitted to follow the readings.  values : of what is not free"""
+    _, machine, others = sorted_unknowns(fit.unknowns, effects)
+    free = Unknowns((*machine.parameters, *others.parameters))
+    return reading_fit(fit.network, tests, free, {**values, **fit.values})
+
+
 def with_model_error(
     fit: Fit,
     tests: Sequence[Test],

@@ -15,7 +15,7 @@ from measured.case import Case, Test
 from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
 from measured.sensors.operators import head
-from validation.calibration.calibrate import Fit, InnerProduct
+from validation.calibration.calibrate import Fit, InnerProduct, followed
 from validation.calibration.model_error import total_sd
 from validation.comparison.linearisation import Segment, rmse, segments
 from validation.effects.above import Above
@@ -49,6 +49,7 @@ Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
+EVEN = 0.5  # probability from which that something is missing is more likely than not
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # records that stay off are told, worst first
 LESS = 0.7  # of its error: what another effect must bring a record to, to be its explanation
@@ -332,21 +333,32 @@ def _event(e: Evidence, h: Weighed, event: Event, probability: float) -> Possibl
     return PossibleEvent(event.name, document["words"], tuple(document["spans"]), probability, *what)
 
 
-def remainder(posterior: Posterior, choice: Decision, single: Mapping[int, Weighed]) -> tuple[Remainder, ...]:
+def remainder(
+    case: Case, posterior: Posterior, choice: Decision, single: Mapping[int, Weighed]
+) -> tuple[Remainder, ...]:
     """The records that stay off with the best explanation in the model, one per sensor, worst first, and what that may
-    be: the model's own doubts, or a second effect, or nothing that these readings can tell."""
+    be: the model's own doubts, or a second effect, or nothing that these readings can tell.
+
+    Off are those that parameters which follow the readings leave off, too: they mend what doubts would only forgive.
+    """
     lead = frozenset(g[0] for g in choice.groups)
     # the refit with all that is named; where there is none, that of the first of them, or of nothing
     whole = [h.fit for h in posterior.hypotheses if h.fit and h.members and set(h.members) == lead]
     alone = [h.fit for k in sorted(lead) if (h := single[k]).fit]
     fit = (*whole, *alone, posterior.evidence.fit)[0]
-    left = {(s.test, s.channel): rms(s.r) / (OFF * s.weight) for s in fit.parts}
+    off = [s for s in fit.parts if rms(s.r) > OFF * s.weight]
+    if not off:
+        return ()
+    effects = {*(e.name for e in case.model.effects), *(posterior.evidence.names[k] for k in lead)}
+    plain = followed(fit, posterior.evidence.tests, case.model.values, effects)
+    least = {(s.test, s.channel): rms(s.r) for s in plain.parts}
+    errors = {(s.test, s.channel): min(rms(s.r), least[s.test, s.channel]) for s in off}
     rows: dict[str, Segment] = {}
-    for s in sorted(fit.parts, key=lambda s: -left[s.test, s.channel]):
-        if left[s.test, s.channel] > 1.0:
+    for s in sorted(off, key=lambda s: -errors[s.test, s.channel] / s.weight):
+        if errors[s.test, s.channel] > OFF * s.weight:
             rows.setdefault(s.channel, s)
-    measure = InnerProduct(fit.parts, fit.noise, fit.error)
-    return tuple(_remainder(s, posterior, lead, fit, measure) for s in list(rows.values())[:MOST])
+    measure, few = InnerProduct(fit.parts, fit.noise, fit.error), list(rows.values())[:MOST]
+    return tuple(_remainder(s, errors[s.test, s.channel], posterior, lead, fit, measure) for s in few)
 
 
 def record_doubts(fit: Fit) -> tuple[RecordDoubt, ...]:
@@ -364,8 +376,10 @@ def rms(r: Array) -> float:
     return float(np.sqrt(np.mean(r**2)))
 
 
-def _remainder(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit, measure: InnerProduct) -> Remainder:
-    error, doubt, model_K = rms(s.r), "", 0.0
+def _remainder(
+    s: Segment, error: float, posterior: Posterior, lead: frozenset[int], fit: Fit, measure: InnerProduct
+) -> Remainder:
+    doubt, model_K = "", 0.0
     if fit.error is not None:
         parts, k = fit.error.of(s) * measure.doubts(fit.parts), fit.error.model_columns
         left = s.r - parts[:, k:].sum(axis=1)  # when inputs stepped is no fault of the model
@@ -373,7 +387,7 @@ def _remainder(s: Segment, posterior: Posterior, lead: frozenset[int], fit: Fit,
         doubt = fit.error.names[int(np.argmax(np.mean(parts[:, :k] ** 2, axis=0)))]
     effect, p, less = second_effect(posterior, lead, s)
     name, how = ("", "") if effect is None else (effect.name, effect.effect.isolating_test)
-    return Remainder(s.channel, s.test, error, max(model_K, 0.0), doubt, name, p, less, how)
+    return Remainder(s.channel, s.test, error, min(max(model_K, 0.0), error), doubt, name, p, less, how)
 
 
 def second_effect(posterior: Posterior, lead: frozenset[int], s: Segment) -> tuple[Cause | None, float, float]:
@@ -409,6 +423,9 @@ def sentence(
     if verdict == "adequate":
         none, sure = percent(1.0 - choice.sure), " sure" * bool(choice.withheld)
         words = f"no{sure} evidence of a missing effect (nothing missing: {none})"
+        if choice.sure > EVEN and rows:
+            words = f"whether something is missing cannot be told: nothing {none}, {rows[0].words} "
+            words += percent(rows[0].probability)
         if off := [r for r in left if not (r.effect or r.forgiven)]:
             where = f"{off[0].channel} is {off[0].error_K:.1f} K off in {off[0].record}, and nothing explains it"
             words = f"nothing with a{sure} name is missing ({none}); {where}"

@@ -25,7 +25,7 @@ from validation.parameters.reference import effect_sizes, reference_of, value_co
 
 LARGER = 10.0  # times the largest size that the catalogue looks for: a film of water where it looks for air
 LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
-NAMES = 3  # in a sentence
+NAMES = 2  # in a sentence
 POWER_AT = re.compile(r"[-+.\de]+ at ")
 POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
@@ -332,10 +332,10 @@ def strain_words(case: Case) -> str:
 
 
 def _value_words(name: str, value: float, unit: str) -> str:
-    """What became of a parameter; an exponent is told as it is."""
+    """What became of a parameter; of an exponent how it changed."""
     law, power = parameter_words(name)
     shift = f"the {law} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
-    return f"the {power} in the {law} had to be {value:.3g}" if power else shift
+    return f"the {power} in the {law} had to change by {value:+.2g}" if power else shift
 
 
 def parameter_words(name: str) -> tuple[str, str]:

@@ -148,8 +148,13 @@ def test_missing_readings_are_kept_as_missing(case):
         cells[4] = "" if i % 2 else "NaN"
         lines[i] = ",".join(cells)
     path.write_text("\n".join(lines) + "\n")
+    (note,) = [n for n in load_case(case).notes if "missing" in n]
+    assert note.endswith("'T_winding': 4 missing readings, first in line 41")
+    lines[60] = ",".join([*lines[60].split(",")[:5], "", *lines[60].split(",")[6:]])
+    path.write_text("\n".join(lines) + "\n")
     folder = load_case(case)
-    assert any("'T_winding': 4 missing readings, first in line 41" in n for n in folder.notes)
+    (note,) = [n for n in folder.notes if "missing" in n]
+    assert note.endswith("'T_winding': 4 missing readings, first in line 41; 5 in 2 columns")
     road = next(t for t in folder.case.tests if t.name == "road")
     winding = next(c for c in road.channels if c.name == "T_winding")
     assert 1 <= np.isnan(winding.y).sum() <= 3

@@ -1,5 +1,6 @@
 """What case.toml says of the commands is what they do."""
 
+import numpy as np
 import pytest
 
 from geom.errors import InputError
@@ -59,3 +60,20 @@ def test_refused_by_file_and_key(case, lines, words):
     with pytest.raises(InputError, match=words) as fault:
         said(case, lines)
     assert "case.toml" in str(fault.value)
+
+
+@pytest.mark.parametrize(("at", "told"), [(100.0, True), (1.0, False), (2.0, False)])
+def test_a_law_of_a_share_that_refers_to_a_percentage(case, at, told):
+    """Files of before were written for 0 to 100: a hundred times less loss in silence would look like a cause."""
+    loss = f'\n[losses.fan]\nkind = "friction"\nat = "yoke"\nP_W = 50\nof = {{ input = "load", at = {at} }}\n'
+    (case / "network.toml").write_text((case / "network.toml").read_text() + loss)
+    for sheet in (case / "tests").glob("*.toml"):
+        wind = 'quantity = "vehicle_speed"\nunit = "km/h"'
+        assert wind in sheet.read_text()
+        sheet.write_text(sheet.read_text().replace(wind, 'quantity = "share"\nunit = "%"\ninput = "load"'))
+    folder = load_case(case)
+    fan = next(s for s in folder.case.model.network.sources if s.name == "loss:fan")
+    assert float(fan.law.factor({"load": np.ones(1)})[0]) == pytest.approx(50.0 if told else 50.0 / at)
+    assert [n for n in folder.notes if "laws refer to load in percent" in n] == (
+        ["laws refer to load in percent, recorded as 0 to 1: taken so"] if told else []
+    )

@@ -14,6 +14,7 @@ from validation.consistency import doubts_check, free_network_check, persistence
 from validation.diagnosis import infer
 from validation.inference.decide import Decision, consistent_decision
 from validation.inference.result import Check, Remainder
+from validation.inference.say import OFF, remainder
 from validation.revision.revise import add
 from validation.scope import Scope
 
@@ -48,6 +49,25 @@ def test_what_a_probe_read_elsewhere_costs_its_fault_nothing():
 @pytest.fixture(scope="module")
 def found():
     return diagnose(moved_probe(0.5), plan=False, scope=Scope(without=("sensor.loose",)))
+
+
+@pytest.mark.parametrize("share", [1.0, 0.2])
+def test_a_record_is_off_by_no_more_than_parameters_that_follow_the_readings_leave(share, monkeypatch):
+    """The most probable fit lets doubts forgive what parameters could mend; what is told is the lesser error."""
+    case = moved_probe(0.5)
+    posterior = infer(case, scope=Scope(without=("sensor.loose",)))
+    fit = posterior.evidence.fit
+    less = replace(fit, parts=tuple(replace(s, r=share * s.r) for s in fit.parts))
+    monkeypatch.setattr("validation.inference.say.followed", lambda *_: less)
+    told = {
+        (r.channel, r.record): r for r in remainder(case, posterior, Decision("adequate", (), 0.3), posterior.single)
+    }
+    for s in less.parts:
+        error = float(np.sqrt(np.mean(s.r**2)))
+        row = told.get((s.channel, s.test))
+        assert row is None or row.error_K == pytest.approx(error)
+        assert row is not None or error <= OFF * s.weight or s.channel in {channel for channel, _ in told}
+    assert ("core", "dusk") in told or share < 1.0
 
 
 def test_a_probe_between_part_and_air_has_a_name():
@@ -127,7 +147,7 @@ def test_what_is_within_its_limit_changes_nothing():
     assert consistent_decision(choice, (Check("record", "core in dusk", 1.5, 1.5, "K", ""),)).verdict == "adequate"
 
 
-def remainder(taken, error=4.0):
+def left_off(taken, error=4.0):
     """A record that is off by `error` K, of which the doubts of the model take some."""
     return Remainder("core", "dusk", error, taken, "joint:core|frame", "", 0.0, 0.0, "")
 
@@ -136,10 +156,10 @@ def test_no_record_is_forgiven_more_than_all_doubts_of_a_sound_machine_come_to()
     """Doubts that together take a twentieth of the machine's largest rise off one record are no doubts."""
     case = bench(())
     limit = case.doubt["total"] * machine_rise(case.usable)
-    assert doubts_check(case, [remainder(3.0), remainder(1.01 * limit, 1.1 * limit)]).contradicts
-    assert not doubts_check(case, [remainder(0.9 * limit, limit)]).contradicts
-    assert "joint:core|frame" in doubts_check(case, [remainder(3.0)]).words
-    assert doubts_check(case, [remainder(0.4 * limit, limit)]) is None  # most of it is not forgiven
+    assert doubts_check(case, [left_off(3.0), left_off(1.01 * limit, 1.1 * limit)]).contradicts
+    assert not doubts_check(case, [left_off(0.9 * limit, limit)]).contradicts
+    assert "joint:core|frame" in doubts_check(case, [left_off(3.0)]).words
+    assert doubts_check(case, [left_off(0.4 * limit, limit)]) is None  # most of it is not forgiven
 
 
 def test_a_free_network_that_predicts_what_the_model_does_not_even_fit_is_told():

@@ -155,6 +155,12 @@ def test_an_adequate_model_is_not_said_to_miss_nothing_where_a_sensor_stays_off(
     assert sentence("adequate", posterior(), Decision("adequate", (), 0.4), (), (), PlainFaults(), [left]) == told
 
 
+def test_what_is_more_likely_than_not_and_has_no_name_cannot_be_told():
+    rows = [SimpleNamespace(words="a fan at feet", probability=0.23)]
+    told = sentence("adequate", posterior(), Decision("adequate", (), 0.54), rows, (), PlainFaults())
+    assert told == "whether something is missing cannot be told: nothing 46 %, a fan at feet 23 %"
+
+
 def test_every_hypothesis_is_told_once():
     rows = explanations(posterior())
     assert abs(sum(row.probability for row in rows) - 1.0) < 1e-12
