@@ -22,23 +22,13 @@ FRONT = {**REAR, "wall": "front", "branch": "front"}
 
 
 def oiled(*passes, links=(), **more):
+    spray = {"coolant": "ATF", "at_degC": 80, "flow_l_min": 5, "flow_l_min_input": "flow", "inlet": "oil", "cells": 2}
     data = {
         "network": {"name": "oiled", "boundaries": ["oil"]},
         "nodes": {"rear": {"C_J_K": 900.0}, "front": {"C_J_K": 900.0}},
         "links": {"both": {"between": ["rear", "front"], "G_W_K": 5.0}, **dict(links)},
         "losses": {"heat": {"kind": "constant", "at": {"rear": 0.5, "front": 0.5}, "P_W": 1500.0}},
-        "circuits": {
-            "spray": {
-                "coolant": "ATF",
-                "at_degC": 80,
-                "flow_l_min": 5,
-                "flow_l_min_input": "flow",
-                "inlet": "oil",
-                "cells": 2,
-                "passes": list(passes),
-                **more,
-            }
-        },
+        "circuits": {"spray": {**spray, "passes": list(passes), **more}},
     }
     return read_network(data)
 
@@ -78,13 +68,8 @@ def test_oil_too_cold_for_its_jets_says_so_with_value_and_range(net):
 
 
 def test_nozzles_share_the_flow_by_their_sections_and_lose_its_pressure_in_themselves():
-    wide = oiled(REAR, {**FRONT, "nozzles": 16})
-    rates = {
-        end: coefficient(x.law, {"flow": np.array([5.0])}, 80.0, 0.0)
-        for x in wide.links
-        for end in ("rear", "front")
-        if x.name == f"stream:spray.{end}"
-    }
+    wide, at = oiled(REAR, {**FRONT, "nozzles": 16}), {"flow": np.array([5.0])}
+    rates = {x.name.rpartition(".")[2]: coefficient(x.law, at, 80.0, 0.0) for x in wide.links if x.kind == "stream"}
     assert rates["front"] == pytest.approx(2 * rates["rear"], rel=2e-3)
 
 
