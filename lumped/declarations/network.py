@@ -81,8 +81,8 @@ def _with_shares(data: Any, shares: Container[str]) -> Any:
         return [_with_shares(x, shares) for x in data]
     if not isinstance(data, dict):
         return data
-    at, share = data.get("at"), data.get("input") in shares
-    if share and isinstance(at, int | float) and at > LARGEST_SHARE:
+    at, name = data.get("at"), data.get("input")
+    if isinstance(name, str) and name in shares and isinstance(at, int | float) and at > LARGEST_SHARE:
         return {**data, "at": at / 100.0}
     return {key: _with_shares(x, shares) for key, x in data.items()}
 

@@ -164,13 +164,11 @@ def _columns(path: Path, top: Table, head: Table) -> Columns:
     samples = load_table(path.parent / head.word("file", f"{path.stem}.csv"), sheet)
     inputs: dict[str, Array] = {}
     boundaries: dict[str, Array] = {}
-    notes = list(samples.notes)
     for c in sheet.columns:
         where = f"{samples.file} column '{c.header}'"
-        values, doubts = bridged(samples.time, samples.values[c.name], sheet.max_gap_s, where)
-        notes += doubts
+        values = bridged(samples.time, samples.values[c.name], sheet.max_gap_s, where)
         (boundaries if c.is_temperature else inputs)[c.place if c.is_temperature else c.feeds] = values
-    return Columns(samples.time, inputs, boundaries, tuple(notes))
+    return Columns(samples.time, inputs, boundaries, samples.notes)
 
 
 def _counted(instants: float, where: str) -> None:
