@@ -47,7 +47,7 @@ class Symbolic:
 
     tree: Tree
     reach: tuple[Ints, ...]
-    spare: Spare = field(default_factory=lambda: Spare(), repr=False, compare=False)
+    spare: Spare = field(default_factory=Spare, repr=False, compare=False)
 
     @property
     def size(self) -> int:

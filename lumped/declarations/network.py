@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,25 +66,30 @@ def read_quantities(top: Table) -> dict[str, str]:
     return out
 
 
-def load_network(path: str | Path, shares: Container[str] = ()) -> Network:
+def load_network(
+    path: str | Path, shares: Container[str] = (), note: Callable[[str], None] = lambda words: None
+) -> Network:
     """The network of a TOML file.
 
-    shares : inputs that are recorded as 0 to 1; what refers to more than ten of one is taken as a percentage
+    shares : inputs that are recorded as 0 to 1; what refers to more than ten of one is taken as a percentage, which is
+        told to `note`
     Raises InputError that names the file, the table, the key and what would be right.
     """
-    return replace(read_network(_with_shares(read_toml(Path(path), RIGHT), shares), str(path)), file=str(path))
+    document = _with_shares(read_toml(Path(path), RIGHT), shares, note)
+    return replace(read_network(document, str(path)), file=str(path))
 
 
-def _with_shares(data: Any, shares: Container[str]) -> Any:
+def _with_shares(data: Any, shares: Container[str], note: Callable[[str], None]) -> Any:
     """A document whose powers of inputs, `{input, at, exponent}`, refer to shares where they have percentages."""
     if isinstance(data, list):
-        return [_with_shares(x, shares) for x in data]
+        return [_with_shares(x, shares, note) for x in data]
     if not isinstance(data, dict):
         return data
     at, name = data.get("at"), data.get("input")
     if isinstance(name, str) and name in shares and isinstance(at, int | float) and at > LARGEST_SHARE:
+        note(f"laws refer to {name} in percent, recorded as 0 to 1: taken so")
         return {**data, "at": at / 100.0}
-    return {key: _with_shares(x, shares) for key, x in data.items()}
+    return {key: _with_shares(x, shares, note) for key, x in data.items()}
 
 
 def load_circuits(path: str | Path) -> dict[str, Circuit]:

@@ -13,7 +13,6 @@ from geom.errors import InputError
 from lumped.model.network import Network, Parameter
 from lumped.model.sites import ASSUMED, ASSUMED_W
 from lumped.schemas.reader import suggestion
-from lumped.transfer.laws import Law
 from measured.case import Case, LowFidelity, Reference, Test
 from measured.doubt import split_answers
 from measured.recordings.formats import recording
@@ -134,8 +133,9 @@ def load_case(
         patients[entry.name] = patient_of(entry, lambda message, count=count: progress(message + count))  # type: ignore[misc]
     _once(settings, {name: one.samples.file for name, one in patients.items()})
     sheets = [one.sheet for one in patients.values()]
-    network, built = network_of(settings, progress, sheets)
-    assumed = [*_assumed(network, settings), *(_percentages(network, _shares(sheets)) if settings.network else [])]
+    percentages = list[str]()
+    network, built = network_of(settings, progress, sheets, percentages.append)
+    assumed = [*_assumed(network, settings), *percentages]
     read = [
         read_test(e.name, e.role, patients[e.name].samples, patients[e.name].sheet, network, settings.sample_s)
         for e in counted("preparing the tests", settings.tests, len(settings.tests))
@@ -256,39 +256,23 @@ def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
     return matching(network, settings.free)
 
 
-def network_of(settings: Settings, progress: Progress, sheets: Iterable[Sheet] = ()) -> tuple[Network, Built | None]:
+def network_of(
+    settings: Settings, progress: Progress, sheets: Iterable[Sheet] = (), note: Progress = lambda words: None
+) -> tuple[Network, Built | None]:
     """The network of a case, and how it was built where it comes from a machine.
 
-    sheets : what says which inputs are recorded as shares
+    sheets : what says which inputs are recorded as shares;  note : told what was taken otherwise than it stands
     """
     if settings.network is not None:
         from lumped.declarations.network import load_network
 
-        return load_network(settings.network, _shares(sheets)), None
+        shares = {c.feeds for sheet in sheets for c in sheet.columns if c.quantity == "fraction"}
+        return load_network(settings.network, shares, note), None
     from lumped.build.pipeline import build
 
     machine = load_machine_file(settings.machine)  # type: ignore[arg-type]
     built = build(machine, progress=progress, axial_m=settings.axial_m)
     return built.network, built
-
-
-def _shares(sheets: Iterable[Sheet]) -> set[str]:
-    """Inputs that are recorded as 0 to 1."""
-    return {c.feeds for sheet in sheets for c in sheet.columns if c.quantity == "fraction"}
-
-
-def _percentages(network: Network, shares: set[str]) -> list[str]:
-    """A note on laws that refer to a percentage where a share is recorded, as files of before did."""
-    from lumped.declarations.network import load_network
-
-    file_network = load_network(network.file) if shares else network
-
-    def laws(of: Network) -> list[Law]:
-        return [*(x.law for x in of.links), *(x.law for x in of.sources)]
-
-    both = zip(laws(file_network), laws(network), strict=True)
-    names = sorted(shares & {name for before, now in both if before != now for name in now.reads})
-    return [f"laws refer to {', '.join(names)} in percent, recorded as 0 to 1: taken so"] if names else []
 
 
 def load_machine_file(path: Path) -> Machine:

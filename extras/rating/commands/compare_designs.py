@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.rating.commands.rate import case_or_machine
+from extras.rating.commands.rate import case_or_machine, is_machine
 from extras.rating.envelope import rated
 from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import coolant_boundaries
@@ -56,7 +56,7 @@ def compared_designs(
     if not 2 <= len(names) <= MOST:
         raise InputError(f"{len(names)} designs are given", "compare-designs", f"two to {MOST} machine files or cases")
     for name in names:  # all are there before the first is built
-        if not Path(name).is_file() and name not in th.library():
+        if not is_machine(name):
             th.find_case(name, th.library())
     with th.progress() as tell:
         designs: list[Design] = []

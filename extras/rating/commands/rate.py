@@ -55,12 +55,17 @@ def read_start(word: str) -> float | None:
     return load
 
 
+def is_machine(name: str) -> bool:
+    """A file, or a machine that comes along where no file or folder is called so; else a case is meant."""
+    return Path(name).is_file() or (not Path(name).exists() and name in th.library())
+
+
 def case_or_machine(
     name: str, tell: th.Progress, check: Callable[[th.Settings], None] = lambda settings: None
 ) -> th.Folder:
     """A case, or a machine on its own as a case without tests; `check` is asked before anything is meshed."""
     path = Path(name)
-    if not (path.is_file() or (not path.exists() and name in th.library())):
+    if not is_machine(name):
         check(th.read_settings(th.find_case(name, th.library()), untested=True))
         return th.open_case(name, tell, untested=True)
     with tempfile.TemporaryDirectory() as folder:

@@ -1,12 +1,11 @@
 """Oil nozzles that are blocked."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Link, Network
 from lumped.model.sites import part_of, standing_links
 from lumped.transfer.laws import Wrapped
 from lumped.transfer.streamed import Streamed
-from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.base import Scene
+from validation.effects.films.fouling import Blockage
 
 SPRAYED = "sprayed_face"  # the correlation of a face under nozzles
 
@@ -32,22 +31,16 @@ def inlet(network: Network, link: Link) -> str:
     return next((x.places[0] for x in streams), oil)
 
 
-@dataclass(frozen=True)
-class NozzleBlockage(Effect):
+class NozzleBlockage(Blockage):
     """A share of the nozzles above a part gives no oil: h = h0 (1 + a), -1 <= a <= 0; the others keep theirs."""
 
     kind = "nozzles"
     title = "oil nozzles are blocked"
     sits = "a part under oil nozzles"
-    unit = "1"
     source = "definition: every nozzle wets a share of the face; -1 is a face that no oil reaches"
     isolating_test = "measure the flow of each nozzle; run with the flow doubled"
     typical = (-0.5, -0.1)
-    sign = -1
-    prior_sd = 0.3
     low = -1.0
-    high = 0.0
-    mapping = "relative"
     confused_with = ("flow", "loss.winding")
 
     @classmethod
@@ -58,11 +51,7 @@ class NozzleBlockage(Effect):
         """What it weakens."""
         return [link for link in sprayed(network) if part_of(network, link.places[0]) == self.place]
 
-    def extend(self, network: Network) -> Network:
-        return with_parameter(network, self.parameter(*(link.name for link in self.films(network))))
 
-
-@dataclass(frozen=True)
 class AllNozzles(NozzleBlockage):
     """The same share of all nozzles that are fed together gives no oil: a clogged filter, a rail without pressure."""
 
