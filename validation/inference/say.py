@@ -439,15 +439,24 @@ def sentence(
     if verdict == "outside":
         place = f" at {posterior.heat[0].place}" if posterior.heat and posterior.best.heat else ""
         return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"
-    return "; ".join(_group_words(posterior, g, rows) for g in choice.groups) + (
-        "; check the measurement first" if verdict == "data" else ""
-    )
+    heat = _unnamed_heat(posterior, rows)
+    each = [_group_words(posterior, g, rows, () if i else heat) for i, g in enumerate(choice.groups)]
+    return "; ".join(each) + ("; check the measurement first" if verdict == "data" else "")
 
 
-def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) -> str:
+def _unnamed_heat(posterior: Posterior, rows: Sequence[Candidate]) -> tuple[str, ...]:
+    """Heat of unknown cause at every place where that is more probable than any cause with a name."""
+    P = probabilities(posterior.hypotheses)
+    least = max((r.probability for r in rows), default=0.0)
+    places = [(float(p), h.heat) for h, p in zip(posterior.hypotheses, P, strict=True) if h.heat and p > least]
+    return tuple(f"heat of unknown cause at {place} ({percent(p)})" for p, place in sorted(places, reverse=True))
+
+
+def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate], heat: Sequence[str] = ()) -> str:
+    """heat : what else it may be, more probable than all of them"""
     e, by_name = posterior.evidence, {r.effect: r for r in rows}
     best = by_name.get(e.names[group[0]])
-    if len(group) == 1 and best:
+    if len(group) == 1 and best and not heat:
         effect = e.effects[group[0]]
         if isinstance(effect, ReadingEffect):
             h = posterior.best if group[0] in posterior.best.members else posterior.single[group[0]]
@@ -458,8 +467,8 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate]) 
         return f"{'fault' if effect.fault else 'missing'}: {effect.statement}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
-    likely = [f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members]
-    likely += [f"{len(group) - len(likely)} less likely ones"] * (len(group) > len(likely))
+    likely = [*heat, *(f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members)]
+    likely += [f"{len(group) - len(members)} less likely ones"] * (len(group) > len(members))
     return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
 
 

@@ -184,3 +184,15 @@ def test_what_held_nearly_all_of_a_test_is_what_held_in_the_test():
     e = SimpleNamespace(effects=(whole, most, half), tests=(SimpleNamespace(name="b", time=np.array([0.0, 6000.0])),))
     assert without_twins(e, Decision("group", ((1, 0),), 1.0), ()) == Decision("named", ((1,),), 1.0)
     assert without_twins(e, Decision("group", ((0, 2),), 1.0), ()).groups == ((0, 2),)
+
+
+def test_heat_of_unknown_cause_that_is_more_probable_than_any_name_stands_first():
+    p, choice = posterior(), Decision("group", ((0, 1),), 0.95)
+    rows = [
+        SimpleNamespace(effect=name, words=name, probability=odds, twin=None) for name, odds in zip(NAMES, (0.2, 0.1))
+    ]
+    heat = Weighed((), "shaft", p.best.log_prior, p.best.log_bayes + 3.0)
+    words = sentence("group", replace(p, hypotheses=(*p.hypotheses, heat)), choice, rows, (), PlainFaults())
+    assert words.startswith("heat of unknown cause at shaft (")
+    assert f"or {NAMES[0]} (20 %) or {NAMES[1]} (10 %); these tests" in words
+    assert sentence("group", p, choice, rows, (), PlainFaults()).startswith(NAMES[0])
