@@ -25,8 +25,10 @@ ROTORS = (
     *("LamHole", "LamHoleNS", "LamSlot", "LamSlotMag", "LamSlotMagNS", "LamSlotM", "LamSlotWind"),
     *("LamSquirrelCage", "LamSquirrelCageMag"),
 )
+STATORS = ("LamSlotWind", "LamSlot")
 HOLE_KEYS = ("hole", "hole_north", "hole_south")
 LARGEST_M = 10.0  # of a coordinate
+USUAL_FILL = 0.4  # of round wire in a slot, by hand or machine: textbooks have 0.35 to 0.45
 MOST_PARTS = 100  # holes of a pole, or surfaces of one
 SLOTS = (*STEPS, *CURVED, "SlotUD")
 # Section of one conductor (m2) by the letters of its class; the first whose letters are all there.
@@ -87,15 +89,13 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     draft.assume("machine", f"{kind}: any cross-section", family="cross-section")
     if document.get("desc"):
         draft.take("machine", "desc", description=one_line(document["desc"]))
-    _stator(draft, pair[0])
+    count, section = _stator(draft, pair[0])
     _rotor(draft, pair[1], pair[0])
     _shaft(draft, document, pair)
     _frame(draft, document, pair[0], family_template)
     assumptions.contacts(draft)
     stator = pair[0]
-    winding = stator.node["winding"]
-    slots, where = draft.value("geometry.stator", "slots"), f"{stator.where}.winding"
-    section, count = _section(winding["conductor"], where), _conductors(winding, slots, where)
+    winding, slots = stator.node["winding"], draft.value("geometry.stator", "slots")
     ring = math.pi * (stator.outer**2 - stator.inner**2)
     iron = 7600.0 * stator.length * ring * 0.7  # kg; slots leave some 0.7 of the ring
     length = slots * count * (stator.length + 2 * 1e-3 * draft.value("geometry.winding", "end_mm"))
@@ -278,22 +278,33 @@ def _section(conductor: Node, where: str) -> float:
     raise InputError(f"{kind} has no section", where, f"one of: {'; '.join(SECTIONS)}")
 
 
-def _fill(draft: Draft, lamination: Lamination, name: str, copies: int, room: float) -> tuple[float, float, float]:
-    """Share of conductor in the winding's room (m2), the conductors of a slot, and the section of each (m2)."""
+def _fill(draft: Draft, lamination: Lamination, name: str, group: str, copies: int, room: float) -> tuple[float, ...]:
+    """Enters the share of conductor in a slot's room (m2) into a group of the geometry.
+
+    Returns: that share, the conductors of a slot, and the section of each (m2).
+    """
     where = f"{lamination.where}.winding"
     winding = _table(lamination.node, "winding", lamination.where)
-    count = _conductors(winding, copies, where)
-    section = _section(_table(winding, "conductor", where), f"{where}.conductor")
+    count, conductor = _conductors(winding, copies, where), _part(winding, "conductor")
     if room < NOTHING:
         raise InputError("its winding has no room", f"{lamination.where}.slot", "sizes that leave an area for it")
+    if conductor.get("__class__") in (None, "Conductor"):
+        draft.assume(f"geometry.{group}", f"{name}.winding.conductor has no sizes: as usual", fill=USUAL_FILL)
+        return USUAL_FILL, count, USUAL_FILL * room / count
+    section = _section(conductor, f"{where}.conductor")
     fill = count * section / room
     if not 0.005 <= fill <= 0.95:
         right = "other conductors than the file's: between 0.5 % and 95 %"
         draft.leave(f"{name}.winding.conductor", f"{100 * fill:.3g} % of its room", right)
-    return min(max(fill, 0.005), 0.95), count, section
+    fill = min(max(fill, 0.005), 0.95)
+    words = f"{name}.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
+    draft.take(f"geometry.{group}", words, fill=float(f"{fill:.9g}"))
+    return fill, count, section
 
 
-def _stator(draft: Draft, stator: Lamination) -> None:
+def _stator(draft: Draft, stator: Lamination) -> tuple[float, float]:
+    """Conductors of a slot, and the section of each (m2)."""
+    _checked_class(stator, STATORS)
     slot, copies, kind = _slot(stator)
     draft.take("geometry.stator", "stator.Rext", outer_diameter_mm=in_mm(2 * stator.outer))
     draft.take("geometry.stator", "stator.Rint", bore_diameter_mm=in_mm(2 * stator.inner))
@@ -303,9 +314,7 @@ def _stator(draft: Draft, stator: Lamination) -> None:
     draft.draw("wires", f"stator.slot, {kind}: what the winding fills", copies, slot.filled)
     _vents(draft, stator, "stator", "vents")
     room = sum(abs(loop_area(loop)) for loop in slot.filled)
-    fill, count, section = _fill(draft, stator, "stator", copies, room)
-    words = f"stator.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
-    draft.take("geometry.winding", words, fill=float(f"{fill:.9g}"))
+    fill, count, section = _fill(draft, stator, "stator", "winding", copies, room)
     winding = stator.node["winding"]
     reach = radii((Outline(copies, slot.filled),))
     pairs = number(winding, "p", f"{stator.where}.winding", 1, 200)
@@ -319,6 +328,13 @@ def _stator(draft: Draft, stator: Lamination) -> None:
         straight = max(in_mm(0.06 * stator.inner), 0.5)
         draft.assume("geometry.winding", "in proportion to the bore", straight_mm=straight)
     _stacking(draft, stator, "stator")
+    return count, section
+
+
+def _checked_class(lamination: Lamination, classes: tuple[str, ...]) -> None:
+    kind = str(lamination.node.get("__class__"))
+    if kind not in classes:
+        raise InputError(f"__class__ = {kind[:40]!r} is not read", lamination.where, f"one of: {', '.join(classes)}")
 
 
 def _stacking(draft: Draft, lamination: Lamination, name: str) -> None:
@@ -355,9 +371,7 @@ VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "Vent
 
 def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     node, top = rotor.node, rotor.outer
-    kind = str(node.get("__class__"))
-    if kind not in ROTORS:
-        raise InputError(f"__class__ = {kind[:40]!r} is not read", rotor.where, f"one of: {', '.join(ROTORS)}")
+    _checked_class(rotor, ROTORS)
     for key in HOLE_KEYS:
         for k, hole in enumerate(_parts(node, key, rotor.where)):
             _hole(draft, rotor, hole, key, k)
@@ -448,9 +462,7 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
 def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
     draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
     room = sum(abs(loop_area(loop)) for loop in slot.filled)
-    fill, count, section = _fill(draft, rotor, "rotor", copies, room)
-    words = f"rotor.winding: {count:g} conductors of {section * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
-    draft.take("geometry.rotor", words, fill=float(f"{fill:.9g}"))
+    _fill(draft, rotor, "rotor", "rotor", copies, room)
     draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=in_mm(0.1 * 2 * rotor.outer))
 
 

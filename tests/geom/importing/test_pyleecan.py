@@ -180,6 +180,22 @@ def test_solids_of_round_slots_are_watertight(tmp_path):
         assert check.solid_volume == pytest.approx(check.volume, rel=0.02)
 
 
+def test_a_wire_without_sizes_fills_its_slot_as_usual(tmp_path):
+    draft = import_draft(saved(tmp_path, pyleecan(stator__winding__conductor={"__class__": "Conductor"})))
+    assert draft.value("geometry.winding", "fill") == 0.4
+    (entry,) = [e for e in draft.entries if e.key == "fill"]
+    assert entry.kind == "assumed"
+    assert "stator.winding.conductor" in entry.source
+
+
+def test_a_small_drone_motor_has_room_in_the_bounds(tmp_path):
+    small = pyleecan(
+        stator__L1=0.006, rotor__L1=0.006, rotor__hole__0__magnet_0__Lmag=0.006, rotor__Rint=0.002, shaft=None
+    )
+    machine = load_machine(saved(tmp_path, small))
+    assert machine.geometry.stator.stack_length == 0.006
+
+
 def test_the_file_written_says_where_each_value_is_from(tmp_path):
     draft = import_draft(saved(tmp_path, pyleecan()), "jacket")
     text = draft.toml()
@@ -231,6 +247,7 @@ FAULTS = {
     "another program": ({"__class__": "Simu1"}, "is no machine"),
     "outer rotor": ({"stator__is_internal": True}, "the stator is inside"),
     "unknown rotor": ({"rotor____class__": "LamSlotMulti"}, "LamSlotMulti' is not read"),
+    "unknown stator": ({"stator____class__": "LamSlotMultiWind"}, "LamSlotMultiWind' is not read"),
     "unknown slot": ({"stator__slot____class__": "os.system"}, "is not known"),
     "no number": ({"stator__slot__H2": "deep"}, "lacks 'H2'"),
     "infinite": ({"stator__Rext": 1e400}, "Infinity is no number"),
