@@ -12,8 +12,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from hidden import sizes, sums, temper
+from hidden import sizes
 from hidden.cases import SHARES, plan
+from hidden.evidence import audit, sums, temper
 from hidden.kinds import KINDS
 from hidden.odds import reliability
 from hidden.page import diagram, markdown
@@ -41,6 +42,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=None, help="folder of answers and labels, to be resumed")
     parser.add_argument("--score", action="store_true", help="only score what OUT has")
     parser.add_argument("--sums", action="store_true", help="only ask sound machines how much doubt in sum they need")
+    parser.add_argument("--audit", action="store_true", help="only hold log evidence against integrals by sampling")
+    parser.add_argument("--samples", type=int, default=200, help="of each of these integrals")
+    parser.add_argument("--nested", action="store_true", help="by nested sampling too: needs dynesty, hours")
     parser.add_argument("--sizes", action="store_true", help="measure the units of size anew and stop")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="the tables of docs/hidden-effects.md, as Markdown")
@@ -55,11 +59,13 @@ def main() -> None:
         file = (a.out or Path("out/hidden-sums")) / "sums.jsonl"
         sums.run(a.seeds, a.skip, a.count, a.kinds, file)
         return print("\n".join(sums.markdown(sums.rows(file))))
+    labels = plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :]
+    if a.audit:
+        return print(audit.run(labels, a.out or Path("out/hidden-audit"), a.samples, a.nested))
     out = a.out or Path(f"out/hidden-{a.cases.resolve().name if a.cases else a.seeds}")
     if not a.score and a.cases:
         run_folders(a.cases, out, a.classes, a.count, a.jobs, a.words)
     elif not a.score:
-        labels = plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :]
         run(labels, out, Wanted(a.plan, a.peers, a.after), a.jobs)
     table = rows(pairs(out))
     for r in table:
