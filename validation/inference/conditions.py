@@ -44,6 +44,7 @@ Values = Mapping[str, float]
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "blockage.all", "input.factor")  # where the catalogue has them
 IN_WHOLE_TESTS = ("ambient.offset", "input.offset", "sensor.loose")
+CLOSE = 40  # samples around the most probable instant that a sensor slipped at: a block of readings is many of them
 LOOSE = 4  # sensors that may have come loose, in the tests that speak for it most, are asked when
 SLIPPED = (0.0, 0.3, 0.6, 0.85)  # of a test, when one may have: from one to the next it shows half its change at least
 TESTS, EACH = 16, 6  # conditions of whole tests, and explanations of an event, that join the others
@@ -258,7 +259,12 @@ def loose_sensors(evidence: Evidence, sensors: Sequence[Effect], values: Values,
         if not at.size:
             continue
         bayes = slip_bayes(evidence, [(e, t, float(x)) for x in at], values)
-        prior = condition_prior(share / len(evidence.tests))
+        k = int(np.argmax(bayes))
+        low, high = np.searchsorted(t.time, at[[max(k - 1, 0), min(k + 1, at.size - 1)]])
+        near = np.setdiff1d(t.time[low : high + 1][:: -(-(high + 1 - low) // CLOSE)], at)
+        order = np.argsort(at := np.append(at, near))
+        bayes = np.append(bayes, slip_bayes(evidence, [(e, t, float(x)) for x in near], values))[order]
+        at, prior = at[order], condition_prior(share / len(evidence.tests))
         density = float(logsumexp(bayes - bayes.max() + np.log(time_around(at) / np.ptp(t.time))))
         effect = slipped(e, t, float(at[np.argmax(bayes)]))
         out.append(Promising(effect, prior + density, float(bayes.max()) + prior + density - NOTHING.log_prior))

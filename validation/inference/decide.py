@@ -293,8 +293,13 @@ def half_posterior(posterior: Posterior, first: int) -> Posterior:
     gained = {members: now - was + nothing for members, (was, now) in bayes.items()}
     share = max(gained[best.members] / best.log_bayes, -1.0) if best.log_bayes > 0.0 else 0.0
     increments = [gained[h.members] if h.members in gained else share * max(h.log_bayes, 0.0) for h in every]
-    now = tuple(replace(h, log_bayes=h.log_bayes + d, loud=h.loud + d) for h, d in zip(every, increments, strict=True))
-    return replace(posterior, evidence=new, hypotheses=now)
+    # under the louder noise nothing has that noise, too, and what it gains by one of its own is no gain over it
+    louder = [d - nothing if h.members in gained else d for h, d in zip(every, increments, strict=True)]
+    now = [
+        replace(h, log_bayes=h.log_bayes + d, loud=h.loud + e)
+        for h, d, e in zip(every, increments, louder, strict=True)
+    ]
+    return replace(posterior, evidence=new, hypotheses=tuple(now))
 
 
 def half_fit(e: Evidence, fit: Fit, error: ModelError | None, first: int) -> Fit:

@@ -46,6 +46,11 @@ MAIN = 0.3  # of what moves a node: such a term is tried last, whatever it follo
 TURNS, STILL = 12, 3e-3  # of capacities and coefficients, and the relative change that ends them
 SPREAD = (0.2, 1.0)  # prior of a number, in powers of e: the folds share most of their tests; a first network's own
 FEWEST_FOLDS, OUTLYING = 3, 3.0  # of two nobody knows which is right; three times the usual misfit counts in full
+ODD, ODD_GAIN = (
+    2.5,
+    0.8,
+)  # times the others' error is that of a test in which something else held; times theirs, without
+ODD_COUNTS = 0.1  # of a test: what counts less teaches nothing
 ROUNDS = 3  # of such weights: a bad test is in the fits by which the good ones are judged
 LEAST_K = 0.01  # an error below it is as good as none: readings are rounded to more
 SLOW = 3.0  # records long is the time constant given to what the readings tie to nothing
@@ -67,9 +72,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     every_test = _TermTable.of(folds, columns, form, places, case.model.network.measures)
     heat = np.mean([loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
     every = range(len(folds))
-    ways = [[(*way, table) for way in _needed_terms(table, folds)] for table in every_test.credible()]
-    few, many = (min(alike, key=lambda way: way[0]) for alike in zip(*ways, strict=True))
-    _, needed, table = many if many[0] < MANY * few[0] else few
+    tables = every_test.credible()
+    needed, table, left_out = _least_terms(tables, folds, tables[-1].credit)
+    while (fewer := _without_odd(table, folds, left_out)) is not None:
+        needed, table, left_out = fewer
     fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
     if not min(table.mean_heat(theta, heat) for theta, _ in fits) > 0.0:
         return first  # nothing heats it: there is no size to give to anything
@@ -89,11 +95,56 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
     alone = [node for node in table.nodes if not _reaches(node, terms, first.boundaries)]
     terms += [FirstTerm((node, first.boundaries[0]), capacities[node][0] / (SLOW * length)) for node in alone]
-    return replace(first, capacities=capacities, terms=terms, learnt=[t.name for t in case.usable])
+    odd = {r.name for fold, counts in zip(folds, table.credit, strict=True) for r in fold if counts < ODD_COUNTS}
+    learnt = [t.name for t in case.usable if t.name not in odd]
+    return replace(first, capacities=capacities, terms=terms, learnt=learnt)
+
+
+def _least_terms(
+    tables: Sequence[_TermTable], folds: Sequence[Sequence[Record]], credit: Array
+) -> tuple[NDArray[np.bool_], _TermTable, Array]:
+    """The terms that predict best, from the table of which they come, and the error of each fold left out (K).
+
+    credit : (n_fold,) how much each counts
+    """
+    ways = [[(*way, table) for way in _needed_terms(table, folds, credit)] for table in tables]
+    few, many = (min(alike, key=lambda way: way[0]) for alike in zip(*ways, strict=True))
+    _, needed, table = many if many[0] < MANY * few[0] else few
+    each = _errors_left_out(table, folds, needed)
+    return needed, replace(table, credit=credit), np.array([np.exp(np.mean(np.log(e))) for e in each])
+
+
+def _without_odd(
+    table: _TermTable, folds: Sequence[Sequence[Record]], left_out: Array
+) -> tuple[NDArray[np.bool_], _TermTable, Array] | None:
+    """The same learnt without the fold that is predicted worst, if something else held there: the others predict each
+    other much better without it, and it far worse than each other. None if not, and where too few others are left.
+
+    left_out : (n_fold,) error (K) of each
+    """
+    used = np.flatnonzero(table.credit > 0.0)
+    if used.size <= FEWEST_FOLDS:
+        return None
+    worst = used[np.argmax(left_out[used])]
+    others, weight = used[used != worst], np.arange(len(folds)) != worst
+    normal = [[w * N for N in fold] for w, fold in zip(weight, table.normal, strict=True)]
+    tried = replace(table, normal=normal, weight=_weights(normal))
+    needed, tried, errors = _least_terms([tried], folds, table.credit * weight)
+    now, before = (np.exp(np.mean(np.log(e[others]))) for e in (errors, left_out))
+    return (needed, tried, errors) if now < ODD_GAIN * before and errors[worst] > ODD * now else None
+
+
+def _errors_left_out(
+    table: _TermTable, folds: Sequence[Sequence[Record]], active: NDArray[np.bool_]
+) -> list[list[float]]:
+    """Of each record of each fold (K), predicted from the others."""
+    every = range(len(folds))
+    models = [table.free(*table.fit([j for j in every if j != i], active)) for i in every]
+    return [[max(rms([error_of(m, r)]), LEAST_K) for r in fold] for m, fold in zip(models, folds, strict=True)]
 
 
 def _needed_terms(
-    table: _TermTable, folds: Sequence[Sequence[Record]]
+    table: _TermTable, folds: Sequence[Sequence[Record]], credit: Array
 ) -> tuple[tuple[float, NDArray[np.bool_]], tuple[float, NDArray[np.bool_]]]:
     """The few terms (n_term,) with which what was left out is predicted best and their error (K), found in two ways.
 
@@ -102,13 +153,14 @@ def _needed_terms(
     all that the increments want. On both, each term that is not missed then goes. The first is simpler. Tests count by
     how many times better each is predicted: one in which something else held, such as half the air, is predicted badly
     by every network and must not choose between them.
+
+    credit : (n_fold,) how much each test counts
     """
     every = range(len(folds))
+    counts = np.concatenate([[c] * len(fold) for c, fold in zip(credit, folds, strict=True)])
 
     def left_out(active: NDArray[np.bool_]) -> float:
-        models = [table.free(*table.fit([j for j in every if j != i], active)) for i in every]
-        each = [rms([error_of(model, r)]) for model, fold in zip(models, folds, strict=True) for r in fold]
-        return float(np.exp(np.mean(np.log(np.maximum(each, LEAST_K)))))
+        return float(np.exp(np.average(np.log(np.concatenate(_errors_left_out(table, folds, active))), weights=counts)))
 
     def grown() -> tuple[float, NDArray[np.bool_]]:
         needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
@@ -178,6 +230,7 @@ class _TermTable:
     weight : (n_node,) of a node's residual (1/K2): one over what its own free fit leaves
     sensors : of every sensor the number of its node;  bodies : (n_body,) where the others stand among all bodies
     shape : numbers of all bodies, of what a link may follow, and of losses
+    credit : (n_fold,) how much each fold counts in what is predicted: 1, or its least weight of any node
     """
 
     nodes: tuple[str, ...]
@@ -189,6 +242,7 @@ class _TermTable:
     bodies: NDArray[np.intp]
     shape: tuple[int, int, int]
     form: Form
+    credit: Array
 
     @staticmethod
     def of(
@@ -227,7 +281,7 @@ class _TermTable:
         where = np.append(np.flatnonzero(columns.steady), len(columns.sensors) + np.arange(len(columns.boundaries)))
         shape = (len(columns.sensors) + len(columns.boundaries), len(links), len(losses))
         owner = tuple(names.index(places[s]) for s in columns.sensors)
-        return _TermTable(names, list(number), rows, normal, weight, owner, where, shape, form)
+        return _TermTable(names, list(number), rows, normal, weight, owner, where, shape, form, np.ones(len(folds)))
 
     def credible(self) -> list[_TermTable]:
         """This one; and one in which readings that the other tests' fit explains far worse than is usual count less,
@@ -240,7 +294,10 @@ class _TermTable:
         normal = [
             [w * N for w, N in zip(ws, fold, strict=True)] for ws, fold in zip(weights.T, self.normal, strict=True)
         ]
-        return [self, replace(self, normal=normal, weight=_weights(normal))]
+        credit = weights.min(axis=0)
+        if credit.sum() < FEWEST_FOLDS - 1:  # what most tests do is the rule
+            credit = self.credit
+        return [self, replace(self, normal=normal, weight=_weights(normal), credit=credit)]
 
     def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
         """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""

@@ -354,3 +354,24 @@ def test_a_record_of_few_rows_is_diagnosed(rows):
 
     case = bench(())
     assert diagnose(replace(case, tests=tuple(map(few, case.tests))), plan=False).verdict == "adequate"
+
+
+def test_when_a_sensor_came_loose_is_told_to_the_sample():
+    """A fit looks at blocks of readings; within one of them the others fit the slip better than its first sample."""
+    sound, slip, step = bench(()), 3310.0, 2.0
+
+    def logged(test):
+        time = np.arange(0.0, 6000.0, step)
+        room = np.interp(time, test.time, test.boundaries["ambient"])
+        read = [np.interp(time, test.time, c.y) for c in test.channels]
+        if test.name == "dusk":
+            read[0] = np.where(time >= slip, room + 0.5 * (read[0] - room), read[0])
+        channels = tuple(replace(c, y=y) for c, y in zip(test.channels, read, strict=True))
+        load = test.inputs["load"][np.searchsorted(test.time, time, "right") - 1]
+        return replace(test, time=time, inputs={"load": load}, boundaries={"ambient": room}, channels=channels)
+
+    case = replace(sound, tests=tuple(map(logged, sound.tests)))
+    ((lead, *_),) = diagnose(case, plan=False).groups
+    begin, _ = event(effect(lead).condition).spans["dusk"][0]
+    assert effect(lead).base.name == "sensor.loose@body"
+    assert begin == pytest.approx(slip, abs=step)

@@ -196,3 +196,12 @@ def test_heat_of_unknown_cause_that_is_more_probable_than_any_name_stands_first(
     assert words.startswith("heat of unknown cause at shaft (")
     assert f"or {NAMES[0]} (20 %) or {NAMES[1]} (10 %); these tests" in words
     assert sentence("group", p, choice, rows, (), PlainFaults()).startswith(NAMES[0])
+
+
+def test_what_nothing_gains_by_a_noise_of_its_own_is_no_gain_under_that_noise():
+    """Half of the readings hold less of that gain; a rival that has only the louder noise does not get the rest."""
+    p = posterior()
+    best = replace(p.best, log_bayes=p.best.log_bayes - 1000.0)
+    rival = replace(p.single[2], log_bayes=-1000.0, loud=-1.0)
+    half = half_posterior(replace(p, hypotheses=(p.hypotheses[0], best, rival)), 0)
+    assert half.hypotheses[-1].loud < 5.0
