@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, WithTemperature
+from lumped.transfer.reversal import Direction
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
 from validation.parameters.model_form import ExponentError, exponent_derivative, shares, tells_exponent, with_model_form
@@ -87,6 +89,15 @@ def test_a_switch_takes_the_exponents_of_its_product_along():
     assert tells_exponent([product], "speed_rpm", {**counts, "on": 1}, level)
     assert tells_exponent([alone], "speed_rpm", counts, level)
     assert tells_exponent([SumOfTwo()], "speed_rpm", counts, level)
+
+
+def test_a_cooler_that_nothing_runs_through_backwards_has_no_exponent():
+    """A closed circuit's heat exchanger is two laws of its flow: that of the other way is nothing."""
+    forwards = Direction(Exchanger(60.0, Flow(28.0, "oil_l_min"), Flow(130.0)), "oil_l_min", 1)
+    level, flow = {"oil_l_min": 8.0}, {"oil_l_min": np.array([4.0, 8.0, 12.0])}
+    assert np.all(np.isfinite(ExponentError(forwards, "oil_l_min", level).factor(flow)))
+    assert ExponentError(forwards, "oil_l_min", level).at_work
+    assert not ExponentError(replace(forwards, way=-1), "oil_l_min", level).at_work
 
 
 class SumOfTwo(Law):
