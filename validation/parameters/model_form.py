@@ -73,7 +73,7 @@ def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
         return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
     if isinstance(law, Power):
         knots: Array = np.array(KNOTS)
-        value = np.maximum(knots, 1.0) ** law.exponent
+        value = np.maximum(knots, 0.0 if law.exponent > 0.0 else 1.0) ** law.exponent  # none where the law has none
     else:
         assert isinstance(law, Table)
         knots, value = np.array(law.difference), np.array(law.value)

@@ -62,6 +62,16 @@ def test_difference_is_right_where_it_settles():
     assert table[80.0] == pytest.approx(80.0**0.25 * np.log(2.0))
 
 
+@pytest.mark.parametrize("exponent", [0.25, 0.5, 1.0])
+def test_no_exponent_turns_a_film_into_a_heat_pump(exponent):
+    """A duct's air has no film but such: below a kelvin they would drive it away from its walls, and no step be small
+    enough."""
+    bend, difference = exponent_derivative(Power(exponent)), np.geomspace(1e-4, 200.0, 200)
+    for moved in (-0.25, 0.25):  # the bounds of a fit: 2.5 deviations
+        film = difference**exponent + moved * np.interp(difference, bend.difference, bend.value)
+        assert np.all(film > 0.0)
+
+
 @pytest.mark.parametrize(("kind", "counts"), [("still", 1), ("switched", 2), ("stepped", 3), ("ramped", 3)])
 def test_an_input_of_two_values_has_no_exponent(case, kind, counts):
     """Nor has the speed of a law that a switch multiplies. A switch passes through what lies between in few samples."""
