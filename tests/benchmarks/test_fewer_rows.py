@@ -66,7 +66,7 @@ def test_a_logger_of_means_gives_the_same_verdict_and_odds(name, every):
 
 def test_heat_that_is_switched_between_two_rows_accuses_no_input():
     """An incubator's heater, seen every 40 s as a mean: unless each step is doubted, it is told to have an offset."""
-    label = plan("dev", 3001, ["nothing", "one", "condition", "fault"], list(KINDS))[-1]
+    label = plan("dev", 3001, ["nothing", "one", "condition", "fault"], ["incubator"])[-1]
     case = case_of(label.case, label.machine, records_of(label), edits_of(label))
     found = diagnose(thinned_case(case, 2, "means"), plan=False)
     assert (label.machine, label.group, found.verdict) == ("incubator", "nothing", "adequate")
