@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 from hidden.cases import edits_of, plan, records_of
-from hidden.kinds import KINDS
 from hidden.user import case_of
 from steadiness import HABITS, changed, markdown, thinned, thinned_case
 from two_bodies import bench, two_bodies
