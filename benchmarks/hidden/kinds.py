@@ -2,11 +2,16 @@
 
 from hidden.truth.archetype import Archetype
 from hidden.truth.machines.brushed_tests import BRUSHED
+from hidden.truth.machines.crane import CRANE
 from hidden.truth.machines.disc import DISC
+from hidden.truth.machines.hairpin import HAIRPIN
 from hidden.truth.machines.incubator import INCUBATOR
 from hidden.truth.machines.jacket_tests import JACKET
 from hidden.truth.machines.mill_tests import MILL
 from hidden.truth.machines.servo import SERVO
 from hidden.truth.machines.tefc_tests import TEFC
+from hidden.truth.machines.transformer import TRANSFORMER
 
-KINDS: dict[str, Archetype] = {k.name: k for k in (TEFC, JACKET, BRUSHED, SERVO, INCUBATOR, MILL, DISC)}
+KINDS: dict[str, Archetype] = {
+    k.name: k for k in (TEFC, JACKET, BRUSHED, SERVO, INCUBATOR, MILL, DISC, CRANE, HAIRPIN, TRANSFORMER)
+}

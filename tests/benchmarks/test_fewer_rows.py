@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 from hidden.cases import edits_of, plan, records_of
-from hidden.kinds import KINDS
 from hidden.user import case_of
 from steadiness import HABITS, changed, markdown, thinned, thinned_case
 from two_bodies import bench, two_bodies
@@ -66,7 +65,7 @@ def test_a_logger_of_means_gives_the_same_verdict_and_odds(name, every):
 
 def test_heat_that_is_switched_between_two_rows_accuses_no_input():
     """An incubator's heater, seen every 40 s as a mean: unless each step is doubted, it is told to have an offset."""
-    label = plan("dev", 3001, ["nothing", "one", "condition", "fault"], list(KINDS))[-1]
+    label = plan("dev", 3001, ["nothing", "one", "condition", "fault"], ["incubator"])[-1]
     case = case_of(label.case, label.machine, records_of(label), edits_of(label))
     found = diagnose(thinned_case(case, 2, "means"), plan=False)
     assert (label.machine, label.group, found.verdict) == ("incubator", "nothing", "adequate")

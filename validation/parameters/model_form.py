@@ -52,6 +52,11 @@ class ExponentError(Wrapped):
     input: str
     reference: Mapping[str, float]
 
+    @property
+    def at_work(self) -> bool:
+        """Is the law anything at the reference? One of a flow that turned round is nothing while it runs forwards."""
+        return bool(np.any(self.base.size({k: np.array([v]) for k, v in self.reference.items()})))
+
     def factor(self, inputs: Inputs) -> Array | float:
         now = np.abs(np.asarray(inputs[self.input], float))
         level = {k: np.full_like(now, v) for k, v in self.reference.items()}
@@ -68,7 +73,7 @@ def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
         return replace(law, value=tuple((films * _turn(np.array(law.difference))).ravel()))
     if isinstance(law, Power):
         knots: Array = np.array(KNOTS)
-        value = np.maximum(knots, 1.0) ** law.exponent
+        value = np.maximum(knots, 0.0 if law.exponent > 0.0 else 1.0) ** law.exponent  # none where the law has none
     else:
         assert isinstance(law, Table)
         knots, value = np.array(law.difference), np.array(law.value)
@@ -158,8 +163,10 @@ def _with_input(
     new = []
 
     def exponent_error(x: Link | Source) -> ExponentError | None:
-        fit = name in x.law.reads and set(x.law.reads) <= set(level)
-        return ExponentError(x.law, name, {k: level[k] for k in x.law.reads}) if fit else None
+        if name not in x.law.reads or not set(x.law.reads) <= set(level):
+            return None
+        law = ExponentError(x.law, name, {k: level[k] for k in x.law.reads})
+        return law if law.at_work else None
 
     for film in films:
         if law := exponent_error(film):

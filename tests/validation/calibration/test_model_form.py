@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, WithTemperature
+from lumped.transfer.reversal import Direction
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
 from validation.parameters.model_form import ExponentError, exponent_derivative, shares, tells_exponent, with_model_form
@@ -60,6 +62,16 @@ def test_difference_is_right_where_it_settles():
     assert table[80.0] == pytest.approx(80.0**0.25 * np.log(2.0))
 
 
+@pytest.mark.parametrize("exponent", [0.25, 0.5, 1.0])
+def test_no_exponent_turns_a_film_into_a_heat_pump(exponent):
+    """A duct's air has no film but such: below a kelvin they would drive it away from its walls, and no step be small
+    enough."""
+    bend, difference = exponent_derivative(Power(exponent)), np.geomspace(1e-4, 200.0, 200)
+    for moved in (-0.25, 0.25):  # the bounds of a fit: 2.5 deviations
+        film = difference**exponent + moved * np.interp(difference, bend.difference, bend.value)
+        assert np.all(film > 0.0)
+
+
 @pytest.mark.parametrize(("kind", "counts"), [("still", 1), ("switched", 2), ("stepped", 3), ("ramped", 3)])
 def test_an_input_of_two_values_has_no_exponent(case, kind, counts):
     """Nor has the speed of a law that a switch multiplies. A switch passes through what lies between in few samples."""
@@ -87,6 +99,15 @@ def test_a_switch_takes_the_exponents_of_its_product_along():
     assert tells_exponent([product], "speed_rpm", {**counts, "on": 1}, level)
     assert tells_exponent([alone], "speed_rpm", counts, level)
     assert tells_exponent([SumOfTwo()], "speed_rpm", counts, level)
+
+
+def test_a_cooler_that_nothing_runs_through_backwards_has_no_exponent():
+    """A closed circuit's heat exchanger is two laws of its flow: that of the other way is nothing."""
+    forwards = Direction(Exchanger(60.0, Flow(28.0, "oil_l_min"), Flow(130.0)), "oil_l_min", 1)
+    level, flow = {"oil_l_min": 8.0}, {"oil_l_min": np.array([4.0, 8.0, 12.0])}
+    assert np.all(np.isfinite(ExponentError(forwards, "oil_l_min", level).factor(flow)))
+    assert ExponentError(forwards, "oil_l_min", level).at_work
+    assert not ExponentError(replace(forwards, way=-1), "oil_l_min", level).at_work
 
 
 class SumOfTwo(Law):
