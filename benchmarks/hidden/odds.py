@@ -86,7 +86,7 @@ def is_right(label: Answer, one: Said) -> bool:
     if label["group"] == "foreign":
         return one.hypothesis.startswith(UNKNOWN) or for_a_while(label, one)
     if label["group"] == "fault":
-        return len(one.effects) == 1 and fault_of(label["truth"][0], one.effects[0])
+        return bool(one.effects) and all(fault_of(label["truth"][0], effect) for effect in one.effects)
     allowed = [{*own, *near} for own, near in zip(label["right"], label["twins"], strict=True)]
     return len(one.effects) == len(allowed) and any(
         all(e in names for e, names in zip(order, allowed, strict=True)) for order in permutations(one.effects)

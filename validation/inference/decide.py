@@ -199,15 +199,16 @@ def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, fl
 
 
 def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decision]) -> Decision:
-    """The decision on all instants, with no more claimed than either half of them would, and nothing where one of them
-    says that nothing is missing."""
+    """The decision on all instants, with no more claimed than either half of them would, and nothing where half of
+    them, on average of both, say that nothing is missing."""
     choice = without_twins(posterior.evidence, decision(posterior), ())
     claimed = [k for g in choice.groups for k in g]
     halves = [
         without_twins(posterior.evidence, decision(half_posterior(posterior, first)), claimed) for first in (0, 1)
     ]
     other = tuple(d for d in halves if differs(choice, d))
-    if silent := tuple(d for d in other if d.verdict == "adequate"):
+    silent = tuple(d for d in other if d.verdict == "adequate")
+    if silent and np.mean([1.0 - d.sure for d in halves]) > SILENT:
         return Decision("adequate", (), choice.sure, silent, withheld=choice)
     if not other or not choice.groups:
         return replace(choice, others=other)

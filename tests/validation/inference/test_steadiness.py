@@ -205,3 +205,17 @@ def test_what_nothing_gains_by_a_noise_of_its_own_is_no_gain_under_that_noise():
     rival = replace(p.single[2], log_bayes=-1000.0, loud=-1.0)
     half = half_posterior(replace(p, hypotheses=(p.hypotheses[0], best, rival)), 0)
     assert half.hypotheses[-1].loud < 5.0
+
+
+def test_one_half_that_is_a_little_less_sure_takes_no_name_from_the_other():
+    """Nothing has a third in one half and next to nothing in the other, and in the whole."""
+    whole = Decision("named", ((0,),), 0.98)
+    halves = iter([whole, Decision("adequate", (), 0.66)])
+
+    def decision(p):
+        return whole if instants(p) == instants(posterior()) else next(halves)
+
+    choice = steady_decision(posterior(), decision)
+    assert choice.groups == ((0,),)
+    assert choice.verdict == "group"
+    assert unsteady_words(posterior(), choice).endswith("every second reading alone says nothing is missing")
