@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.multifrontal import Factor, Symbolic, analyse, factorise
-from fem.solvers.two_processes import in_two_processes
+from fem.solvers.two_processes import in_two_processes, return_memory
 from geom.arrays import Array as Floats
 from geom.errors import InputError
 
@@ -78,6 +78,7 @@ class Solver:
                 dict.fromkeys(self.field.films, 1.0), dict.fromkeys(self.field.contacts, 1.0)
             )
             memory["symbolic"] = analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
+            return_memory()  # half a gigabyte at 150,000 unknowns, which a factor does not take
         analysis: Symbolic = memory["symbolic"]
         return analysis
 
