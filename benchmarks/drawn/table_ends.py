@@ -123,7 +123,7 @@ def asked(table: Tabled, count: int, rng: np.random.Generator) -> np.ndarray:
     out = np.zeros(4, int)
     for _ in range(count):
         T = rng.uniform(-40.0, 130.0 if table.liquid else 150.0)
-        size = table.usual * (rng.uniform(0.0, 4.0) if rng.random() < 0.7 else 10.0 ** rng.uniform(-4.0, 4.0))
+        size = table.usual * (rng.uniform(0.0, 4.0) if rng.random() < 0.7 else 10.0 ** rng.uniform(-4.0, 3.0))
         size = float(np.clip(size, *STILL_K)) if table.still else size
         with within_silence():
             try:
