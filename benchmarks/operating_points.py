@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from drawn.table_ends import CHANNEL, COIL, COOLANTS, MACHINES, MOVING, STANDING, ends, every_table
+from drawn.table_ends import BORE, CHANNEL, COIL, COOLANTS, MACHINES, MOVING, NOZZLES, STANDING, ends, every_table
 
 from geom import Machine, load_machine
 from geom.description.roles import Role
@@ -61,6 +61,8 @@ ALLOWED = 0.02
 CIRCUITS: dict[str, list[dict[str, object]]] = {
     "one channel": [CHANNEL],
     "a coil": [COIL],
+    "a bore": [BORE],
+    "nozzles": [NOZZLES],
     "two branches": [{**CHANNEL, "branch": "a"}, {**COIL, "branch": "b"}],
     "three branches": [{**CHANNEL, "branch": b, "length_m": x} for b, x in (("a", 0.5), ("b", 1.5), ("c", 5.0))],
 }

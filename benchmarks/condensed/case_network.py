@@ -41,7 +41,7 @@ def points(nominal: FixedCoefficients) -> dict[str, FixedCoefficients]:
 def fields(ready: Prepared, asked: dict[str, FixedCoefficients]) -> dict[str, list[Array]]:
     """The field at every point, and after the steps of loss at two of them."""
     out = {name: [point.of_field(ready.field)] for name, point in asked.items()}
-    for name in ("nominal", "contacts x5"):
+    for name in [name for name in ("nominal", "contacts x5") if name in asked]:
         out[f"step of loss, {name}"] = list(asked[name].steps_of_field(ready.field))[EARLY:]
     return out
 
@@ -71,12 +71,18 @@ def errors(
             yield name, kind, worst, off[worst]
 
 
-def rows(machine: str) -> Iterator[dict[str, Any]]:
-    """Of the network that a case runs, and of the small one that its diagnosis runs."""
+def networks_on(machine: str) -> tuple[Prepared, list[Network], FixedCoefficients]:
+    """The mesh of a case, its network and the small one that its diagnosis runs, and the rated point."""
     described = on_all(load_machine_file(Path(machine)))
     ready = meshed(described, Meshing(0.06, 48, ACROSS, 0.06 * AXIAL))
     networks = [on_every_base(x) for x in networks_of(described, reduced(ready, CASE), CASE)]
-    asked = points(rated(described, networks[0], ready.films, ready.contacts))
+    return ready, networks, rated(described, networks[0], ready.films, ready.contacts)
+
+
+def rows(machine: str) -> Iterator[dict[str, Any]]:
+    """Of both networks at every point."""
+    ready, networks, nominal = networks_on(machine)
+    asked = points(nominal)
     exact = fields(ready, asked)
     for network in networks:
         for point, kind, part, percent in errors(ready, network, asked, exact):

@@ -44,11 +44,14 @@ from lumped.transfer.ranges import within_silence
 MACHINES = Path("geom/machines")
 CHANNEL = {"wall": "housing", "width_mm": 20, "height_mm": 6, "length_m": 1.2, "bends": 2}
 COIL = {**CHANNEL, "length_m": 3.0, "coil_diameter_mm": 250}
+BORE = {"wall": "housing", "diameter_mm": 20, "length_m": 0.4}
+NOZZLES = {"wall": "housing", "nozzles": 8, "nozzle_mm": 1.5, "area_m2": 0.05, "run_mm": 60}
 COOLANTS: tuple[dict[str, object], ...] = (
     {"name": "water", "pressure_bar": 3.0},
     {"name": "ethylene glycol", "mass_percent": 50},
     {"name": "propylene glycol", "volume_percent": 40},
     {"name": "oil"},
+    {"name": "ATF"},
 )
 MOVING: dict[str, dict[str, float]] = {
     "plate": {"size_m": 0.5},
@@ -120,7 +123,7 @@ def asked(table: Tabled, count: int, rng: np.random.Generator) -> np.ndarray:
     out = np.zeros(4, int)
     for _ in range(count):
         T = rng.uniform(-40.0, 130.0 if table.liquid else 150.0)
-        size = table.usual * (rng.uniform(0.0, 4.0) if rng.random() < 0.7 else 10.0 ** rng.uniform(-4.0, 4.0))
+        size = table.usual * (rng.uniform(0.0, 4.0) if rng.random() < 0.7 else 10.0 ** rng.uniform(-4.0, 3.0))
         size = float(np.clip(size, *STILL_K)) if table.still else size
         with within_silence():
             try:
@@ -201,8 +204,8 @@ def _declared(surface: str, keys: Mapping[str, object]) -> Table:
 
 
 def of_circuits(coolant: Mapping[str, object]) -> None:
-    """One channel, a coil, and both side by side."""
-    for passes in ([CHANNEL], [COIL], [{**CHANNEL, "branch": "a"}, {**COIL, "branch": "b"}]):
+    """One of each kind, and a channel beside a coil."""
+    for passes in ([CHANNEL], [COIL], [BORE], [NOZZLES], [{**CHANNEL, "branch": "a"}, {**COIL, "branch": "b"}]):
         flow = {"at_degC": 60.0, "flow_l_min": 8.0, "flow_l_min_input": "flow_l_min", "inlet": "inlet"}
         data = {"circuits": {"c": {"coolant": dict(coolant), "passes": passes, **flow}}}
         (one,) = read_circuits(Table(data, "circuit"), ["housing"], ["inlet"]).values()

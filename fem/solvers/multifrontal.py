@@ -5,8 +5,7 @@ Source: Duff and Reid 1983; Liu 1992, "The multifrontal method for sparse matrix
 
 from __future__ import annotations
 
-import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numba
@@ -20,40 +19,23 @@ from geom.arrays import Ints
 from geom.errors import InputError
 
 
-@dataclass
-class Spare:
-    """Memory of a factor that nobody has any more, for the next one: pages that the system clears anew cost as much
-    time as the numbers that go there.  reuse : whether to keep it between factors
-    """
-
-    reuse: bool = False
-    room: Floats | None = None
-
-    def of(self, size: int) -> Floats:
-        """(size,) numbers of any value."""
-        if self.room is not None and sys.getrefcount(self.room) == 2:  # the attribute and the call: no views
-            return self.room
-        room = np.empty(size)
-        self.room = room if self.reuse else None
-        return room
-
-    def let_go(self) -> None:
-        self.reuse, self.room = False, None
-
-
 @dataclass(frozen=True)
 class Symbolic:
     """The pattern of the factor: tree, and the later unknowns (as eliminated) that each node's front reaches."""
 
     tree: Tree
     reach: tuple[Ints, ...]
-    spare: Spare = field(default_factory=Spare, repr=False, compare=False)
 
     @property
     def size(self) -> int:
         """Numbers stored in the factor."""
         widths = np.diff(self.tree.start)
         return int(sum(o * (o + len(r)) for o, r in zip(widths, self.reach, strict=True)))
+
+    @property
+    def room(self) -> int:
+        """Numbers that factorising takes: the factor, and the updates that stand at once."""
+        return self.size + int(self.fronts[1].sum())
 
     @cached_property
     def fronts(self) -> tuple[Ints, Ints]:
@@ -112,14 +94,17 @@ def analyse(A: sp.csr_array, xyz: Floats) -> Symbolic:
     return Symbolic(tree, tuple(reach))
 
 
-def factorise(A: sp.csr_array, symbolic: Symbolic) -> Factor:
-    """Cholesky factor of a symmetric positive definite A (n, n) whose pattern lies within `symbolic`."""
+def factorise(A: sp.csr_array, symbolic: Symbolic, room: Floats | None = None) -> Factor:
+    """Cholesky factor of a symmetric positive definite A (n, n) whose pattern lies within `symbolic`.
+
+    room (symbolic.room,) : where the factor goes; a factor that was there before is no more
+    """
     tree = symbolic.tree
     indptr, indices, data = _upper(A.indptr, A.indices, A.data, tree.order)
     local = np.full(A.shape[0], -1, np.int64)
     begin, heights = symbolic.fronts
     # One array: freed in pieces, it would leave holes that stay.
-    room, filled = symbolic.spare.of(symbolic.size + int(heights.sum())), int(heights.sum())
+    room, filled = np.empty(symbolic.room) if room is None else room, int(heights.sum())
     pivots: list[Floats] = []
     below: list[Floats] = []
     updates: list[Floats] = []

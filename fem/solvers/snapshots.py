@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem.matrices.assembly import Block, FieldModel, Trace
 from fem.solvers.local import local_solutions, of_unit_energy, unit_energy_scale
-from fem.solvers.solve import Solve, Solver
+from fem.solvers.solve import Factorise, Solve, Solver
 from fem.solvers.two_processes import in_two_processes
 from geom.arrays import Array as Floats
 
@@ -112,13 +112,14 @@ def snapshots(
         larger = {name: factor * g for name, g in contacts.items()}
         points += [(films, larger, shift, loads) for shift in (0.0, *recipe.shifts)]
 
-    def solved(point: tuple[Mapping[str, float], Mapping[str, float], float, Floats]) -> Floats:
+    def solved(factor: Factorise, point: tuple[Mapping[str, float], Mapping[str, float], float, Floats]) -> Floats:
         h, g, shift, heat = point
-        return of_unit_energy(solver.factor(field.stiffness(h, g), shift)(heat), nominal)
+        return of_unit_energy(factor(field.stiffness(h, g), shift)(heat), nominal)
 
     # Another solver may have threads of its own, which a fork would leave behind.
-    out = solver.each(solved, points) if isinstance(solver, Solver) else [solved(point) for point in points]
-    return np.column_stack(out)
+    if isinstance(solver, Solver):
+        return np.column_stack(solver.each(solved, points))
+    return np.column_stack([solved(solver.factor, point) for point in points])
 
 
 def random_coefficients(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:

@@ -11,11 +11,12 @@ import scipy.sparse as sp
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.multifrontal import Factor, Symbolic, analyse, factorise
-from fem.solvers.two_processes import in_two_processes
+from fem.solvers.two_processes import in_two_processes, return_memory
 from geom.arrays import Array as Floats
 from geom.errors import InputError
 
 Inverse = Callable[[Floats], Floats]
+Factorise = Callable[..., Inverse]  # of K and a shift, as Solve.factor
 A = TypeVar("A")
 B = TypeVar("B")
 
@@ -77,18 +78,28 @@ class Solver:
                 dict.fromkeys(self.field.films, 1.0), dict.fromkeys(self.field.contacts, 1.0)
             )
             memory["symbolic"] = analyse(sp.csr_array(pattern + self.field.M), self.field.xyz)
+            return_memory()  # half a gigabyte at 150,000 unknowns, which a factor does not take
         analysis: Symbolic = memory["symbolic"]
         return analysis
 
-    def factor(self, K: sp.csr_array, shift: float = 0.0) -> Factor:
-        """Cholesky factor of K + shift M, shift in 1/s."""
-        return factorise(sp.csr_array(K + shift * self.field.M) if shift else K, self.symbolic)
+    def factor(self, K: sp.csr_array, shift: float = 0.0, room: Floats | None = None) -> Factor:
+        """Cholesky factor of K + shift M, shift in 1/s;  room : as for factorise."""
+        return factorise(sp.csr_array(K + shift * self.field.M) if shift else K, self.symbolic, room)
 
-    def each(self, work: Callable[[A], B], items: Sequence[A]) -> list[B]:
-        """work(item) of every item, each with a factor of its own, in two processes where there is room."""
-        spare = self.symbolic.spare
-        spare.reuse = True
-        return in_two_processes(work, items, len(self.symbolic.tree.order), spare.let_go)
+    def each(self, work: Callable[[Factorise, A], B], items: Sequence[A]) -> list[B]:
+        """work(factor, item) of every item, in two processes where there is room.
+
+        factor : as above, into the memory of the one before: pages that the system clears cost as much time as the
+            numbers that go there
+        """
+        size, rooms = self.symbolic.room, list[Floats]()  # analysed before there are two processes
+
+        def factor(K: sp.csr_array, shift: float = 0.0) -> Factor:
+            if not rooms:
+                rooms.append(np.empty(size))
+            return self.factor(K, shift, rooms[0])
+
+        return in_two_processes(lambda item: work(factor, item), items, self.field.n, rooms.clear)
 
 
 @dataclass(frozen=True)

@@ -129,9 +129,10 @@ def smallest_network(
     if good:
         enrichment, condensed = None, good[0].network
     else:
-        reduction, full = reduction.enriched(full[points_each:]), full[:points_each]  # what was learned is let go
+        reduction.learn(full[points_each:])
+        del full[points_each:]  # what was learned is let go
         enrichment = enrich(reduction, cases, limit, rounds, answers[points_each:], full, tell=progress)
-        reduction, condensed = enrichment.reduction, enrichment.network
+        condensed = enrichment.network
     few = motor_network(machine, table[SIZES.index(SMALL)].network)
     built = Built(machine, ready.mesh, motor_network(machine, condensed), ready.meshing, few)
     return NetworkSize(built, reduction, limit, table, enrichment)

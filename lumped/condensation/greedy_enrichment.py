@@ -53,9 +53,8 @@ class Round:
 
 @dataclass(frozen=True)
 class Enrichment:
-    """reduction : with the points it learned from;  weights : favour of each part;  rounds : of checks, in order"""
+    """weights : favour of each part;  rounds : of checks, in order"""
 
-    reduction: Reduction
     network: Network
     weights: Mapping[str, float]
     rounds: tuple[Round, ...] = field(default=())
@@ -112,7 +111,7 @@ def enrich(
 ) -> Enrichment:
     """A network that meets the wish at random points it has not seen, or the one the last of `rounds` looked at.
 
-    reduction : of reduction.py;  learned : points that are among its snapshots;  guides : random ones, solved too
+    reduction : learns what is missed;  learned : points that are among its snapshots;  guides : random ones, solved too
     fresh : random points per round, the first one soon after a step of loss, too; those that were missed guide the
         next, and are learned after it with an extreme one
     """
@@ -132,9 +131,10 @@ def enrich(
         if history[-1].met or k == rounds - 1:
             break
         fuller = [*guides, *reduction.solved([reduction.extreme_point(first + k)])]
-        met, guides, reduction = [*met, *checks(fuller, cases)], new, reduction.enriched(fuller)
+        met, guides = [*met, *checks(fuller, cases)], new
+        reduction.learn(fuller)
         del fuller  # what was learned is let go before the next points are solved
-    return Enrichment(reduction, network, dict(weights), tuple(history))
+    return Enrichment(network, dict(weights), tuple(history))
 
 
 def excess(errors: Errors, accuracy: Accuracy) -> float:
@@ -161,4 +161,4 @@ def allotted_shapes(
 
 def errors_at(points: Sequence[Check], reduction: Reduction, network: Network, cases: LoadCases) -> list[Errors]:
     """Of the network at every point, in two processes where there is room."""
-    return reduction.solver.each(lambda p: point_errors(network, p.films, p.contacts, p.T, cases, p.shift), points)
+    return reduction.solver.each(lambda _, p: point_errors(network, p.films, p.contacts, p.T, cases, p.shift), points)

@@ -7,11 +7,12 @@ one of them may change afterwards at no cost. This is the only file of the room 
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -31,7 +32,7 @@ from fem.solvers.snapshots import (
     random_coefficients,
     snapshots,
 )
-from fem.solvers.solve import Solve, Solver, film_columns
+from fem.solvers.solve import Factorise, Solve, Solver, film_columns
 from lumped.condensation.basis_cache import BasisCache, Centre
 from lumped.condensation.condensed import network_in
 from lumped.condensation.zone import Zone
@@ -63,14 +64,14 @@ class FullPoint:
     shift: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Reduction:
     """A field with what its parts can look like around a nominal point: networks of any size come from it.
 
     films, contacts : nominal coefficients (W/m2/K), by face and by contact
     zones : losses that may vary alone, one uniform loss per part among them
     fluids : fluid node -> heat capacity (J/K);  boundaries : fluids whose temperature is given
-    principal : part -> its principal fields
+    principal : part -> its principal fields, of more snapshots after `learn`
     """
 
     field: FieldModel
@@ -82,6 +83,7 @@ class Reduction:
     name: str
     recipe: Recipe
     principal: Mapping[str, Principal]
+    _last: tuple[Mapping[str, Basis], Network] | None = dataclasses.field(default=None, init=False, repr=False)
 
     @cached_property
     def loads(self) -> dict[str, Array]:
@@ -90,11 +92,6 @@ class Reduction:
     @cached_property
     def energy(self) -> dict[str, sp.csr_array]:
         return energies(self.field, self.films, self.contacts)
-
-    @cached_property
-    def _last(self) -> dict[str, Any]:
-        """The last network that was cut out of it, and its shapes: in the next most parts have as many, or all."""
-        return {"network": None, "shapes": {}}
 
     @cached_property
     def solver(self) -> Solver:
@@ -111,28 +108,27 @@ class Reduction:
         """Conduction and contacts as links, faces, parts and zones as places; no films yet. Costs no solve."""
         fine = self.recipe.tolerance if tolerance is None else tolerance
         recipe = replace(self.recipe, tolerance=fine, max_states=max_states)
-        last: Mapping[str, Basis] = self._last["shapes"]
+        last, network = self._last or ({}, None)  # in the next most parts have as many shapes, or all
         shapes = bases(self.field, self.principal, self.energy, recipe, weights, last)
-        if not last or any(shapes[part] is not last[part] for part in shapes):
+        if network is None or any(shapes[part] is not last[part] for part in shapes):
             whole = frozenset(key for key, zone in self.zones.items() if key == zone.part and zone.density is None)
             network = network_in(
                 self.field, shapes, self.contacts, self.loads, whole, self.fluids, self.boundaries, self.name
             )
-            self._last.update(network=network, shapes=shapes)
-        last_network: Network = self._last["network"]
-        return last_network
+            self._last = shapes, network
+        return network
 
     def solved(self, points: Sequence[Point]) -> list[FullPoint]:
         """The whole field at other coefficients."""
         loads = sp.csc_array(np.column_stack([*self.loads.values()]))
 
-        def full(point: Point) -> FullPoint:
+        def full(factor: Factorise, point: Point) -> FullPoint:
             name, films, contacts, shift = point
-            factor = self.solver.factor(self.field.stiffness(films, contacts), shift)
+            inverse = factor(self.field.stiffness(films, contacts), shift)
             heat = sp.hstack([loads, film_columns(self.field, films, self.washing)[0]], format="csc")
             X = np.empty(heat.shape, np.float32)  # a ten-millionth: errors are a thousandth
             for k in range(0, heat.shape[1], FEW):
-                X[:, k : k + FEW] = factor(heat[:, k : k + FEW].toarray())
+                X[:, k : k + FEW] = inverse(heat[:, k : k + FEW].toarray())
             return FullPoint(name, films, contacts, X, shift)
 
         return self.solver.each(full, points)
@@ -165,13 +161,10 @@ class Reduction:
         contacts = {name: g * rng.choice([1.0, 5.0, 0.2]) for name, g in self.contacts.items()}
         return Point(f"extreme {seed}", films, contacts)
 
-    def enriched(self, points: Sequence[FullPoint]) -> Reduction:
-        """The same with the solutions of these points among its snapshots."""
-        S = [p.X for p in points]
-        principal = enriched(self.field, self.principal, S, self.films, self.contacts, self.energy)
-        richer, same = replace(self, principal=principal), ("loads", "energy", "solver")  # none of the shapes' own
-        vars(richer).update({name: vars(self)[name] for name in same if name in vars(self)})
-        return richer
+    def learn(self, points: Sequence[FullPoint]) -> None:
+        """Put the solutions of these points among the snapshots: networks that are cut out from now on know them."""
+        self._last, S = None, [p.X for p in points]
+        self.principal = enriched(self.field, self.principal, S, self.films, self.contacts, self.energy)
 
 
 def reduce(

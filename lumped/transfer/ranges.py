@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -45,12 +45,19 @@ def within_silence() -> Iterator[None]:
         _thread.silent = before
 
 
+def _between(degC: Array | float, at: Sequence[float], limits: Sequence[float]) -> Array:
+    """Limits between temperatures: they go as viscosities do; straight where one of them is 0."""
+    if min(limits) > 0.0:
+        return np.asarray(np.exp(np.interp(degC, at, np.log(limits))))
+    return np.asarray(np.interp(degC, at, limits))
+
+
 @dataclass(frozen=True)
 class Domain:
     """Where a correlation is in the range of its source.
 
     degC : rising temperatures of its fluid, from the first to the last that it is for; none: it holds nowhere
-    low, high : at each of them, the least and the largest of what it follows; straight in between
+    low, high : at each of them, the least and the largest of what it follows
     what : the correlation; of one that holds nowhere its own words
     """
 
@@ -61,8 +68,7 @@ class Domain:
 
     def ends(self, degC: Array | float) -> tuple[Array, Array]:
         """The least and the largest at temperatures of the fluid."""
-        low, high = (np.asarray(np.interp(degC, self.degC, x)) for x in (self.low, self.high))
-        return low, high
+        return _between(degC, self.degC, self.low), _between(degC, self.degC, self.high)
 
     def beside(self, degC: float, fluid: str) -> str:
         """How a temperature of the fluid lies outside, with value and range; else nothing."""

@@ -159,8 +159,11 @@ def test_builds_end_as_the_page_says():
     assert len(builds) >= 8
     limit = LARGEST_SHARE * ACCURACY
     assert f"Where the mesh leaves more than {limit:g} %, the exit code is 1." in " ".join(CONDENSATION.split())
-    for machine, unknowns, leaves, *_, code in builds:
+    assert "Three minutes and 4 GB (10^9 bytes) are the most" in CONDENSATION
+    for machine, unknowns, leaves, *_, seconds, memory, code in builds:
         assert int(unknowns.replace(",", "")) <= MOST_UNKNOWNS, machine
+        assert float(seconds) <= 180.0, machine
+        assert float(memory) <= 4.0, machine
         assert (code == "0") == (float(leaves) <= limit), machine
 
 
@@ -192,6 +195,17 @@ def test_a_cases_network_is_within_what_is_wanted():
     for point, machines in found.items():
         assert max(heated for heated, _ in machines) <= 2.0, point
         assert max(other for _, other in machines) <= 5.0, point
+
+
+def test_where_a_cases_network_misses_the_page_says_so():
+    """At one film or contact alone, and where all are drawn at once: 2 % and 5 % again."""
+    missed = {
+        (machine, changed, part)
+        for machine, _, changed, _, heated, other, part, _ in table_of("one-by-one")
+        if float(heated) > 2.0 or float(other) > 5.0
+    }
+    said = re.findall(r"`(\S+)` misses the 5 % at its `(\S+)` \(([^)]+)\)", " ".join(CONDENSATION.split()))
+    assert missed == {(machine, changed, part) for machine, part, changed in said}
 
 
 def test_the_small_network_is_compared_at_the_same_points():

@@ -221,27 +221,22 @@ def test_multifrontal_solves_what_was_asked():
     assert factorise(K, analyse(K, field.xyz))(K @ x) == pytest.approx(x, abs=1e-9)
 
 
-def test_a_factor_takes_the_memory_of_one_that_nobody_has():
+def test_factors_one_after_the_other_share_their_memory():
     field = rings()
     solver, load = Solver(field), field.load("core")
     soft, stiff = (field.stiffness(dict.fromkeys(field.films, h), {"core|yoke": 100.0}) for h in (5.0, 50.0))
     alone = [solver.factor(K)(load) for K in (soft, stiff)]
-    assert solver.symbolic.spare.room is None
-    solver.symbolic.spare.reuse = True
-    first = solver.factor(soft)
-    beside = solver.factor(stiff)
+    places = []
+
+    def solved(factor, K):
+        inverse = factor(K)
+        places.append(inverse.pivots[-1].ctypes.data)
+        return inverse(load)
+
+    assert np.array_equal(solver.each(solved, [soft, stiff]), alone)
+    assert places[0] == places[1]
+    first, beside = solver.factor(soft), solver.factor(stiff)
     assert not np.shares_memory(first.pivots[-1], beside.pivots[-1])
-    for factor, x in zip((first, beside), alone, strict=True):
-        assert np.array_equal(factor(load), x)
-    first, beside = solver.factor(stiff), None
-    room = solver.symbolic.spare.room
-    assert room is not None
-    del first, room, factor
-    before = solver.symbolic.spare.room.ctypes.data
-    assert np.array_equal(solver.factor(soft)(load), alone[0])
-    assert solver.symbolic.spare.room.ctypes.data == before
-    assert np.array_equal(solver.each(lambda K: solver.factor(K)(load), [soft, stiff]), alone)
-    assert solver.symbolic.spare.room is None
 
 
 def test_solvers_of_one_field_analyse_it_once(monkeypatch):

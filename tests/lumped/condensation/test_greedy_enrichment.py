@@ -76,21 +76,23 @@ def test_error_falls_with_the_number_of_states(field):
 def test_guard_learns_until_unseen_points_are_met(field):
     """A basis of nominal solutions alone fails at random coefficients; with what the guard saw it holds at new ones."""
     found, wish = reduction(field, tolerance=0.3), Accuracy(0.2, 1.0, 1.0)
+    of_nominal = found.network()
     learned = enrich(found, cases(found), wish, rounds=4)
     assert not learned.rounds[0].met
     assert learned.met
     (unseen,) = checks(found.solved([found.random_point(99)]), cases(found))
     own = point_errors(learned.network, unseen.films, unseen.contacts, unseen.T, cases(found))
-    before = point_errors(found.network(), unseen.films, unseen.contacts, unseen.T, cases(found))
+    before = point_errors(of_nominal, unseen.films, unseen.contacts, unseen.T, cases(found))
     assert excess(own, wish) < 0.2 * excess(before, wish)
 
 
 def test_guard_looks_at_a_step_of_loss(field):
     """Shapes of steady solutions hold at steady points they have not seen, and fail 30 s after a step."""
     found, wish = reduction(field, random_points=4), Accuracy()
+    network = found.network()
     learned = enrich(found, cases(found), wish, rounds=4)
     steady = checks(found.solved([found.random_point(k) for k in range(3)]), cases(found))
-    of_steady = [point_errors(found.network(), p.films, p.contacts, p.T, cases(found)) for p in steady]
+    of_steady = [point_errors(network, p.films, p.contacts, p.T, cases(found)) for p in steady]
     assert max(excess(e, wish) for e in of_steady) < 1.0
     assert [r.met for r in learned.rounds] == [False, True]
 

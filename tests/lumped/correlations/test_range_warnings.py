@@ -6,7 +6,7 @@ import warnings
 import pytest
 
 from lumped.correlations import RangeWarning
-from lumped.transfer.ranges import out_of_range, within_silence
+from lumped.transfer.ranges import Domain, out_of_range, within_silence
 
 
 def test_silence_ends_with_its_block():
@@ -42,3 +42,10 @@ def test_one_silent_thread_silences_no_other():
     finally:
         done.set()
         other.join()
+
+
+def test_limits_go_between_temperatures_as_viscosities_do():
+    """A thousandth and one, 20 K apart: their geometric mean half way; from nothing there is a straight line."""
+    domain = Domain("a film", (-20.0, 0.0), (1e-3, 1.0), (4.0, 9.0))
+    assert domain.ends(-10.0) == (pytest.approx(1e-3**0.5), pytest.approx(6.0))
+    assert Domain("a film", (0.0, 20.0), (0.0, 1.0), (4.0, 9.0)).ends(10.0)[0] == pytest.approx(0.5)
