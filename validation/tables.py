@@ -257,6 +257,7 @@ def parameters_table(title: str, parameters: Iterable[Document]) -> Table:
         low=lambda p: p["ci95"][0],
         high=lambda p: p["ci95"][1],
         profile=_profile_words,
+        unit=unit_of,
         expected_from=lambda p: p["prior"] and p["prior"][1],
         expected_to=lambda p: p["prior"] and p["prior"][2],
         note=_parameter_note,
