@@ -183,6 +183,7 @@ def limits_table(cannot_see: Iterable[Document]) -> Table:
         cannot_see,
         "effect | *detectable=smallest | *unit",
         smallest=lambda h: h["smallest_detectable"] or "none that physics allows",
+        unit=unit_of,
     )
 
 
