@@ -32,8 +32,8 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
     figure, ax = _bars(names, [c["score"] for c in best], [DECISION[c["decision"]] for c in best], height=0.5)
     for y, c in enumerate(best):
         ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
-        note = amplitude(c) if c["decision"] != "no" else ""
-        ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}\u00a0\u00a0", va="center", fontsize=8.5)  # letters of a page may be wider
+        note = amplitude(c) + 2 * "\u00a0" if c["decision"] != "no" else ""  # letters of a page may be wider
+        ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}", va="center", fontsize=8.5)
     for label, c in zip(ax.get_yticklabels(), best, strict=True):
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")
     ax.margins(x=0.2, y=0.02)

@@ -64,9 +64,8 @@ def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figur
         width = 1.6 if c.colour != VERDICT["within"] else 1.1
         ax.plot(t[thin], c.y[thin], color=c.colour, lw=width if k < MOST else 0.6, alpha=1.0 if k < MOST else 0.35)
         alone(ax, t, c.y, c.colour)
-    named = curves[:MOST]
-    ends = [float(c.y[np.isfinite(c.y)][-1]) for c in named]
-    end_labels(ax, ends, [c.name for c in named], [c.colour for c in named])
+    ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves[:MOST]]
+    end_labels(ax, ends, [c.name for c in curves[:MOST]], [c.colour for c in curves[:MOST]])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
     pale = f" (the {MOST} worst; pale: {len(curves) - MOST} more)" if len(curves) > MOST else ""
