@@ -38,5 +38,5 @@ finally:
     motor.terminate()
     motor.wait()
 document = json.loads(run.stdout)
-error = float(document["stop"] != f"{HIDDEN} is missing")
+error = float(not document["decided"] or document["odds"][0]["cause"] != HIDDEN)
 print(f"after {document['minutes']:.0f} min: {document['stop']}; odds over time in {out / 'live-odds.png'}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import signal
@@ -149,7 +150,13 @@ def main() -> None:
         with limited_lines(None if "--all" in sys.argv else LINES), explained(), ranges_as_notes():
             if "--help" not in arguments:
                 required(package for word in arguments[:2] for package in NEEDS.get(word, ()))
-            code = narrowed_app(arguments)(arguments, prog_name="thermoscope", standalone_mode=False)
+            gc.disable()  # of what is being loaded nothing is garbage: looking for it takes a sixth of a short command
+            try:
+                app = narrowed_app(arguments)
+            finally:
+                gc.freeze()
+                gc.enable()
+            code = app(arguments, prog_name="thermoscope", standalone_mode=False)
     except typer.Abort:
         raise SystemExit(1) from None
     except KeyboardInterrupt:  # while the command's modules are loaded

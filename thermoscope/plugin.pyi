@@ -257,7 +257,7 @@ from viz.colours import (
     VERMILION as VERMILION,
     heat as heat_colours,
 )
-from viz.data import Comparison as Comparison, Sensor as Sensor, short as short
+from viz.data import Comparison as Comparison, Sensor as Sensor, short as short, stem_and_unit as stem_and_unit
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
 from viz.live.curves import confusion as confusion, sensor as sensor

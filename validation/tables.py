@@ -183,6 +183,7 @@ def limits_table(cannot_see: Iterable[Document]) -> Table:
         cannot_see,
         "effect | *detectable=smallest | *unit",
         smallest=lambda h: h["smallest_detectable"] or "none that physics allows",
+        unit=unit_of,
     )
 
 
@@ -257,6 +258,7 @@ def parameters_table(title: str, parameters: Iterable[Document]) -> Table:
         low=lambda p: p["ci95"][0],
         high=lambda p: p["ci95"][1],
         profile=_profile_words,
+        unit=unit_of,
         expected_from=lambda p: p["prior"] and p["prior"][1],
         expected_to=lambda p: p["prior"] and p["prior"][2],
         note=_parameter_note,

@@ -9,7 +9,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from validation.parameters.unknowns import value_words
 from viz.colours import LIGHT, Theme
+from viz.data import input_title
 from viz.live.style import as_text, figure
 
 if TYPE_CHECKING:
@@ -55,7 +57,7 @@ class BenchRun:
         each = [dict(e["odds"]) for e in looks]
         peak = {n: max(x.get(n, 0.0) for x in each) for n in dict.fromkeys(n for x in each for n in x)}
         names = sorted(peak, key=lambda n: -peak[n])[:CAUSES]
-        return [(n, time, [100.0 * x.get(n, 0.0) for x in each]) for n in names]
+        return [(value_words(n), time, [100.0 * x.get(n, 0.0) for x in each]) for n in names]
 
     @property
     def set_points(self) -> list[Line]:
@@ -66,7 +68,9 @@ class BenchRun:
         for name in sets[0]["set_point"] if sets else ():
             level = [float(e["set_point"][name]) for e in sets]
             most = max(map(abs, level)) or 1.0
-            out.append((f"{name}, 100 % = {most:g}", time, [100.0 * v / most for v in (*level, level[-1])]))
+            out.append(
+                (f"{input_title(name)}, 100 % = {most:g}", time, [100.0 * v / most for v in (*level, level[-1])])
+            )
         return out
 
     @property

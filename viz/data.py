@@ -144,11 +144,17 @@ UNITS = {"rpm": "1/min", "mps": "m/s", "m3h": "m³/h", "l_min": "l/min", "Nm": "
 UNITS |= {unit: unit for unit in ("A", "W", "V", "Hz")}  # what an input's name may end in
 
 
-def input_title(name: str) -> str:
-    """An input's name with its unit as an axis has it: 'vehicle_speed_mps' -> 'vehicle speed (m/s)'."""
+def stem_and_unit(name: str) -> tuple[str, str]:
+    """An input's name in two: 'vehicle_speed_mps' -> 'vehicle speed', 'm/s'; without a unit that is known, ""."""
     stems = {unit: name.removesuffix(f"_{end}") for end, unit in UNITS.items()}
     unit, stem = min(stems.items(), key=lambda x: len(x[1]))
-    return stem.replace("_", " ") + f" ({unit})" * (stem != name)
+    return stem.replace("_", " "), unit * (stem != name)
+
+
+def input_title(name: str) -> str:
+    """An input's name with its unit as an axis has it: 'vehicle_speed_mps' -> 'vehicle speed (m/s)'."""
+    stem, unit = stem_and_unit(name)
+    return f"{stem} ({unit})" if unit else stem
 
 
 def late_mean(residual: Array) -> float | None:

@@ -10,8 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Dash = str | tuple[float, tuple[float, ...]]  # a line's dashes, as matplotlib takes them
-
 
 def signed(value: float, digits: int = 1) -> str:
     """A number with its sign, which is the one of mathematics; what rounds to zero is +0."""
@@ -35,15 +33,9 @@ def spread_labels(values: Sequence[float], low: float, high: float, gap: float) 
 
 
 def end_labels(
-    ax: Axes,
-    ends: Sequence[float],
-    names: Sequence[str],
-    colours: Sequence[str],
-    size: float = 8.5,
-    dashes: Sequence[Dash] = (),
+    ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5
 ) -> None:
-    """Names at the right edge of the axes, each tied to the end of its line; before a name a piece of its dashes."""
-    piece = 0.055 if dashes else 0.012
+    """Names at the right edge of the axes, each tied to the end of its line."""
     low, high = ax.get_ylim()
     order = np.argsort(ends)
     heights = spread_labels([float(ends[i]) for i in order], low, high, 0.055 * (high - low))
@@ -51,19 +43,9 @@ def end_labels(
     across = ax.get_yaxis_transform()
     for i, y in zip(order, heights, strict=True):
         ax.plot([1.0, 1.012], [ends[i], y], transform=across, color=colours[i], lw=0.7, clip_on=False)
-        if dashes:
-            ax.plot(
-                [0.012 + 1.0, 1.0 + piece],
-                [y, y],
-                transform=across,
-                color=colours[i],
-                lw=1.0,
-                ls=dashes[i],
-                clip_on=False,
-            )
         ax.annotate(
             names[i],
-            (1.0 + piece - 0.012, y),
+            (1.0, y),
             xycoords=("axes fraction", "data"),
             xytext=(9, 0),
             textcoords="offset points",

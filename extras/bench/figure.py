@@ -94,14 +94,14 @@ def odds_over_time(run: th.BenchRun, *, png: str | Path | None = None) -> Figure
     figure, (upper, lower) = th.paper.subplots(7.2, 4.6, rows=2)
     for name, minutes, percent in run.odds:
         upper.plot(minutes, percent, label=name)
-    for name, minutes, percent in run.set_points:
-        lower.step(minutes, percent, where="post", label=name)
+    for (name, minutes, percent), dash in zip(run.set_points, ("-", "--", ":") * len(run.set_points), strict=False):
+        lower.step(minutes, percent, where="post", label=name, ls=dash)  # one may hide another
     upper.axhline(90.0, color=th.LIGHT.faint, lw=1.0, ls="--")
     upper.set(ylabel="odds (%)", ylim=(0, 101))
     lower.set(xlabel="time (min)", ylabel="set point (%)", ylim=(-3, 103))
     for ax in (upper, lower):
         ax.set_xlim(0.0, run.end)
-        ax.legend(fontsize=8, frameon=False, loc="center left")
+        ax.legend(fontsize=8, frameon=False)
     return th.paper.save(figure, png)
 
 

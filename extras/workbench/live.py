@@ -31,9 +31,11 @@ def state_and_picture(file: Path, theme: th.Theme) -> tuple[dict[str, Any], dict
     state = {
         "test": file.stem,
         "minutes": f"{run.minutes(last):.0f}",
-        "odds": [{"cause": n, "p": th.percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]],
+        "odds": [
+            {"cause": th.value_words(n), "p": th.percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]
+        ],
         "over": ", ".join(last["over"]),
-        "unseen": last["unseen"],
+        "unseen": [*map(th.value_words, last["unseen"])],
         "left": "" if last.get("stop") else f"about {last['left_min']:.0f} min left",
         "stop": fault or last.get("stop", ""),
         "fault": bool(fault),

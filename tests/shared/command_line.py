@@ -1,6 +1,7 @@
 """The command line in this process: what a command answers, and that it refuses as it should."""
 
 import contextlib
+import gc
 import json
 import sys
 from io import StringIO
@@ -50,6 +51,8 @@ def answered(*words: object, cwd: Path | str = ".") -> Answer:
             main()
         except SystemExit as end:
             return Answer(int(end.code or 0), out.getvalue(), err.getvalue())
+        finally:
+            gc.unfreeze()  # of a process of many commands something is garbage
     raise AssertionError("the command did not end")
 
 

@@ -212,8 +212,8 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
             yield Finding(
                 "",
                 name,
-                "no law of the network reads this input; an effect may",
-                "input = the name that a law reads, or leave it for effects",
+                "no law of the network reads this input yet",
+                "leave it, an effect may use it; or input = the name that a law reads",
                 True,
             )
     for name in sorted(n for n in read & set(column_of) if column_of[n]):

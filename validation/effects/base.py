@@ -100,6 +100,12 @@ class Effect(ABC):
         return tuple(cls.candidate_places(scene)) if set(cls.needs) <= scene.recorded else ()
 
     @classmethod
+    def lacking(cls, scene: Scene) -> list[str]:
+        """What it would need to sit anywhere here: columns that are not recorded, a part or face that suits it."""
+        columns = [f"a column of {q} (input {INPUTS.get(q, q)})" for q in cls.needs if q not in scene.recorded]
+        return columns + ([] if list(cls.candidate_places(scene)) else [cls.sits])
+
+    @classmethod
     @abstractmethod
     def candidate_places(cls, scene: Scene) -> Iterable[str]:
         """Places that suit it, supposing that what it needs is recorded."""

@@ -70,12 +70,8 @@ def effect(name: str, scene: Scene | None = None) -> Effect:
             raise InputError(f"'{kind}' follows no input", f"effect '{name}'", f"{kind}@{base}{IN}TEST")
         return During.of(cls(base), _checked_condition(condition, scene, name))
     if scene is not None and place not in (places := cls.places(scene)):
-        needs = ", ".join(cls.needs)
-        right = (
-            suggestion(place, places, "it can sit at")
-            if places
-            else f"it can sit nowhere here; it needs: {needs or 'a place'}"
-        )
+        nowhere = f"it can sit nowhere here; it needs: {'; '.join(cls.lacking(scene))}"
+        right = suggestion(place, places, "it can sit at") if places else nowhere
         what = f"'{kind}' cannot sit at '{place}'" if place else f"'{kind}' needs a place: {kind}@PLACE"
         raise InputError(what, f"effect '{name}'", right)
     return cls(place)

@@ -492,7 +492,7 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
 
     other = claim(d)
     if choice.withheld:
-        return f"; {claim(choice.withheld)} is not told: every second reading alone says {other}"
+        return f"; {claim(choice.withheld)} is not named, since every second reading alone says {other}"
     how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
     claimed = "" if choice.verdict in ("adequate", "outside") else how
     if d.groups and d.groups == choice.groups:

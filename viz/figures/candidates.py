@@ -32,7 +32,7 @@ def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str 
     figure, ax = _bars(names, [c["score"] for c in best], [DECISION[c["decision"]] for c in best], height=0.5)
     for y, c in enumerate(best):
         ax.plot([c["threshold"]] * 2, [y - 0.42, y + 0.42], color=LIGHT.ink, lw=1.4)
-        note = amplitude(c) if c["decision"] != "no" else ""
+        note = amplitude(c) + 2 * "\u00a0" if c["decision"] != "no" else ""  # letters of a page may be wider
         ax.text(max(c["score"], c["threshold"], 0), y, f"\u00a0{note}", va="center", fontsize=8.5)
     for label, c in zip(ax.get_yticklabels(), best, strict=True):
         label.set_fontweight("bold" if c["decision"] == "named" else "normal")
@@ -116,7 +116,7 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
     cosine : (n, n)
     """
     c = np.abs(np.asarray(cosine, float))
-    side = 0.42 * len(names)
+    side = 0.48 * len(names)
     figure, (ax,) = paper.subplots(side + 4.2, side + 1.0)  # beside it the labels
     ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
     for i, j in np.ndindex(c.shape):
@@ -150,7 +150,7 @@ def amplitude(candidate: Mapping[str, Any]) -> str:
     # '8.1 ... 16.5', 95 %; empty where it is not known
     ci95 = candidate["amplitude"].get("ci95")
     text, between = size(candidate), f"{ci95[0]:.3g} … {ci95[1]:.3g}" if ci95 and np.isfinite(ci95).all() else ""
-    return f"{text} (95 %: {between})" if text and between else text
+    return minus(f"{text} (95 %: {between})" if text and between else text)
 
 
 def matrix(cosines: Mapping[str, Mapping[str, float]], names: Sequence[str]) -> Array:

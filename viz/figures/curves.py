@@ -15,7 +15,7 @@ from validation.comparison.uncertainty import RULE
 from viz.colours import LIGHT, ORANGE, VERDICT
 from viz.data import Comparison, input_title, short
 from viz.figures import paper
-from viz.labels import Dash, end_labels
+from viz.labels import end_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from measured.case import Channel
 
-# With more lines than anyone follows in one colour each has dashes of its own, up to this many kinds.
-DASHES: tuple[Dash, ...] = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (6, 1, 1, 1, 1, 1)))
+MOST = 6  # lines with a name: more of one colour nobody follows
 
 
 @paper.styled
@@ -54,22 +53,24 @@ def measured_and_model(comparison: Comparison, *, columns: int = 3, png: str | P
 
 @paper.styled
 def residuals(comparison: Comparison, *, png: str | Path | None = None) -> Figure:
-    """Measured - modelled per sensor over time; each in the colour of its sensor."""
-    channels = _read(comparison)
-    figure, (ax,) = paper.subplots(8.4, max(3.8, 0.2 * len(channels) + 1.0))
+    """Measured - modelled per sensor over time, each in the colour of its sensor; only the worst have names."""
+    worst = sorted(_read(comparison), key=comparison.rmse, reverse=True)
+    channels = sorted(worst, key=lambda c: comparison.sensor(c).verdict == "within")
+    figure, (ax,) = paper.subplots(8.4, 3.8)
     (t, unit), thin = comparison.clock, comparison.thin
     shade(ax, comparison)
     curves = [comparison.residual_curve(channel) for channel in channels]
-    dashes = [DASHES[i % len(DASHES)] for i in range(len(curves))] if len(curves) > len(DASHES) else []
-    for c, dash in zip(curves, dashes or ["-"] * len(curves), strict=True):
-        ax.plot(t[thin], c.y[thin], color=c.colour, lw=1.0 if c.colour == VERDICT["within"] else 1.6, ls=dash)
+    for k, c in enumerate(curves):
+        width = 1.6 if c.colour != VERDICT["within"] else 1.1
+        ax.plot(t[thin], c.y[thin], color=c.colour, lw=width if k < MOST else 0.6, alpha=1.0 if k < MOST else 0.35)
         alone(ax, t, c.y, c.colour)
-    ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves]
-    end_labels(ax, ends, [c.name for c in curves], [c.colour for c in curves], dashes=dashes)
+    ends = [float(c.y[np.isfinite(c.y)][-1]) for c in curves[:MOST]]
+    end_labels(ax, ends, [c.name for c in curves[:MOST]], [c.colour for c in curves[:MOST]])
     ax.axhline(0, color=LIGHT.ink, lw=0.8)
     ax.margins(x=0)
+    pale = f" (the {MOST} worst; pale: {len(curves) - MOST} more)" if len(curves) > MOST else ""
     ax.set(xlabel=f"time ({unit}); green is {RULE}", ylabel="measured − model (K)")
-    ax.set_title(f"{comparison.test.name}: what the model misses")
+    ax.set_title(f"{comparison.test.name}: what the model misses{pale}")
     return paper.save(figure, png)
 
 

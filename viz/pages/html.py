@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
@@ -16,6 +17,8 @@ from viz.labels import minus
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+SIGN = re.compile(r"(?<![\w.)\]])-(?=\d)")  # of a number in words, not in a date, a range or a name
 
 
 def page(title: str, body: Iterable[str]) -> str:
@@ -107,6 +110,7 @@ def _cell(value: Any, words: Mapping[str, str]) -> str:
     if isinstance(value, float) and isfinite(value):
         return minus(f"{value:.4g}" if abs(value) >= 1000 or 0 < abs(value) < 0.01 else f"{value:.3g}")
     word = cell(value).replace("->", "→").replace(" ... ", "\u00a0…\u00a0").replace(" %", "\u00a0%")
+    word = SIGN.sub(minus("-"), word)
     word = word.replace("> ", ">\u00a0").replace("< ", "<\u00a0")  # odds on one line, however narrow
     if word in ("", "-"):
         return "–"

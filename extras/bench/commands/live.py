@@ -58,8 +58,10 @@ def live_document(
 
 def live_summary(document: Mapping[str, Any]) -> th.Summary:
     """How it ended, the odds, and what was set."""
-    odds = th.Table.of(
-        "Odds", document["odds"], "*cause | *probability", probability=lambda o: th.percent(o["probability"])
+    odds = th.Table(
+        "Odds",
+        ["odds", "cause"],
+        [[th.percent(o["probability"]), th.value_words(o["cause"])] for o in document["odds"]],
     )
     rows = [
         [e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())]
@@ -69,7 +71,7 @@ def live_summary(document: Mapping[str, Any]) -> th.Summary:
     if document["sensors_over"]:
         parts.append(f"sensors over: {', '.join(document['sensors_over'])}")
     if document["cannot_see"]:
-        parts.append(f"cannot see: {', '.join(document['cannot_see'])}")
+        parts.append(f"cannot see: {', '.join(map(th.value_words, document['cannot_see']))}")
     return th.Summary(
         f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}"
     )

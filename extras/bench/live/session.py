@@ -16,6 +16,7 @@ from extras.bench.live.sources import Parser, Source
 from extras.bench.live.steering import Steering, Thought
 from extras.bench.live.store import BenchError
 from thermoscope import InputError
+from thermoscope import plugin as th
 
 WAKE_S = 0.2  # between two looks at a thought that goes on and at what a person typed
 Tell = Callable[[str], None]
@@ -118,12 +119,12 @@ def _set_words(steering: Steering) -> str:
 
 def words(thought: Thought) -> str:
     """A look at the odds in one line."""
-    odds = ", ".join(f"{name} {p:.0%}" for name, p in thought.assessment.odds[:3])
+    odds = ", ".join(f"{th.value_words(name)} {p:.0%}" for name, p in thought.assessment.odds[:3])
     out = [f"{thought.time / 60.0:6.1f} min  {odds}"]
     if thought.assessment.over:
         out.append(f"sensors over: {', '.join(thought.assessment.over)}")
     if thought.assessment.unseen:
-        out.append(f"cannot see yet: {', '.join(thought.assessment.unseen[:3])}")
+        out.append(f"cannot see yet: {', '.join(map(th.value_words, thought.assessment.unseen[:3]))}")
     if not thought.stop:
         out.append(f"about {thought.left_min:.0f} min left")
     return "; ".join(out)

@@ -207,7 +207,7 @@ class Steering:
             p = self._of_what_shows(assessment, p)
         if p < SURE or cause.startswith("heat@"):
             return ""
-        return "nothing is missing" if cause == NOTHING else f"{cause} is missing"
+        return "nothing is missing" if cause == NOTHING else f"{th.value_words(cause)} is missing"
 
     def _of_what_shows(self, assessment: Assessment, p: float) -> float:
         """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""

@@ -71,7 +71,7 @@ def driven(case, plant, most_min, **changes):
 def test_it_names_what_is_hidden_and_its_rows_are_a_test(case):
     plant = Plant(drawn("servo", 100, "copper.ac@winding"))
     thought = driven(case, plant, 60, every_s=120.0)
-    assert thought.stop == "copper.ac@winding is missing"
+    assert thought.stop == "AC copper loss at winding is missing"
     assert [t.name for t in load_case(case).case.tests] == ["live"]
     assert all(plant.hottest[x.place] <= x.most_C for x in bench_of(case).limits)
     events = [json.loads(line)["event"] for line in (case / "tests" / "live.jsonl").read_text().splitlines()]

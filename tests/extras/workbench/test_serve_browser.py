@@ -209,7 +209,7 @@ def test_a_run_on_the_bench_is_followed_and_told_that_it_is_done(root, page, ser
         page.wait_for_selector("#live-done")
         assert "current_A = 8" in page.inner_text("#live-set")
         assert "T_yoke" in page.inner_text("#live-over")
-        assert "windage@rotor" in page.inner_text("#live-unseen")
+        assert "windage at rotor" in page.inner_text("#live-unseen")
         assert "about 12 min left" in page.inner_text("#live-left")
         page.wait_for_selector("#live .js-plotly-plot .scatterlayer .trace")
         page.locator("#live").scroll_into_view_if_needed()

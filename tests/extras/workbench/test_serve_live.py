@@ -18,7 +18,7 @@ RUN = [
 DONE = {"event": "done", "time_s": 95.0}
 SURE = {"time_s": 305.0, "odds": [["copper.ac@winding", 0.95], ["nothing", 0.05]]}
 END = [
-    LOOK | SURE | {"stop": "copper.ac@winding is missing"},
+    LOOK | SURE | {"stop": "AC copper loss at winding is missing"},
     {"event": "set", "time_s": 305.0, "set_point": SAFE, "minutes": 0.0, "nats": 0.0, "waits": False},
 ]
 
@@ -40,17 +40,17 @@ def test_it_asks_for_the_next_set_point_until_that_is_there(written):
     assert state["asks"]
     assert [(s["name"], s["value"]) for s in state["set"]] == [("current_A", "8"), ("speed_rpm", "3000")]
     assert (state["minutes"], state["left"], state["stop"]) == ("1", "about 12 min left", "")
-    assert (state["over"], state["unseen"]) == ("T_core", ["windage@rotor"])
+    assert (state["over"], state["unseen"]) == ("T_core", ["windage at rotor"])
     assert not live.state_and_picture(written(*RUN, DONE), LIGHT)[0]["asks"]
     assert not live.state_and_picture(written({"event": "run", "drive": True}, *RUN[1:]), LIGHT)[0]["asks"]
 
 
 def test_it_says_how_a_run_ended(written):
     state, figure = live.state_and_picture(written(*RUN, DONE, *END), DARK)
-    assert (state["stop"], state["fault"], state["left"]) == ("copper.ac@winding is missing", False, "")
-    assert [o["cause"] for o in state["odds"]] == ["copper.ac@winding", "nothing"]
+    assert (state["stop"], state["fault"], state["left"]) == ("AC copper loss at winding is missing", False, "")
+    assert [o["cause"] for o in state["odds"]] == ["AC copper loss at winding", "nothing"]
     names = [line["name"] for line in figure["data"]]
-    assert names == ["copper.ac@winding", "nothing", "current_A, 100 % = 8", "speed_rpm, 100 % = 3000"]
+    assert names == ["AC copper loss at winding", "nothing", "current (A), 100 % = 8", "speed (1/min), 100 % = 3000"]
     assert figure["layout"]["paper_bgcolor"] == DARK.paper
     state, _ = live.state_and_picture(written(*RUN, {"event": "fault", "what": "the line is gone"}), LIGHT)
     assert (state["stop"], state["fault"]) == ("the line is gone", True)
@@ -70,5 +70,5 @@ def test_done_is_said_beside_the_journal(written, tmp_path):
 
 def test_odds_and_set_points_are_in_per_cent_over_minutes(written):
     run = BenchRun([*RUN, *END])
-    assert run.odds[0] == ("copper.ac@winding", [1.0, 5.0], [10.0, 95.0])
-    assert run.set_points[0] == ("current_A, 100 % = 8", [1.0, 5.0, 5.0], [100.0, 0.0, 0.0])
+    assert run.odds[0] == ("AC copper loss at winding", [1.0, 5.0], [10.0, 95.0])
+    assert run.set_points[0] == ("current (A), 100 % = 8", [1.0, 5.0, 5.0], [100.0, 0.0, 0.0])

@@ -318,3 +318,7 @@ def test_catalogue_needs_what_was_recorded(net):
 
     calm = replace(scene(net), inputs=frozenset({"current_A"}))
     assert "convection" not in {e.kind for e in catalogue(calm)}
+    with pytest.raises(
+        InputError, match=r"nowhere here; it needs: a column of vehicle_speed \(input vehicle_speed_mps\)"
+    ):
+        effect("convection@flange.right", calm)

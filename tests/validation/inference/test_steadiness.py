@@ -94,7 +94,7 @@ def test_nothing_is_told_where_half_of_the_instants_say_that_nothing_is_missing(
     choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
     assert (choice.verdict, choice.groups, choice.sure) == ("adequate", (), 0.95)
     told = unsteady_words(posterior(), choice)
-    assert told == f"; {withheld} is not told: every second reading alone says nothing is missing"
+    assert told == f"; {withheld} is not named, since every second reading alone says nothing is missing"
 
 
 def test_the_order_within_a_group_is_no_other_verdict():

@@ -131,6 +131,16 @@ def test_sensor_that_was_never_read_is_left_out():
     assert "flange.right" in text
 
 
+def test_of_many_residuals_the_worst_have_names():
+    c = comparison()
+    first, y = c.test.channels[0], c.model[c.test.channels[0].name]
+    many = tuple(replace(first, name=f"T{k}", y=y + k) for k in range(8))
+    limits = dict.fromkeys([x.name for x in many], 2.5)
+    (ax,) = curves.residuals(Comparison(replace(c.test, channels=many), dict.fromkeys(limits, y), limits)).axes
+    assert sorted(text.get_text() for text in ax.texts) == [f"T{k}" for k in range(2, 8)]
+    assert "pale: 2 more" in ax.get_title("left")
+
+
 def test_long_test_is_drawn_in_hours_with_few_points():
     c = comparison()
     many = 50_000

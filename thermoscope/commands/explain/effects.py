@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from geom.table import Table
-from lumped.model.quantities import INPUTS
 from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
@@ -52,10 +51,7 @@ def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
     }
     if scene is None:
         return about
-    inputs = [q for q in kind.needs if q not in scene.recorded]
-    suited = list(kind.candidate_places(scene))
-    missing = [*(f"a column of {q} (input {INPUTS.get(q, q)})" for q in inputs), *([] if suited else [kind.sits])]
-    return {**about, "places": list(kind.places(scene)), "missing": missing}
+    return {**about, "places": list(kind.places(scene)), "missing": kind.lacking(scene)}
 
 
 def effects_summary(document: Mapping[str, Any]) -> Summary:
