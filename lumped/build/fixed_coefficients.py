@@ -13,7 +13,7 @@ import numpy as np
 from fem.matrices.assembly import FieldModel
 from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import Solver, coupled, film_columns
-from geom import Machine
+from geom import InputError, Machine
 from lumped.build.crosscheck import fluid_nodes
 from lumped.build.load_cases import rated_streams, rated_watts
 from lumped.condensation.linear import linear, unit_load
@@ -93,6 +93,10 @@ class FixedCoefficients:
 
     def _fluids(self, field: FieldModel) -> tuple[Array, Array]:
         B, D = film_columns(field, self.films, self.fluids)
+        alone = [name for name, row in zip(self.fluids, D + self.streams, strict=True) if not row.any()]
+        if alone:
+            right = "a closed void between its solids, such as the space around the end windings"
+            raise InputError(f"{alone[0]} touches no part", "the machine", right)
         return B, D + self.streams
 
     def _on(self, network: Network, field: FieldModel) -> tuple[Array, Array, Array]:
@@ -121,4 +125,7 @@ def rated(
     for place, q in watts.items():
         part = place_of(network, place).part
         whole[part] = whole.get(part, 0.0) + q
+    if not any(whole.values()):
+        right = "a loss, and in [ratings] what its law reads"
+        raise InputError("nothing heats it at its rated point", f"{machine.name} [losses]", right)
     return FixedCoefficients(films, contacts, whole, fluids, rated_streams(machine, network), heat)

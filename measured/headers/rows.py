@@ -67,6 +67,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         raise InputError(f"{width} values under {len(names)} names", where, right)
     width = len(names) if len(names) > width else width
     names = _called(names, rows[:header])
+    alone = [str(rows[i][0]) for i in range(header + 1, first) if len(trimmed(rows[i])) == 1 and rows[i][0]]
+    names[0] = alone[-1] if alone and is_time(split_unit(alone[-1])[0]) and not is_time(names[0]) else names[0]
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
     groups = [""] * width
     one = bool(above) and len({*filter(None, above[-1][1:])}) == 1 < sum(map(bool, above[-1][1:]))  # says nothing
@@ -78,7 +80,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
-    if not any(map(roles_of, names)) and (remarks := next((r for r in others if any(map(roles_of, r[1:]))), None)):
+    if not any(map(roles_of, names)) and (
+        remarks := next((r for r in others if sum(map(bool, r)) >= 0.5 * width and any(map(roles_of, r[1:]))), None)
+    ):
         labels = [split_unit(name)[0] for name in names]  # remarks may stand under a row of channels, beside its clock
         late = next((labels.index(c) - j for row in others for j, c in enumerate(row) if c and c in labels), 0)
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)

@@ -31,6 +31,7 @@ INSTANT = re.compile(
 ISO = re.compile(r"\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,6})?)?")  # NumPy reads it
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
+BETWEEN = re.compile(r"(?<=\d),?\s+(?![apAP][mM])[a-zA-ZÀ-ÿ]{1,3}\.?\s+(?=\d{1,2}:\d\d)")  # klo, kl., um, at, à
 IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
 WEEKDAY = re.compile(  # before a whole date: mar. 04/06/2024 and mar. 4 juin 2024 are no March
     r"^[^\W\d_]{2,10}[.,]{0,2}\s+(?=\d{1,4}[-/.]\s?\d{1,2}[-/.]\s?\d{1,4}|\d{1,2}[-/. ]{1,2}[^\W\d_]{3})"
@@ -404,7 +405,7 @@ def _spelled_out(cell: Any) -> str:
         return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
     text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip().translate(IDEOGRAPHIC))
     text = re.sub(r"(?<=\d{4}):(?=\d\d:\d\d)", " ", text)  # 28/Mar/2026:12:00:10 of a web server
-    text = re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text))
+    text = BETWEEN.sub(" ", re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text)))
     return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
 
 

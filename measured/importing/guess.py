@@ -448,13 +448,14 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if label in target.places_by_header:  # told by its readings, or by hand
         return "", "", ""
     place, _ = target.place_of(label)
-    alike = {w for w in tokens(label) if len(w) > 1} <= set(tokens(place))
-    return ("temperature", f"name like the place {place}", "") if place and alike else ("", "", "")
+    words = {w for w in tokens(label) if len(w) > 1}
+    alike = place and words and words <= {*tokens(place)}
+    return ("temperature", f"name like the place {place}", "") if alike else ("", "", "")
 
 
 def _called_unit(label: str) -> str:
-    """The unit that is all of a name, as in a column "rpm" or "mA"; letters alone are rather of phases."""
-    unit = unit_of(label) if len(label) > 1 else ""
+    """The unit that is all of a name, as in a column "rpm" or "mA"; a letter, or one with a number, is a phase's."""
+    unit = "" if re.fullmatch(r"[^\W\d_](\W?\d+)?", label) else unit_of(label)
     return unit if any(unit in QUANTITIES[q].units for q in FIRST) else ""
 
 
@@ -535,7 +536,8 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
-        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, more
+        named = input_name(g) == g.feeds if g.feeds else True  # "Speed" is the speed before "S-1 [1/s]" is
+        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, not named, more
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")

@@ -246,7 +246,7 @@ def _source(
     split = {n: (n, "") if texts[n] and unit_of(split[n][1]) not in texts[n] else split[n] for n in cells}
     unit_texts = {n: units.get(n, "") or split[n][1] or next(iter(texts[n]), "") for n in cells}
     for before, header in itertools.pairwise(cells):  # a column of units beside that of readings
-        is_unit_column = header.lower().startswith(UNIT_NAMES)
+        is_unit_column = header.lower().startswith(UNIT_NAMES) or header.lower().endswith(UNIT_NAMES)
         beside = {str(c).strip() for c in cells[header] if c is not None} if is_unit_column else set()
         words = [word for text in beside for word in (text, text.rpartition(" ")[2]) if is_unit(word)]  # "TEMP C"
         if len(beside) == 1 and words and not unit_texts[before]:

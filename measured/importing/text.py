@@ -44,6 +44,7 @@ LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAI
 SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
 TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
+FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
 
@@ -56,6 +57,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     The last is the time between rows (s) where the lines before the header say it.
     """
     text, notes = decoded(b"".join(chunks(file)), file), list[str]()
+    if FORTRAN.search(text[:10_000]):
+        text = FORTRAN.sub("E", text)
     if ARROW.search(text[:10_000]):
         text = ARROW.sub(lambda match: f"{match[1]}\t", text)
     if len(LOGGED.findall(text[:10_000])) > 9:
@@ -80,6 +83,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes += [odd] * (len(readings) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
     plan = layout(head, str(file))
+    if sign == "  " and not any(plan.names):  # names with one blank between them over columns with several
+        single = layout(split_cells(lines[: 2 * SAMPLE], " "), str(file))
+        plan, sign = (single, " ") if single.width == plan.width and any(single.names) else (plan, sign)
     interval_s = _interval("".join(lines[: plan.first]))
     columns = _plain(file, lines, sign, plan)
     if columns is None:

@@ -284,8 +284,9 @@ def _parquet(file: Path) -> Contents:
         check_shape(about.num_rows, about.num_columns, file)
         BYTES.check(sum(about.row_group(i).total_byte_size for i in range(about.num_row_groups)), file, "holds")
         table = pyarrow.Table.from_batches(timed(parquet.iter_batches(), file), parquet.schema_arrow)
-    columns = zip(table.column_names, table.columns, strict=True)
-    return [(n, c.to_numpy(zero_copy_only=False)) for n, c in columns if not UNNAMED.fullmatch(n)], {}
+    columns = [(n, c.to_numpy(zero_copy_only=False)) for n, c in zip(table.column_names, table.columns, strict=True)]
+    index = {n: "time" for n, c in columns if UNNAMED.fullmatch(n) and c.dtype.kind == "M"}  # instants without a name
+    return [(index.get(n, n), c) for n, c in columns if n in index or not UNNAMED.fullmatch(n)], {}
 
 
 def _mat(file: Path) -> Contents:

@@ -5,8 +5,13 @@ from types import SimpleNamespace
 import pytest
 from bare_networks import means_only
 
-from geom import load_machine
+from geom import InputError, load_machine
+from geom.description import shapes
+from geom.description.machine import Machine
+from geom.description.part import Part
+from geom.description.roles import Role
 from lumped.build.load_cases import fluid_rises, rated_watts
+from lumped.build.network_size import accurate_network
 from lumped.build.pipeline import prepared
 from lumped.condensation.zone import Zone
 
@@ -48,3 +53,19 @@ def test_ends_of_a_winding_are_heated_though_its_loss_is_named_after_the_middle(
     assert {"winding", "stator.core", *ends} <= parts
     assert ends.isdisjoint(source.place for source in network.sources)
     assert parts.isdisjoint({"housing", "shaft"})
+
+
+HEAT = {"kind": "constant", "at": "winding", "P_W": 50.0, "of": {"input": "current_A", "at": 5.0, "exponent": 2}}
+
+
+@pytest.mark.parametrize(
+    ("ratings", "words"),
+    [({}, "nothing heats it at its rated point"), ({"current_A": 5.0}, "air.inside touches no part")],
+)
+def test_a_machine_without_heat_or_without_a_void_is_one_message(ratings, words):
+    """A solid rod, as a STEP file may hold one alone: its matrices would be singular, or its rises zero."""
+    rod = Part("winding", "copper", ((shapes.disc(0.02), 0.0, 0.06),))
+    air = Part("air.inside", "air", (), solid=False, role=Role.INNER_AIR)
+    sections = {"losses": {"heat": HEAT}, "ratings": ratings}
+    with pytest.raises(InputError, match=words):
+        accurate_network(Machine("rod", "step", "", (rod,), (air,), sections, None, {}), 20.0)

@@ -732,4 +732,34 @@ FORMATS: dict[str, Format] = {
         "tIWA", ["Χρόνος (s)", "Ρεύμα (A)", "Θερμοκρασία τυλίγματος (°C)", "Θερμοκρασία περιβάλλοντος (°C)"], ";", ","
     ),
     "danish": Format("tIWA", ["Tid", "Strøm", "Viklingstemperatur", "Rumtemperatur"], ";", ",", doubt="assumed"),
+    "numbers of Fortran": Format(
+        "tIWA",
+        ["T(S)", "I(A)", "TWIND(C)", "TAIR(C)"],
+        "  ",
+        row=lambda c: "".join(f"{float(x):13.5E}" for x in c).replace("E", "D"),
+    ),
+    "a word between date and time": Format("tIWA", ["Aika", *IWA], ";", ",", stamp=at("%d.%m.%Y klo %H.%M.%S")),
+    "units in columns beside readings": Format(
+        "tIxWyAz",
+        ["Time [s]", "Ch1_Value", "Ch1_Unit", "Winding_Value", "Winding_Unit", "Room_Value", "Room_Unit"],
+        cells={"x": lambda k: "A", "y": lambda k: "C", "z": lambda k: "C"},
+    ),
+    "one blank between names, several between readings": Format(
+        "tIWA",
+        ["% t[s]", "I[A]", "T_winding[C]", "T_amb[C]"],
+        " ",
+        before="% third run\n",
+        row=lambda c: "  ".join(f"{x:>9}" for x in c),
+    ),
+    "apparent power beside a speed": Format(
+        "txyInWA", ["Time [s]", "S-1", "Q-1", "Irms-1", "Speed", "Aux1(T_coil)", "Aux2(T_room)"]
+    ),
+    "a clock under the names": Format(
+        "tIWA",
+        ["Name", "Strom", "Wicklung", "Raum"],
+        ";",
+        ",",
+        units=["Einheit", "A", "°C", "°C\nZeit [ms];;;"],
+        stamp=lambda k: str(5000 * k),
+    ),
 }

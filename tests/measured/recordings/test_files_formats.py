@@ -11,6 +11,7 @@ from openpyxl.chart import LineChart
 from small_case import HEADER, measured, small_case
 
 from geom.errors import InputError
+from measured.importing.clock import clock_of
 from measured.importing.source import read_source
 from measured.recordings import formats
 from measured.recordings.alignment import clock_shift
@@ -107,6 +108,14 @@ def test_a_file_that_is_something_else(tmp_path, suffix):
     path.write_bytes(b"this is no such file, but long enough to be looked at twice" * 10)
     with pytest.raises(InputError, match="not readable as"):
         read_recording(path)
+
+
+def test_instants_without_a_name_are_the_time(tmp_path):
+    """As pandas writes a table whose index has none; row numbers are no column."""
+    index = pd.date_range("2026-03-28 12:00:10", periods=40, freq="15s", tz="UTC")
+    pd.DataFrame({"T_winding": np.arange(40.0)}, index).to_parquet(tmp_path / "a.parquet")
+    assert list(read_recording(tmp_path / "a.parquet").columns) == ["T_winding", "time"]
+    assert np.diff(clock_of(read_source(tmp_path / "a.parquet")).seconds) == pytest.approx(15.0)
 
 
 def test_unknown_format_and_missing_worksheet(tmp_path):

@@ -310,6 +310,9 @@ LONG = {
         f",,0,2026-03-28T12:{k // 12:02d}:{5 * k % 60:02d}Z,{v:.2f},{n}"
     ),
     "time_s,sensor,reading": lambda n, k, v: f"{5 * k},{n},{v:.2f}",
+    "Channel,Label,Function\n101,Temp_Winding,Temperature\n\nChannel,Label,Reading,Status,time_s": lambda n, k, v: (
+        f"{100 + len(n)},{n},{v:.6E},0,{5 * k}"
+    ),
 }
 
 
